@@ -1,0 +1,14 @@
+# Compiler flags that every target of the project shares. Warnings are errors.
+add_library(axis_flags INTERFACE)
+target_include_directories(axis_flags INTERFACE "${AXIS_ROOT}")
+target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+                                            -ffp-contract=off)
+if(AXIS_SANITIZE)
+  target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(axis_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# The control core is compiled for a microcontroller too: on the host it obeys the same restrictions.
+add_library(axis_core_flags INTERFACE)
+target_link_libraries(axis_core_flags INTERFACE axis_flags)
+target_compile_options(axis_core_flags INTERFACE -Wdouble-promotion -Wfloat-conversion)

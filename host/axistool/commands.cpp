@@ -1,0 +1,15 @@
+#include "host/axistool/commands.hpp"
+
+namespace axistool {
+
+namespace {
+host::ExitCode ending = host::ExitCode::done;
+}
+
+void end_with(host::ExitCode code) { ending = code; }
+
+int exit_status() { return static_cast<int>(ending); }
+
+void add_all_commands(CLI::App&) {}
+
+}  // namespace axistool

@@ -1,0 +1,20 @@
+// The commands of axistool. Each lives in a file of its own, which parses options and prints; the work is in the
+// library.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "host/exit_codes.hpp"
+
+namespace axistool {
+
+/// Registers every command with the program's option parser.
+void add_all_commands(CLI::App& app);
+
+/// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
+void end_with(host::ExitCode code);
+
+/// What the process returns when no failure was thrown.
+int exit_status();
+
+}  // namespace axistool

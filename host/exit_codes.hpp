@@ -1,0 +1,29 @@
+// How every command of axistool ends.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace host {
+
+enum class ExitCode : int {
+  done = 0,
+  answer_is_no = 1,  ///< differences found, a check failed
+  usage = 2,
+  no_such_device = 3,
+  permission = 4,
+  protocol = 5,
+  device_fault = 6,
+  time_out = 7,
+  refused = 8,  ///< for safety, or for want of excitation
+  bad_input = 9,
+};
+
+/// An end that the user can do something about: the message says what, where and what to do.
+class Failure : public std::runtime_error {
+ public:
+  Failure(ExitCode exit_code, const std::string& message) : std::runtime_error(message), code(exit_code) {}
+  ExitCode code;
+};
+
+}  // namespace host

@@ -1,0 +1,44 @@
+// A measurement: evenly sampled channels of one axis, as `axis-record/1` holds them.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// One channel that the analysis does not interpret, kept as it was read.
+struct ExtraChannel {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// Samples of one test. All channels present have the same length N >= 2; row k holds what was sampled at t_s[k] and
+/// the command computed from it and applied from then on. Travel and speed are in the drive's own units: rotary: x in
+/// mm, w in rad/s; linear: x in m, w in m/s (files in mm and mm/s are scaled when they are read).
+struct Record {
+  std::string path;   ///< where it came from, for messages
+  std::string drive;  ///< `# drive:` of the header; may be empty
+  sim::DriveKind kind = sim::DriveKind::rotary;
+  double sample_period_s = 0.0;               ///< Ts, measured from t_s
+  std::map<std::string, std::string> header;  ///< every `# key: value` line
+  std::vector<double> t_s;
+  std::vector<double> u_V;     ///< command at the D/A converter; empty when only current was logged
+  std::vector<double> i_A;     ///< motor current; empty when absent
+  std::vector<double> x;       ///< position as the encoder reads it; empty when absent
+  std::vector<double> w;       ///< speed as the tachometer reads it; empty when absent
+  std::vector<double> x_ref;   ///< reference position; empty when absent
+  std::vector<double> w_ref;   ///< reference speed; empty when absent
+  std::vector<double> temp_C;  ///< empty when absent
+  std::vector<ExtraChannel> extra;
+
+  std::size_t size() const { return t_s.size(); }
+  bool has_position() const { return !x.empty(); }
+  bool has_speed() const { return !w.empty(); }
+};
+
+}  // namespace host

@@ -1,0 +1,55 @@
+// The drive as its engineer writes it down: data-sheet values and a list of physical effects.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sim {
+
+enum class DriveKind { rotary, linear };
+
+/// Data-sheet values of a drive. One set of equations serves both kinds:
+/// speed w is rad/s (rotary) or m/s (linear), effort T is Nm or N, travel x is mm or m, and dx/dt = lead * w.
+struct DataSheet {
+  DriveKind kind = DriveKind::rotary;
+  double amplifier_gain_A_per_V = 0.0;        ///< Ka, rotary only, > 0
+  double torque_constant_Nm_per_A = 0.0;      ///< Kt, rotary only, > 0
+  double force_constant_N_per_V = 0.0;        ///< linear only, > 0
+  double lead = 1.0;                          ///< rg: mm/rad (rotary), 1 (linear: m per m)
+  double sample_period_s = 0.001;             ///< Ts, > 0
+  double dac_resolution_V = 0.0;              ///< du; 0 means ideal
+  double dac_limit_V = 10.0;                  ///< output range is -limit..+limit
+  double encoder_resolution = 0.0;            ///< dx: mm (rotary) or m (linear); 0 means ideal
+  std::optional<double> tach_noise_variance;  ///< (rad/s)^2 or (m/s)^2; empty: the drive has no tachometer
+
+  /// Effort at the shaft for one volt at the D/A converter: Ka*Kt in Nm/V, or N/V.
+  double effort_per_volt() const {
+    return kind == DriveKind::rotary ? amplifier_gain_A_per_V * torque_constant_Nm_per_A : force_constant_N_per_V;
+  }
+};
+
+/// One effect of a drive: its kind in the catalogue and the values of its parameters, by parameter id (no unit suffix).
+struct EffectEntry {
+  std::string kind;
+  std::map<std::string, double> parameters;
+  std::map<std::string, std::array<double, 2>> ci95;  ///< 95 % interval of those parameters that were fitted
+  std::string from;                                   ///< the record that the values came from; may be empty
+
+  bool has(const std::string& id) const { return parameters.contains(id); }
+  double at(const std::string& id) const { return parameters.at(id); }
+};
+
+struct DriveDescription {
+  std::string name;
+  DataSheet data;
+  std::vector<EffectEntry> effects;
+
+  const EffectEntry* find(std::string_view kind) const;
+  EffectEntry* find(std::string_view kind);
+};
+
+}  // namespace sim
