@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -41,6 +42,11 @@ struct EffectEntry {
 
   bool has(const std::string& id) const { return parameters.contains(id); }
   double at(const std::string& id) const { return parameters.at(id); }
+  /// The magnitude for one direction: its own value, or the one that stands for both.
+  double either(const std::string& id, const std::string& both) const {
+    const auto own = parameters.find(id);
+    return std::abs(own != parameters.end() ? own->second : parameters.at(both));
+  }
 };
 
 struct DriveDescription {

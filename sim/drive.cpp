@@ -1,0 +1,254 @@
+#include "sim/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/catalogue.hpp"
+#include "sim/friction.hpp"
+#include "sim/presliding_motion.hpp"
+#include "sim/two_mass_motion.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Exact mean over `duration` of a first-order lag that starts at `value` and follows a constant `target`; moves
+/// `value`.
+double lag_mean(double& value, double target, double time_constant, double duration) {
+  const double gap = value - target;
+  const double z = -duration / time_constant;
+  const double mean = target + gap * phi1(z);
+  value = target + gap * std::exp(z);
+  return mean;
+}
+
+/// The contact of a drive on which further effects act; the state keeps what it remembers.
+struct RichContact {
+  const Drive& drive;
+  DriveState& state;
+  double level;      ///< factor on Coulomb and static friction
+  double viscosity;  ///< factor on viscous friction
+  double carried;    ///< friction from the transmitted effort
+
+  FrictionPoint sliding(int side, double speed) const {
+    const FrictionSide& friction = drive.friction[static_cast<std::size_t>(side)];
+    const double breakaway = friction.breakaway * (1.0 + state.breakaway_gain);
+    const bool remembers = drive.friction_memory_s > 0.0;
+    FrictionPoint curve = stribeck_curve(friction, breakaway, remembers ? std::abs(state.friction_speed) : speed);
+    if (remembers) curve.slope = 0.0;
+    FrictionPoint all = viscous(side, speed);
+    all.effort += level * curve.effort + carried;
+    all.slope += level * curve.slope;
+    return all;
+  }
+
+  /// The part that fluid and not the contact carries.
+  FrictionPoint viscous(int side, double speed) const {
+    const double coefficient = viscosity * drive.friction[static_cast<std::size_t>(side)].viscous;
+    FrictionPoint all{coefficient * speed, coefficient};
+    for (const auto& further : drive.sliding_friction) {
+      // The derivative only steers the step; a difference over 0.1 % of the speed is enough.
+      const double near = speed * 1.001 + 1e-6;
+      const double here = further(speed);
+      all.effort += here;
+      all.slope += (further(near) - here) / (near - speed);
+    }
+    return all;
+  }
+
+  double breakaway(int side) const {
+    const double gain = drive.dwell_gain > 0.0 ? 1.0 + dwell_gain() : 1.0;
+    return level * drive.friction[static_cast<std::size_t>(side)].breakaway * gain + carried;
+  }
+  double dwell_gain() const { return drive.dwell_gain * -std::expm1(-state.rest_s / drive.dwell_time_s); }
+  void broke_away() const {
+    if (drive.dwell_gain > 0.0) state.breakaway_gain = dwell_gain();
+  }
+  void came_to_rest() const { state.rest_s = 0.0; }
+  void rested(double duration_s) const { state.rest_s += duration_s; }
+};
+
+template <typename Factors, typename... Arguments>
+double product(const Factors& factors, Arguments... arguments) {
+  double value = 1.0;
+  for (const auto& factor : factors) value *= factor(arguments...);
+  return value;
+}
+
+template <typename Terms>
+double sum_at(const Terms& terms, double x) {
+  double value = 0.0;
+  for (const auto& term : terms) value += term(x);
+  return value;
+}
+
+}  // namespace
+
+Drive::Drive(const DriveDescription& description)
+    : effort_per_volt(description.data.effort_per_volt()), lead(description.data.lead) {
+  for (const EffectEntry& entry : description.effects) {
+    const EffectInfo* info = find_effect(entry.kind);
+    if (info == nullptr) throw std::invalid_argument("unknown effect kind: " + entry.kind);
+    info->install(entry, description.data, *this);
+  }
+  settle();
+}
+
+void Drive::settle() {
+  for (std::size_t direction = 0; direction < friction.size(); ++direction) {
+    FrictionSide& side = friction[direction];
+    side.coulomb *= direction_factor[direction].level;
+    side.breakaway = std::max(side.breakaway * direction_factor[direction].level, side.coulomb);
+    side.viscous *= direction_factor[direction].viscous;
+  }
+  max_step_s = HUGE_VAL;
+  if (bristles) max_step_s = std::min(max_step_s, kPreslidingStep_s);
+  if (second_mass) max_step_s = std::min(max_step_s, two_mass_step_s(*second_mass));
+  for (const FrictionSide& side : friction) stribeck_ = stribeck_ || side.omega1 > 0.0 || side.omega2 > 0.0;
+  plain_ = command.empty() && delay_s <= 0.0 && current_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
+           load_effort.empty() && level_factor.empty() && viscous_factor.empty() && sliding_friction.empty() &&
+           transmitted_share == 0.0 && friction_memory_s <= 0.0 && dwell_gain <= 0.0 && !bristles && !second_mass &&
+           tach_lag_s <= 0.0;
+}
+
+bool Drive::has_hidden_state() const {
+  return delay_s > 0.0 || current_lag_s > 0.0 || friction_memory_s > 0.0 || dwell_gain > 0.0 || bristles ||
+         second_mass || tach_lag_s > 0.0;
+}
+
+DriveState Drive::at(double x, double w) const {
+  DriveState state;
+  state.x = state.load_x = x;
+  state.w = state.load_w = state.friction_speed = state.tach = w;
+  return state;
+}
+
+double Drive::command_effort(const DriveState& state, double u_V) const {
+  for (const auto& stage : command) u_V = stage(u_V);
+  double effort = effort_per_volt * u_V;
+  for (const auto& limit : effort_limit) effort = limit(effort, state.w);
+  return effort;
+}
+
+double Drive::deliver(DriveState& state, double u_V, double duration_s) const {
+  const double wanted = command_effort(state, u_V);
+  if (current_lag_s <= 0.0) return state.effort = wanted;
+  return lag_mean(state.effort, wanted, current_lag_s, duration_s);
+}
+
+void Drive::filter_tach(DriveState& state, double w_before, double duration_s) const {
+  if (tach_lag_s <= 0.0) {
+    state.tach = state.w;
+    return;
+  }
+  // The speed runs straight from its value before to its value after: the exact response to a ramp.
+  const double slope = (state.w - w_before) / duration_s;
+  state.tach =
+      state.w - tach_lag_s * slope + (state.tach - w_before + tach_lag_s * slope) * std::exp(-duration_s / tach_lag_s);
+}
+
+void Drive::move(DriveState& state, double effort, double t_s, double duration_s) const {
+  const double middle_x = state.x + 0.5 * duration_s * lead * state.w;
+  const double motor = effort * product(effort_factor, middle_x);
+  double net = motor;
+  for (const auto& load : load_effort) net += load(t_s, middle_x);
+  RichContact contact{*this, state, product(level_factor, t_s, middle_x), product(viscous_factor, t_s),
+                      transmitted_share * std::abs(motor)};
+  const double w_before = state.w;
+  if (second_mass) {
+    move_two_masses(*second_mass, inertia, lead, state, net, duration_s, contact);
+  } else if (bristles) {
+    move_on_bristles(*bristles, inertia, lead, state, net, duration_s, contact);
+  } else {
+    SlidingMass mass{state.x, state.w, inertia, lead};
+    slide(mass, net, duration_s, contact);
+    state.x = mass.x;
+    state.w = mass.w;
+  }
+  if (friction_memory_s > 0.0)
+    lag_mean(state.friction_speed, 0.5 * (w_before + state.w), friction_memory_s, duration_s);
+  filter_tach(state, w_before, duration_s);
+}
+
+void Drive::hold(DriveState& state, double u_V, double t_s, double duration_s) const {
+  const int parts = std::max(1, static_cast<int>(std::ceil(duration_s / max_step_s - 1e-9)));
+  const double part_s = duration_s / parts;
+  for (int part = 0; part < parts; ++part) move(state, deliver(state, u_V, part_s), t_s + part * part_s, part_s);
+}
+
+void Drive::step(DriveState& state, double u_V, double t_s, double duration_s) const {
+  if (plain_) {
+    SlidingMass mass{state.x, state.w, inertia, lead};
+    const double effort = effort_per_volt * u_V;
+    if (stribeck_) {
+      PlainContact<true> contact{friction};
+      slide(mass, effort, duration_s, contact);
+    } else {
+      PlainContact<false> contact{friction};
+      slide(mass, effort, duration_s, contact);
+    }
+    state.x = mass.x;
+    state.w = mass.w;
+    state.tach = mass.w;
+    return;
+  }
+  if (delay_s <= 0.0) {
+    hold(state, u_V, t_s, duration_s);
+    return;
+  }
+  const std::size_t whole = whole_periods_of_delay(duration_s);
+  const double rest_s = delay_s - static_cast<double>(whole) * duration_s;
+  const double newer = whole == 0 ? u_V : state.past_u_V[whole - 1];
+  if (rest_s > 0.0) hold(state, state.past_u_V[whole], t_s, rest_s);
+  if (rest_s < duration_s) hold(state, newer, t_s + rest_s, duration_s - rest_s);
+  remember_command(state, u_V, whole);
+}
+
+std::size_t Drive::whole_periods_of_delay(double period_s) const {
+  const auto whole = static_cast<std::size_t>(delay_s / period_s);
+  return std::min(whole, DriveState{}.past_u_V.size() - 1);
+}
+
+void Drive::remember_command(DriveState& state, double u_V, std::size_t whole) const {
+  for (std::size_t k = whole; k > 0; --k) state.past_u_V[k] = state.past_u_V[k - 1];
+  state.past_u_V[0] = u_V;
+}
+
+void Drive::follow(DriveState& state, double u_V, double x1, double w1, double duration_s) const {
+  const double w0 = state.w;
+  double applied = u_V;
+  if (delay_s > 0.0) {
+    const std::size_t whole = whole_periods_of_delay(duration_s);
+    applied = state.past_u_V[whole];
+    remember_command(state, u_V, whole);
+  }
+  const double effort = deliver(state, applied, duration_s);
+  const double mean_w = 0.5 * (w0 + w1);
+  if (friction_memory_s > 0.0) lag_mean(state.friction_speed, mean_w, friction_memory_s, duration_s);
+  if (dwell_gain > 0.0) {
+    if (w0 == 0.0 && w1 == 0.0) {
+      state.rest_s += duration_s;
+      state.breakaway_gain = dwell_gain * -std::expm1(-state.rest_s / dwell_time_s);
+    } else {
+      state.rest_s = 0.0;
+      if (w0 * w1 < 0.0) state.breakaway_gain = 0.0;
+    }
+  }
+  if (bristles) follow_bristles(*bristles, friction[mean_w >= 0.0 ? 0 : 1], state, mean_w, duration_s);
+  state.x = x1;
+  state.w = w1;
+  if (second_mass) follow_two_masses(*second_mass, inertia, lead, state, effort, friction);
+  filter_tach(state, w0, duration_s);
+}
+
+double Drive::encoder(const DriveState& state) const {
+  const double x = second_mass ? state.load_x : state.x;
+  return x + sum_at(encoder_error, x);
+}
+
+double Drive::tachometer(const DriveState& state) const {
+  return tach_gain * state.tach * (1.0 + sum_at(tach_ripple, state.x)) + tach_offset;
+}
+
+}  // namespace sim

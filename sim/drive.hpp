@@ -1,0 +1,126 @@
+// The dynamics of a drive, assembled from its description: from the command voltage to what the sensors would read.
+// The same object is the plant of a simulation and the predictor that a record is compared with.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "sim/drive_description.hpp"
+
+namespace sim {
+
+/// Friction of one direction of motion, eq. (19): magnitudes, all >= 0.
+struct FrictionSide {
+  double coulomb = 0.0;    ///< Nm or N
+  double breakaway = 0.0;  ///< static friction, Nm or N; equals coulomb where there is no Stribeck effect
+  double omega1 = 0.0;     ///< fading of the static part, rad/s or m/s; 0 means at once
+  double omega2 = 0.0;     ///< rise of the Coulomb part
+  double viscous = 0.0;    ///< Nm s/rad or N s/m
+};
+
+/// What an asymmetry multiplies the friction of one direction by.
+struct DirectionFactor {
+  double level = 1.0;
+  double viscous = 1.0;
+};
+
+/// Elastic bristles in the contact (LuGre): effort = sigma0 z + sigma1 dz/dt.
+struct Bristles {
+  double stiffness = 0.0;  ///< sigma0, Nm/rad or N/m
+  double damping = 0.0;    ///< sigma1, Nm s/rad or N s/m
+};
+
+/// A load on a spring, with or without a gap between motor and table.
+struct SecondMass {
+  double load_fraction = 0.0;  ///< part of the inertia that sits behind the spring, 0..1
+  double resonance_Hz = 0.0;   ///< of both masses on the spring, free to move
+  double damping_ratio = 0.0;
+  double gap = 0.0;  ///< free travel, mm or m
+};
+
+/// Everything of the drive that moves or remembers. Speeds in rad/s or m/s, travel in mm or m.
+struct DriveState {
+  double x = 0.0;       ///< travel of the motor side
+  double w = 0.0;       ///< speed of the motor
+  double load_x = 0.0;  ///< travel of the table, where it is a mass of its own
+  double load_w = 0.0;
+  double bristle = 0.0;               ///< deflection of the contact, rad or m
+  double friction_speed = 0.0;        ///< the speed that the friction remembers
+  double rest_s = 0.0;                ///< time at rest
+  double breakaway_gain = 0.0;        ///< what the last rest added to the static friction, relative
+  double effort = 0.0;                ///< what the current loop delivers, Nm or N
+  double tach = 0.0;                  ///< what the tachometer's filter holds
+  std::array<double, 32> past_u_V{};  ///< commands before the present one, latest first (only kept for a delay)
+};
+
+class Drive {
+ public:
+  /// Throws std::invalid_argument for a kind that the catalogue does not hold.
+  explicit Drive(const DriveDescription& description);
+
+  /// A state at rest in all that is hidden.
+  DriveState at(double x, double w) const;
+
+  /// Advances by `duration_s` with `u_V` held; `t_s` is the time at the start of the interval.
+  void step(DriveState& state, double u_V, double t_s, double duration_s) const;
+
+  /// Lets the hidden states follow a motion that is known from (x, w) at the interval's start to (x1, w1) at its end.
+  void follow(DriveState& state, double u_V, double x1, double w1, double duration_s) const;
+
+  /// What an ideal encoder reads, with the errors that belong to the drive but without quantisation.
+  double encoder(const DriveState& state) const;
+
+  /// What the tachometer reads without its noise.
+  double tachometer(const DriveState& state) const;
+
+  bool has_hidden_state() const;
+  bool has_second_mass() const { return second_mass.has_value(); }
+
+  // The places where an effect can act. Effects fill them; an empty one costs nothing.
+  double effort_per_volt = 0.0;
+  double lead = 1.0;
+  double inertia = 0.0;
+  std::array<FrictionSide, 2> friction{};  ///< [0] forward, [1] backward
+  std::array<DirectionFactor, 2> direction_factor{};
+  std::vector<std::function<double(double u_V)>> command;  ///< converter: volts in, volts out
+  double delay_s = 0.0;
+  double current_lag_s = 0.0;  ///< time constant of the current loop
+  std::vector<std::function<double(double effort, double w)>> effort_limit;
+  std::vector<std::function<double(double x)>> effort_factor;             ///< torque constant along the travel
+  std::vector<std::function<double(double t_s, double x)>> load_effort;   ///< added to the motor's effort
+  std::vector<std::function<double(double t_s, double x)>> level_factor;  ///< on Coulomb and static friction
+  std::vector<std::function<double(double t_s)>> viscous_factor;
+  std::vector<std::function<double(double speed)>> sliding_friction;  ///< further friction at speed >= 0
+  double transmitted_share = 0.0;                                     ///< friction per transmitted effort
+  double friction_memory_s = 0.0;
+  double dwell_gain = 0.0;
+  double dwell_time_s = 0.0;
+  std::optional<Bristles> bristles;
+  std::optional<SecondMass> second_mass;
+  std::vector<std::function<double(double x)>> encoder_error;
+  double tach_gain = 1.0;
+  double tach_offset = 0.0;
+  double tach_lag_s = 0.0;
+  std::vector<std::function<double(double x)>> tach_ripple;  ///< relative
+
+  /// Longest step of the integrator inside a sample, s; the constructor derives it from the drive's fastest mode.
+  double max_step_s = 0.0;
+
+ private:
+  void settle();
+  double command_effort(const DriveState& state, double u_V) const;
+  double deliver(DriveState& state, double u_V, double duration_s) const;
+  void hold(DriveState& state, double u_V, double t_s, double duration_s) const;
+  void move(DriveState& state, double effort, double t_s, double duration_s) const;
+  void filter_tach(DriveState& state, double w_before, double duration_s) const;
+  std::size_t whole_periods_of_delay(double period_s) const;
+  void remember_command(DriveState& state, double u_V, std::size_t whole) const;
+
+  bool plain_ = false;     ///< nothing acts but inertia and the friction of eq. (19)
+  bool stribeck_ = false;  ///< friction depends on speed by more than its viscous term
+};
+
+}  // namespace sim

@@ -1,0 +1,69 @@
+// What the catalogue knows of one physical effect. One such record makes an effect available to plant, predictor, fit,
+// model file, catalogue page, diagnosis and tests.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "sim/drive_description.hpp"
+
+namespace sim {
+
+class Drive;
+
+/// The quantity in whose units `ParameterInfo::starts` are given, so that one list suits drives of any size.
+enum class Scale {
+  unity,               ///< as they stand
+  coulomb,             ///< the drive's Coulomb level, Nm or N
+  inertia,             ///< the drive's inertia, kg m^2 or kg
+  viscous,             ///< the drive's viscous coefficient
+  bristle_stiffness,   ///< the Coulomb level over 20 um of travel
+  bristle_damping,     ///< critical damping of the inertia on bristles of that stiffness
+  coulomb_per_travel,  ///< the Coulomb level over the travel of the records
+  stall_effort,        ///< effort at the converter's limit, Nm or N
+  stall_current,       ///< current at the converter's limit, A; a linear drive's force, N
+  speed,               ///< 1 rad/s; 1 mm/s for a linear drive
+  millimetre,          ///< 1 mm; 0.001 m for a linear drive
+  top_speed,           ///< the highest speed of the records
+  travel,              ///< the travel that the records cover
+  duration,            ///< the length of the longest record, s
+};
+
+struct ParameterInfo {
+  std::string_view id;          ///< name without unit
+  std::string_view rotary_key;  ///< key in the model file of a rotary drive, with its unit
+  std::string_view linear_key;  ///< the same for a linear drive
+  std::string_view doc;         ///< one line
+  double lower;                 ///< physical bounds, in the unit of the key
+  double upper;
+  Scale scale = Scale::unity;
+  std::vector<double> starts{};  ///< where a fit begins, in units of `scale`; several where the fit has several valleys
+  bool optional = false;         ///< may be absent from a model file
+  std::string_view
+      pair_of{};  ///< set on the one-for-both-directions form: "positive" level stands for positive/negative
+
+  std::string_view key(DriveKind kind) const { return kind == DriveKind::rotary ? rotary_key : linear_key; }
+};
+
+/// Where in the drive an effect sits; it decides which screens apply to it.
+enum class Stage { command, motor, load, friction, mechanics, encoder, tachometer };
+
+struct EffectInfo {
+  std::string_view kind;
+  std::string_view title;
+  std::string_view equation;
+  Stage stage;
+  bool base = false;      ///< inertia, viscous, coulomb: re-fitted first, never a discovery
+  bool periodic = false;  ///< has parameters `cosine`, `sine` and `period` over the travel
+  std::vector<ParameterInfo> parameters;
+  std::string_view shows;                       ///< how it shows in the residual
+  std::vector<std::string_view> confused_with;  ///< kinds that leave a similar trace
+  std::string_view separate_by;                 ///< the experiment that tells them apart
+  std::string_view origin;                      ///< where on a machine it comes from
+  std::string_view remedy;                      ///< what a mechanic or an electrician can do about it
+  void (*install)(const EffectEntry& entry, const DataSheet& data, Drive& drive);
+
+  const ParameterInfo* parameter(std::string_view id) const;
+};
+
+}  // namespace sim

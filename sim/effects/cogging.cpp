@@ -1,0 +1,55 @@
+// Cogging.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+#include "sim/harmonic.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
+  drive.load_effort.push_back([harmonic](double, double x) { return harmonic(x); });
+}
+
+}  // namespace
+
+extern const EffectInfo cogging;
+const EffectInfo cogging{
+    .kind = "cogging",
+    .title = "Cogging",
+    .equation = "T = T_motor + c cos(2 pi x/L) + s sin(2 pi x/L)",
+    .stage = Stage::load,
+    .periodic = true,
+    .parameters = {{.id = "cosine",
+                    .rotary_key = "cosine_Nm",
+                    .linear_key = "cosine_N",
+                    .doc = "c",
+                    .lower = -1e5,
+                    .upper = 1e5,
+                    .scale = Scale::coulomb,
+                    .starts = {0.02}},
+                   {.id = "sine",
+                    .rotary_key = "sine_Nm",
+                    .linear_key = "sine_N",
+                    .doc = "s",
+                    .lower = -1e5,
+                    .upper = 1e5,
+                    .scale = Scale::coulomb,
+                    .starts = {0.02}},
+                   {.id = "period",
+                    .rotary_key = "period_mm",
+                    .linear_key = "period_m",
+                    .doc = "L: travel of one period",
+                    .lower = 1e-5,
+                    .upper = 1e5,
+                    .scale = Scale::millimetre}},
+    .shows = "residual torque periodic in position, of the same size at any speed and any current",
+    .confused_with = {"torque_ripple", "encoder_cyclic_error", "tach_ripple", "position_dependent_friction"},
+    .separate_by = "the same slow stroke with two loads: cogging keeps its size, torque ripple grows with the current",
+    .origin = "magnets pulling at the slots of the motor; balls passing in the screw",
+    .remedy = "skewed or ironless motor; cogging table in the drive",
+    .install = install,
+};
+
+}  // namespace sim::effects

@@ -1,0 +1,52 @@
+// A second mass on a spring.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  drive.second_mass =
+      SecondMass{entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"), /*gap=*/0.0};
+}
+
+}  // namespace
+
+extern const EffectInfo compliance;
+const EffectInfo compliance{
+    .kind = "compliance",
+    .title = "A second mass on a spring",
+    .equation = "J1 dw1/dt = T - s, J2 dw2/dt = s - T_f, s = k d + c dd/dt",
+    .stage = Stage::mechanics,
+
+    .parameters = {{.id = "resonance",
+                    .rotary_key = "resonance_Hz",
+                    .linear_key = "resonance_Hz",
+                    .doc = "of both masses on the spring, free to move",
+                    .lower = 5.0,
+                    .upper = 1000.0,
+                    .starts = {40, 80, 160}},
+                   {.id = "damping_ratio",
+                    .rotary_key = "damping_ratio",
+                    .linear_key = "damping_ratio",
+                    .doc = "of that mode",
+                    .lower = 0.001,
+                    .upper = 1.0,
+                    .starts = {0.05}},
+                   {.id = "load_fraction",
+                    .rotary_key = "load_fraction",
+                    .linear_key = "load_fraction",
+                    .doc = "part of the inertia behind the spring",
+                    .lower = 0.02,
+                    .upper = 0.95,
+                    .starts = {0.35}}},
+    .shows = "residual rings at one frequency after each change of torque, the same at any speed",
+    .confused_with = {"backlash", "presliding", "current_loop_lag", "tach_ripple"},
+    .separate_by = "swept sine, with encoders on motor and on table",
+    .origin = "coupling, screw and nut, thrust bearing, belt",
+    .remedy = "stiffer coupling; notch filter; limit the jerk",
+    .install = install,
+};
+
+}  // namespace sim::effects

@@ -1,0 +1,59 @@
+// Coulomb friction.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  drive.friction[0].coulomb += entry.either("positive", "level");
+  drive.friction[1].coulomb += entry.either("negative", "level");
+}
+
+}  // namespace
+
+extern const EffectInfo coulomb;
+const EffectInfo coulomb{
+    .kind = "coulomb",
+    .title = "Coulomb friction",
+    .equation = "T_f = T_coul sign(w) (eqs. 28 to 30)",
+    .stage = Stage::friction,
+    .base = true,
+    .parameters = {{.id = "positive",
+                    .rotary_key = "positive_Nm",
+                    .linear_key = "positive_N",
+                    .doc = "level while moving forward",
+                    .lower = 0.0,
+                    .upper = 1e6,
+                    .scale = Scale::coulomb,
+                    .starts = {1},
+                    .optional = true},
+                   {.id = "negative",
+                    .rotary_key = "negative_Nm",
+                    .linear_key = "negative_N",
+                    .doc = "level while moving backward, negative",
+                    .lower = -1e6,
+                    .upper = 0.0,
+                    .scale = Scale::coulomb,
+                    .starts = {-1},
+                    .optional = true},
+                   {.id = "level",
+                    .rotary_key = "level_Nm",
+                    .linear_key = "level_N",
+                    .doc = "one level for both directions",
+                    .lower = 0.0,
+                    .upper = 1e6,
+                    .scale = Scale::coulomb,
+                    .starts = {1},
+                    .optional = true,
+                    .pair_of = "positive negative"}},
+    .shows = "residual torque constant in each direction of motion",
+    .confused_with = {"constant_torque", "dac_offset", "coulomb_asymmetry"},
+    .separate_by = "constant speeds both ways",
+    .origin = "guideways, wipers, preloaded nut and bearings",
+    .remedy = "check preload, wipers and gib adjustment",
+    .install = install,
+};
+
+}  // namespace sim::effects

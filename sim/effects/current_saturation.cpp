@@ -1,0 +1,42 @@
+// Current limit.
+#include <algorithm>
+
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const double per_limit = data.kind == DriveKind::rotary ? data.torque_constant_Nm_per_A : 1.0;
+  const double limit = per_limit * entry.at("limit");
+  drive.effort_limit.push_back([limit](double effort, double) { return std::clamp(effort, -limit, limit); });
+}
+
+}  // namespace
+
+extern const EffectInfo current_saturation;
+const EffectInfo current_saturation{
+    .kind = "current_saturation",
+    .title = "Current limit",
+    .equation = "|i| <= i_max",
+    .stage = Stage::motor,
+
+    .parameters = {{.id = "limit",
+                    .rotary_key = "limit_A",
+                    .linear_key = "limit_N",
+                    .doc = "i_max (force limit of a linear drive)",
+                    .lower = 1e-3,
+                    .upper = 1e6,
+                    .scale = Scale::stall_current,
+                    .starts = {0.4, 0.6, 0.8}}},
+    .shows = "residual only where the command is large, flat-topped",
+    .confused_with = {"voltage_limit", "nonlinear_viscous", "torque_ripple"},
+    .separate_by = "the same motion at half the amplitude",
+    .origin = "amplifier peak or thermal limit",
+    .remedy = "raise the limit if motor and screw bear it; else limit acceleration",
+    .install = install,
+};
+
+}  // namespace sim::effects

@@ -1,0 +1,45 @@
+// Static friction that grows with rest.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  drive.dwell_gain = entry.at("gain");
+  drive.dwell_time_s = entry.at("time_constant");
+}
+
+}  // namespace
+
+extern const EffectInfo dwell_stiction;
+const EffectInfo dwell_stiction{
+    .kind = "dwell_stiction",
+    .title = "Static friction that grows with rest",
+    .equation = "T_stat(t) = T_stat (1 + g (1 - exp(-t/tau))), t = time at rest",
+    .stage = Stage::friction,
+
+    .parameters = {{.id = "gain",
+                    .rotary_key = "gain",
+                    .linear_key = "gain",
+                    .doc = "g: growth of the static friction after a long rest",
+                    .lower = 0.0,
+                    .upper = 5.0,
+                    .starts = {0.3}},
+                   {.id = "time_constant",
+                    .rotary_key = "time_constant_s",
+                    .linear_key = "time_constant_s",
+                    .doc = "tau",
+                    .lower = 0.01,
+                    .upper = 1000.0,
+                    .starts = {0.3, 2.0}}},
+    .shows = "the first breakaway after a rest needs more torque, the more the longer the rest was",
+    .confused_with = {"stribeck", "thermal_friction_drift", "presliding"},
+    .separate_by = "rests of 0.1, 1, 10 and 100 s before the same slow ramp",
+    .origin = "oil squeezed out of the contact while it stands",
+    .remedy = "a wobble of a few micrometres during long rests; hydrostatic or rolling guides",
+    .install = install,
+};
+
+}  // namespace sim::effects

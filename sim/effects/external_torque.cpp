@@ -1,0 +1,55 @@
+// Torque that belongs to a time.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const double torque = entry.at("torque"), start = entry.at("start"), end = start + entry.at("duration");
+  drive.load_effort.push_back([=](double t_s, double) { return t_s >= start && t_s < end ? torque : 0.0; });
+}
+
+}  // namespace
+
+extern const EffectInfo external_torque;
+const EffectInfo external_torque{
+    .kind = "external_torque",
+    .title = "Torque that belongs to a time",
+    .equation = "T = T_motor + T_e for t_0 <= t < t_0 + d",
+    .stage = Stage::load,
+
+    .parameters = {{.id = "torque",
+                    .rotary_key = "torque_Nm",
+                    .linear_key = "force_N",
+                    .doc = "T_e",
+                    .lower = -1e6,
+                    .upper = 1e6,
+                    .scale = Scale::coulomb,
+                    .starts = {0.3, -0.3}},
+                   {.id = "start",
+                    .rotary_key = "start_s",
+                    .linear_key = "start_s",
+                    .doc = "t_0, on the clock of the record",
+                    .lower = 0.0,
+                    .upper = 1e6,
+                    .scale = Scale::duration,
+                    .starts = {0.25, 0.5, 0.75}},
+                   {.id = "duration",
+                    .rotary_key = "duration_s",
+                    .linear_key = "duration_s",
+                    .doc = "d",
+                    .lower = 1e-3,
+                    .upper = 1e6,
+                    .scale = Scale::duration,
+                    .starts = {0.05}}},
+    .shows = "residual torque inside one stretch of time, whatever the drive does there",
+    .confused_with = {"thermal_friction_drift", "position_dependent_friction"},
+    .separate_by = "run the same programme again without cutting and with nobody at the machine",
+    .origin = "cutting force, a collision, somebody leaning on the table",
+    .remedy = "leave that stretch out of the fit",
+    .install = install,
+};
+
+}  // namespace sim::effects

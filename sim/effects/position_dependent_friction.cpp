@@ -1,0 +1,56 @@
+// Friction that varies along the travel.
+#include <algorithm>
+
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+#include "sim/harmonic.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
+  drive.level_factor.push_back([harmonic](double, double x) { return std::max(0.0, 1.0 + harmonic(x)); });
+}
+
+}  // namespace
+
+extern const EffectInfo position_dependent_friction;
+const EffectInfo position_dependent_friction{
+    .kind = "position_dependent_friction",
+    .title = "Friction that varies along the travel",
+    .equation = "T_coul(x) = T_coul (1 + c cos(2 pi x/L) + s sin(2 pi x/L))",
+    .stage = Stage::friction,
+    .periodic = true,
+    .parameters = {{.id = "cosine",
+                    .rotary_key = "cosine",
+                    .linear_key = "cosine",
+                    .doc = "c, relative",
+                    .lower = -0.95,
+                    .upper = 0.95,
+                    .starts = {0.03}},
+                   {.id = "sine",
+                    .rotary_key = "sine",
+                    .linear_key = "sine",
+                    .doc = "s, relative",
+                    .lower = -0.95,
+                    .upper = 0.95,
+                    .starts = {0.03}},
+                   {.id = "period",
+                    .rotary_key = "period_mm",
+                    .linear_key = "period_m",
+                    .doc = "L: much longer than a screw turn; a long one stands for a slope",
+                    .lower = 1e-4,
+                    .upper = 1e5,
+                    .scale = Scale::travel,
+                    .starts = {0.3, 0.6, 1.0, 2.0}}},
+    .shows = "half the difference of forward and backward torque follows the position",
+    .confused_with = {"thermal_friction_drift", "spring_torque", "cogging", "load_dependent_friction"},
+    .separate_by = "constant speed over the full stroke, both ways, twice",
+    .origin = "guideway wear, gib misalignment, screw bent or running out",
+    .remedy = "check straightness, gib and lubrication where friction is high",
+    .install = install,
+};
+
+}  // namespace sim::effects

@@ -1,0 +1,47 @@
+// Torque that grows with position.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const double stiffness = entry.at("stiffness"), centre = entry.at("centre");
+  drive.load_effort.push_back([=](double, double x) { return -stiffness * (x - centre); });
+}
+
+}  // namespace
+
+extern const EffectInfo spring_torque;
+const EffectInfo spring_torque{
+    .kind = "spring_torque",
+    .title = "Torque that grows with position",
+    .equation = "T = T_motor - k (x - x0)",
+    .stage = Stage::load,
+
+    .parameters = {{.id = "stiffness",
+                    .rotary_key = "stiffness_Nm_per_mm",
+                    .linear_key = "stiffness_N_per_m",
+                    .doc = "k",
+                    .lower = -1e7,
+                    .upper = 1e7,
+                    .scale = Scale::coulomb_per_travel,
+                    .starts = {0.1, -0.1}},
+                   {.id = "centre",
+                    .rotary_key = "centre_mm",
+                    .linear_key = "centre_m",
+                    .doc = "x0: where the spring is at rest",
+                    .lower = -1e5,
+                    .upper = 1e5,
+                    .scale = Scale::travel,
+                    .starts = {0.0}}},
+    .shows = "the mean of forward and backward torque is a straight line over the position",
+    .confused_with = {"position_dependent_friction", "constant_torque"},
+    .separate_by = "slow strokes over the full travel with the cable chain disconnected",
+    .origin = "cable chain, bellows, hoses",
+    .remedy = "relieve the cable chain; feed the slope forward",
+    .install = install,
+};
+
+}  // namespace sim::effects

@@ -1,0 +1,39 @@
+// Lag of the tachometer.
+#include <numbers>
+
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  drive.tach_lag_s = 1.0 / (2.0 * std::numbers::pi * entry.at("bandwidth"));
+}
+
+}  // namespace
+
+extern const EffectInfo tach_lag;
+const EffectInfo tach_lag{
+    .kind = "tach_lag",
+    .title = "Lag of the tachometer",
+    .equation = "dw_m/dt = 2 pi f (w - w_m)",
+    .stage = Stage::tachometer,
+
+    .parameters = {{.id = "bandwidth",
+                    .rotary_key = "bandwidth_Hz",
+                    .linear_key = "bandwidth_Hz",
+                    .doc = "f",
+                    .lower = 2.0,
+                    .upper = 2000.0,
+                    .starts = {50, 150}}},
+    .shows = "the measured speed trails the derivative of the position, in proportion to the acceleration",
+    .confused_with = {"current_loop_lag", "input_delay"},
+    .separate_by = "compare the tachometer with the differentiated encoder during a hard acceleration",
+    .origin = "ripple filter behind the tachometer",
+    .remedy = "a faster filter, or model it in the observer",
+    .install = install,
+};
+
+}  // namespace sim::effects

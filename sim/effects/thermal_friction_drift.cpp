@@ -1,0 +1,56 @@
+// Friction that drifts as the drive warms up.
+#include <cmath>
+
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const double tau = entry.at("time_constant"), b = entry.at("viscous_change"), c = entry.at("coulomb_change");
+  drive.level_factor.push_back([=](double t_s, double) { return 1.0 - c * std::expm1(-t_s / tau); });
+  drive.viscous_factor.push_back([=](double t_s) { return 1.0 - b * std::expm1(-t_s / tau); });
+}
+
+}  // namespace
+
+extern const EffectInfo thermal_friction_drift;
+const EffectInfo thermal_friction_drift{
+    .kind = "thermal_friction_drift",
+    .title = "Friction that drifts as the drive warms up",
+    .equation = "B(t) = B (1 + b (1 - exp(-t/tau))), T_coul(t) = T_coul (1 + c (1 - exp(-t/tau)))",
+    .stage = Stage::friction,
+
+    .parameters = {{.id = "viscous_change",
+                    .rotary_key = "viscous_change",
+                    .linear_key = "viscous_change",
+                    .doc = "b: change of the viscous coefficient when warm, relative",
+                    .lower = -0.95,
+                    .upper = 3.0,
+                    .starts = {-0.2}},
+                   {.id = "coulomb_change",
+                    .rotary_key = "coulomb_change",
+                    .linear_key = "coulomb_change",
+                    .doc = "c: change of Coulomb and static friction when warm, relative",
+                    .lower = -0.95,
+                    .upper = 3.0,
+                    .starts = {-0.05}},
+                   {.id = "time_constant",
+                    .rotary_key = "time_constant_s",
+                    .linear_key = "time_constant_s",
+                    .doc = "tau of warming up",
+                    .lower = 0.5,
+                    .upper = 1e5,
+                    .scale = Scale::duration,
+                    .starts = {0.3, 1.0}}},
+    .shows = "residual torque follows the time since the start, with the sign of the motion",
+    .confused_with = {"position_dependent_friction", "nonlinear_viscous", "dwell_stiction"},
+    .separate_by = "repeat one cycle for an hour, stop, repeat; log the temperature of the nut",
+    .origin = "lubricant warming up in nut, bearings and guideways",
+    .remedy = "warm-up cycle before precision work; less preload; thermal model in the feed-forward",
+    .install = install,
+};
+
+}  // namespace sim::effects

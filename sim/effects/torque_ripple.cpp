@@ -1,0 +1,53 @@
+// Torque ripple.
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+#include "sim/harmonic.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+  const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
+  drive.effort_factor.push_back([harmonic](double x) { return 1.0 + harmonic(x); });
+}
+
+}  // namespace
+
+extern const EffectInfo torque_ripple;
+const EffectInfo torque_ripple{
+    .kind = "torque_ripple",
+    .title = "Torque ripple",
+    .equation = "T = K_t i (1 + c cos(2 pi x/L) + s sin(2 pi x/L))",
+    .stage = Stage::motor,
+    .periodic = true,
+    .parameters = {{.id = "cosine",
+                    .rotary_key = "cosine",
+                    .linear_key = "cosine",
+                    .doc = "c, relative",
+                    .lower = -0.9,
+                    .upper = 0.9,
+                    .starts = {0.02}},
+                   {.id = "sine",
+                    .rotary_key = "sine",
+                    .linear_key = "sine",
+                    .doc = "s, relative",
+                    .lower = -0.9,
+                    .upper = 0.9,
+                    .starts = {0.02}},
+                   {.id = "period",
+                    .rotary_key = "period_mm",
+                    .linear_key = "period_m",
+                    .doc = "L: travel of one period",
+                    .lower = 1e-5,
+                    .upper = 1e5,
+                    .scale = Scale::millimetre}},
+    .shows = "residual torque periodic in position, growing with the current",
+    .confused_with = {"cogging", "tach_ripple", "encoder_cyclic_error"},
+    .separate_by = "the same stroke with two loads, or at constant speed and while accelerating",
+    .origin = "commutation, back-EMF that is no sine, current sensors out of balance",
+    .remedy = "calibrate current offsets; ripple table over the motor angle",
+    .install = install,
+};
+
+}  // namespace sim::effects

@@ -1,0 +1,55 @@
+// The machine's side of the board's connectors: a drive behind a D/A converter, an encoder and a tachometer.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <random>
+
+#include "sim/drive.hpp"
+
+namespace sim {
+
+class Plant {
+ public:
+  /// Standing at travel 0, amplifier enabled, D/A converter at 0 V. `seed` fixes the tachometer's noise.
+  /// Throws std::invalid_argument for a description that the catalogue cannot build.
+  Plant(const DriveDescription& description, std::uint64_t seed);
+
+  /// Sets the D/A converter, volts: limited to its range, rounded to its resolution, held until the next call.
+  void set_command(double u_V);
+
+  /// Opens or closes the amplifier's enable: without it the motor is free of current.
+  void set_enabled(bool enabled) { enabled_ = enabled; }
+
+  /// Lets the machine run. Internal steps are at most 0.25 ms, so that the error of one step stays far below an encoder
+  /// count at any acceleration that a drive reaches.
+  void advance(double duration_s);
+
+  /// Encoder position, counts from the start: the edge that was passed last (rounding down), as a quadrature counter
+  /// does.
+  std::int64_t encoder_counts() const;
+
+  /// A tachometer reading, rad/s or m/s, with fresh noise; empty for a drive without one.
+  std::optional<double> read_tachometer();
+
+  double time_s() const { return time_s_; }
+  double command_V() const { return command_V_; }
+  const DataSheet& data() const { return data_; }
+
+  /// The true motion, for comparison with what the sensors say.
+  const DriveState& truth() const { return state_; }
+  DriveState& truth() { return state_; }
+
+ private:
+  DataSheet data_;
+  Drive drive_;
+  DriveState state_;
+  std::mt19937_64 noise_;
+  std::normal_distribution<double> normal_{0.0, 1.0};
+  double tach_deviation_ = 0.0;
+  double command_V_ = 0.0;
+  double time_s_ = 0.0;
+  bool enabled_ = true;
+};
+
+}  // namespace sim
