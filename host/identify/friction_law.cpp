@@ -1,0 +1,83 @@
+#include "host/identify/friction_law.hpp"
+
+#include <cmath>
+
+namespace host {
+
+namespace {
+
+double exp_or_zero(double v, double omega) { return omega > 0.0 ? std::exp(-v / omega) : 0.0; }
+
+/// Magnitude of one direction's value: `both` when the entry has it, else `per_direction`.
+double magnitude(const sim::EffectEntry& entry, const char* both, const char* per_direction) {
+  if (entry.has(both)) return std::abs(entry.at(both));
+  return entry.has(per_direction) ? std::abs(entry.at(per_direction)) : 0.0;
+}
+
+sim::EffectEntry& entry_of(sim::DriveDescription& model, const char* kind) {
+  if (sim::EffectEntry* found = model.find(kind)) return *found;
+  model.effects.push_back({.kind = kind, .parameters = {}, .ci95 = {}, .from = {}});
+  return model.effects.back();
+}
+
+void set_pair(sim::EffectEntry& entry, const std::string& both, const std::string& prefix, double positive,
+              double negative) {
+  if (entry.has(both)) {
+    entry.parameters[both] = 0.5 * (positive + negative);
+  } else {
+    entry.parameters[prefix + "positive"] = positive;
+    entry.parameters[prefix + "negative"] = -negative;
+  }
+}
+
+}  // namespace
+
+double FrictionSideLaw::at(double v) const {
+  return static_level * exp_or_zero(v, omega1) + coulomb * (1.0 - exp_or_zero(v, omega2));
+}
+
+double FrictionLaw::effort(double speed) const {
+  if (speed == 0.0) return 0.0;
+  const double level = speed > 0.0 ? positive.at(speed) : -negative.at(-speed);
+  return level + viscous * speed;
+}
+
+FrictionLaw friction_law(const sim::DriveDescription& model) {
+  FrictionLaw law;
+  if (const sim::EffectEntry* viscous = model.find("viscous"); viscous != nullptr && viscous->has("B")) {
+    law.viscous = viscous->at("B");
+  }
+  if (const sim::EffectEntry* coulomb = model.find("coulomb")) {
+    law.positive.coulomb = law.positive.static_level = magnitude(*coulomb, "level", "positive");
+    law.negative.coulomb = law.negative.static_level = magnitude(*coulomb, "level", "negative");
+  }
+  if (const sim::EffectEntry* stribeck = model.find("stribeck")) {
+    law.positive.static_level = magnitude(*stribeck, "static", "static_positive");
+    law.negative.static_level = magnitude(*stribeck, "static", "static_negative");
+    law.positive.omega1 = magnitude(*stribeck, "omega1", "omega1_positive");
+    law.negative.omega1 = magnitude(*stribeck, "omega1", "omega1_negative");
+    law.positive.omega2 = magnitude(*stribeck, "omega2", "omega2_positive");
+    law.negative.omega2 = magnitude(*stribeck, "omega2", "omega2_negative");
+  }
+  return law;
+}
+
+void set_friction_law(sim::DriveDescription& model, const FrictionLaw& law, bool with_stribeck) {
+  sim::EffectEntry& viscous = entry_of(model, "viscous");
+  viscous.parameters["B"] = law.viscous;
+  viscous.ci95.clear();
+  sim::EffectEntry& coulomb = entry_of(model, "coulomb");
+  set_pair(coulomb, "level", "", law.positive.coulomb, law.negative.coulomb);
+  coulomb.ci95.clear();
+  if (!with_stribeck) {
+    std::erase_if(model.effects, [](const sim::EffectEntry& entry) { return entry.kind == "stribeck"; });
+    return;
+  }
+  sim::EffectEntry& stribeck = entry_of(model, "stribeck");
+  set_pair(stribeck, "static", "static_", law.positive.static_level, law.negative.static_level);
+  set_pair(stribeck, "omega1", "omega1_", law.positive.omega1, law.negative.omega1);
+  set_pair(stribeck, "omega2", "omega2_", law.positive.omega2, law.negative.omega2);
+  stribeck.ci95.clear();
+}
+
+}  // namespace host

@@ -1,0 +1,35 @@
+// The friction curve (19) of a model, whichever of the model file's forms it was written in.
+#pragma once
+
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// One direction of eq. (19), magnitudes: static*exp(-v/omega1) + coulomb*(1 - exp(-v/omega2)), v = |speed|.
+struct FrictionSideLaw {
+  double static_level = 0.0;  ///< Nm or N, >= 0; equals coulomb where the model has no Stribeck effect
+  double coulomb = 0.0;       ///< Nm or N, >= 0
+  double omega1 = 0.0;        ///< rad/s or m/s, >= 0; 0 means that exp(-v/0) = 0
+  double omega2 = 0.0;
+
+  /// Friction at v > 0 without the viscous part.
+  double at(double v) const;
+};
+
+struct FrictionLaw {
+  FrictionSideLaw positive, negative;
+  double viscous = 0.0;  ///< B
+
+  /// Friction effort with its sign at a speed (rad/s or m/s); 0 at standstill.
+  double effort(double speed) const;
+};
+
+/// From the effects `viscous`, `coulomb`, `stribeck` (per direction or one value for both).
+FrictionLaw friction_law(const sim::DriveDescription& model);
+
+/// Writes the law into the model's `viscous`, `coulomb` and `stribeck` entries, adding those that are missing and
+/// keeping the form (per direction or one value) of those that exist; intervals of rewritten values are dropped.
+/// `with_stribeck` false removes the entry `stribeck`.
+void set_friction_law(sim::DriveDescription& model, const FrictionLaw& law, bool with_stribeck);
+
+}  // namespace host
