@@ -11,10 +11,11 @@
 
 namespace host {
 
-/// One channel that the analysis does not interpret, kept as it was read.
+/// One column that the analysis does not interpret, kept as it was read.
 struct ExtraChannel {
   std::string name;
-  std::vector<double> values;
+  std::vector<double> values;     ///< NaN where the field is not a number
+  std::vector<std::string> text;  ///< the fields as they stand in the file, when some of them is not a finite number
 };
 
 /// Samples of one test. All channels present have the same length N >= 2; row k holds what was sampled at t_s[k] and
@@ -24,7 +25,8 @@ struct Record {
   std::string path;   ///< where it came from, for messages
   std::string drive;  ///< `# drive:` of the header; may be empty
   sim::DriveKind kind = sim::DriveKind::rotary;
-  double sample_period_s = 0.0;               ///< Ts, measured from t_s
+  bool kind_is_presumed = false;              ///< only a position was recorded: mm may belong to either kind of drive
+  double sample_period_s = 0.0;               ///< Ts: the header's where it gives one (t_s agrees), else from t_s
   std::map<std::string, std::string> header;  ///< every `# key: value` line
   std::vector<double> t_s;
   std::vector<double> u_V;     ///< command at the D/A converter; empty when only current was logged

@@ -1,0 +1,335 @@
+#include "host/record/channel_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/exit_codes.hpp"
+#include "host/record/columns.hpp"
+
+namespace host {
+
+namespace {
+
+/// Travel that proves motion, in steps of the encoder: beyond dither of a count or two at rest, and beyond the elastic
+/// travel before breakaway of a fine encoder.
+constexpr double kMovedSteps = 20.0;
+/// Travel by the tachometer that any encoder on the axis must see: with 0.1 mm/rad (a fine screw) 0.05 mm.
+constexpr double kSeenTravel_rad = 0.5;
+constexpr double kSeenTravel_m = 1e-3;
+/// Speed that is motion, in standard deviations of its noise (a tachometer at rest stays within six).
+constexpr double kMovedNoise = 10.0;
+/// Tachometers and screws agree within a few per cent; a factor beyond this is a unit.
+constexpr double kUnitFactor = 1.5;
+
+[[noreturn]] void fail(const Record& record, const std::string& what) {
+  throw Failure(ExitCode::bad_input, fmt::format("{}: {}", record.path, what));
+}
+
+bool is_constant(const std::vector<double>& values) {
+  return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
+}
+
+double range_of(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax_element(values);
+  return *high - *low;
+}
+
+/// The smallest change of a channel: the encoder's step; 0 for a constant one.
+double smallest_step(const std::vector<double>& values) {
+  double smallest = 0.0;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    const double step = std::abs(values[k] - values[k - 1]);
+    if (step > 0.0 && (smallest == 0.0 || step < smallest)) smallest = step;
+  }
+  return smallest;
+}
+
+double largest_step(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (std::size_t k = 1; k < values.size(); ++k) largest = std::max(largest, std::abs(values[k] - values[k - 1]));
+  return largest;
+}
+
+/// Standard deviation of white noise on a channel, from second differences (which motion hardly enters).
+double noise_of(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (std::size_t k = 2; k < values.size(); ++k) {
+    const double second = values[k] - 2.0 * values[k - 1] + values[k - 2];
+    squares += second * second;
+  }
+  constexpr double kGain = 6.0;  // 1 + 4 + 1: variance of the second difference of white noise
+  return values.size() < 3 ? 0.0 : std::sqrt(squares / kGain / static_cast<double>(values.size() - 2));
+}
+
+/// Means over blocks of `length` rows; what is left at the end is not used.
+std::vector<double> block_means(const std::vector<double>& values, std::size_t length) {
+  std::vector<double> means;
+  for (std::size_t start = 0; start + length <= values.size(); start += length) {
+    double sum = 0.0;
+    for (std::size_t k = start; k < start + length; ++k) sum += values[k];
+    means.push_back(sum / static_cast<double>(length));
+  }
+  return means;
+}
+
+constexpr std::size_t kBlockRows = 10;
+
+/// Travel by the tachometer about its own median (an offset is not motion), rad or m: largest minus smallest.
+double travel_by_speed(const Record& record) {
+  std::vector<double> sorted = record.w;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double rest = *middle;
+  double travel = 0.0, low = 0.0, high = 0.0;
+  for (const double w : record.w) {
+    travel += (w - rest) * record.sample_period_s;
+    low = std::min(low, travel);
+    high = std::max(high, travel);
+  }
+  return high - low;
+}
+
+bool speed_stands_out_of_noise(const Record& record) {
+  return record.w.size() >= 2 * kBlockRows &&
+         range_of(block_means(record.w, kBlockRows)) > kMovedNoise * noise_of(record.w);
+}
+
+bool speed_moves(const Record& record) {
+  const double seen = record.kind == sim::DriveKind::rotary ? kSeenTravel_rad : kSeenTravel_m;
+  return speed_stands_out_of_noise(record) && travel_by_speed(record) > seen;
+}
+
+bool position_moves(const Record& record) {
+  return record.has_position() && range_of(record.x) >= kMovedSteps * smallest_step(record.x) && !is_constant(record.x);
+}
+
+/// Largest distance of the position from the straight line at speed `slope` (per row) through its first sample.
+double departure_from_line(const std::vector<double>& x, double slope) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    largest = std::max(largest, std::abs(x[k] - x[0] - slope * static_cast<double>(k)));
+  return largest;
+}
+
+std::string_view name_of(const Record& record, std::vector<double> Record::*channel) {
+  return column_name(channel, record.kind);
+}
+
+void fail_dead(const Record& record, std::vector<double> Record::*channel, const std::string& contradiction) {
+  fail(record, fmt::format("column {}: dead channel: constant at {} in all {} rows while {}; check the wiring and the "
+                           "channel's assignment, or leave the column out",
+                           name_of(record, channel), (record.*channel)[0], record.size(), contradiction));
+}
+
+void check_position_and_speed_alive(const Record& record) {
+  if (!record.has_position() || !record.has_speed()) return;
+  if (is_constant(record.x) && speed_moves(record))
+    fail_dead(record, &Record::x, fmt::format("{} shows motion", name_of(record, &Record::w)));
+  if (!is_constant(record.w) || !position_moves(record)) return;
+  const double steady =
+      record.w[0] == 0.0 ? 0.0 : (record.x.back() - record.x.front()) / static_cast<double>(record.x.size() - 1);
+  if (departure_from_line(record.x, steady) >= kMovedSteps * smallest_step(record.x))
+    fail_dead(record, &Record::w, fmt::format("{} shows motion", name_of(record, &Record::x)));
+}
+
+bool axis_moves(const Record& record) { return record.has_position() ? position_moves(record) : speed_moves(record); }
+
+/// The axis' path: its position or, without one, the sum of its speed. Only its course matters, not its unit.
+std::vector<double> path_of(const Record& record) {
+  if (record.has_position()) return record.x;
+  std::vector<double> path(record.size());
+  double sum = 0.0;
+  for (std::size_t k = 0; k < path.size(); ++k) path[k] = sum += record.w[k];
+  return path;
+}
+
+/// The longest way up and the longest way down of a path.
+struct Ways {
+  double up = 0.0, down = 0.0;
+};
+
+Ways longest_ways(const std::vector<double>& path) {
+  Ways ways;
+  double lowest = path[0], highest = path[0];
+  for (const double x : path) {
+    lowest = std::min(lowest, x);
+    highest = std::max(highest, x);
+    ways.up = std::max(ways.up, x - lowest);
+    ways.down = std::max(ways.down, highest - x);
+  }
+  return ways;
+}
+
+/// A constant effort moves a drive one way; without any, it only slows down.
+bool motion_contradicts_constant_effort(const Record& record, double effort) {
+  const std::vector<double> path = path_of(record);
+  const Ways ways = longest_ways(path);
+  constexpr double kBothWays = 0.3;  // of the longer way: more than the spring-back of a stop
+  if (std::min(ways.up, ways.down) > kBothWays * std::max(ways.up, ways.down)) return true;
+  if (effort != 0.0) return false;
+  const std::size_t block = std::max(kBlockRows, path.size() / 20);  // a twentieth of the record
+  const double first = std::abs(path[std::min(block, path.size() - 1)] - path[0]);
+  double fastest = 0.0;
+  for (std::size_t k = block; k < path.size(); ++k) fastest = std::max(fastest, std::abs(path[k] - path[k - block]));
+  return first < kBothWays * fastest;
+}
+
+void check_effort_alive(const Record& record) {
+  if (!axis_moves(record)) return;
+  const bool command_is_constant = !record.u_V.empty() && is_constant(record.u_V);
+  const bool current_is_constant = !record.i_A.empty() && is_constant(record.i_A);
+  if (command_is_constant && motion_contradicts_constant_effort(record, record.u_V[0]))
+    fail_dead(record, &Record::u_V, "the axis speeds up or moves both ways");
+  if (current_is_constant && !record.u_V.empty() && !command_is_constant)
+    fail_dead(record, &Record::i_A, "u_V varies and the axis moves");
+  if (current_is_constant && motion_contradicts_constant_effort(record, record.i_A[0]))
+    fail_dead(record, &Record::i_A, "the axis speeds up or moves both ways");
+}
+
+/// Fails where a value lies outside what its unit can mean.
+void check_range(const Record& record, std::vector<double> Record::*channel, double low, double high,
+                 std::string_view suspicion) {
+  const std::vector<double>& values = record.*channel;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (values[k] < low || values[k] > high)
+      fail(record, fmt::format("row {} (t_s = {}), column {}: {} cannot be right (range {} … {}): {}; scale it with "
+                               "axistool import --map",
+                               k + 1, record.t_s[k], name_of(record, channel), values[k], low, high, suspicion));
+}
+
+struct UnitMistake {
+  double factor;  ///< recorded speed over true speed
+  std::string_view what;
+};
+
+constexpr double kPi = std::numbers::pi;
+constexpr UnitMistake kRotaryMistakes[] = {
+    {30.0 / kPi, "the speed looks like rev/min; multiply it by 2 pi/60 = 0.10472"},
+    {0.5 / kPi, "the speed looks like rev/s; multiply it by 2 pi = 6.2832"},
+    {180.0 / kPi, "the speed looks like deg/s; multiply it by pi/180 = 0.017453"},
+    {1000.0, "the position looks like m under a name in mm (or the speed like mrad/s); multiply x by 1000"},
+    {0.001, "the position looks like um under a name in mm; multiply x by 0.001"},
+    {2.0 * kPi, "the lead looks like mm/rev where mm/rad belongs (or the speed is 2 pi too large); divide by 2 pi"},
+};
+constexpr UnitMistake kLinearMistakes[] = {
+    {1000.0, "one of them is in mm and the other in m; scale the wrong one by 1000"},
+    {0.001, "one of them is in mm and the other in m; scale the wrong one by 1000"},
+    {1.0 / 60.0, "the speed looks like a value a minute wrongly scaled, or x by 60; check the time unit"},
+    {60.0, "the speed looks like m/min; divide it by 60"},
+    {60000.0, "the speed looks like mm/min; divide it by 60000"},
+    {1000.0 / 60.0, "the speed looks like m/min under a name in mm/s, or the like; check both units"},
+};
+
+std::string_view nearest_mistake(double factor, sim::DriveKind kind) {
+  constexpr double kNear = 1.15;  // leads and tachometers are known better than this
+  const auto nearest = [&](auto& mistakes) -> std::string_view {
+    for (const UnitMistake& mistake : mistakes)
+      if (std::abs(std::log(factor / mistake.factor)) < std::log(kNear)) return mistake.what;
+    return "no common mistake of units explains it; check both columns and the lead";
+  };
+  return kind == sim::DriveKind::rotary ? nearest(kRotaryMistakes) : nearest(kLinearMistakes);
+}
+
+/// Compares the speed with what the position says (travel = lead * speed * time), block by block.
+void check_speed_against_position(const Record& record, double lead) {
+  if (!record.has_speed() || !position_moves(record) || !speed_stands_out_of_noise(record)) return;
+  std::vector<double> by_position, by_speed;
+  for (std::size_t k = kBlockRows; k < record.size(); k += kBlockRows) {
+    double sum = 0.5 * (record.w[k - kBlockRows] + record.w[k]);
+    for (std::size_t j = k - kBlockRows + 1; j < k; ++j) sum += record.w[j];
+    by_speed.push_back(lead * sum * record.sample_period_s);
+    by_position.push_back(record.x[k] - record.x[k - kBlockRows]);
+  }
+  double xx = 0.0, xs = 0.0, ss = 0.0;
+  for (std::size_t k = 0; k < by_speed.size(); ++k) {
+    xx += by_position[k] * by_position[k];
+    xs += by_position[k] * by_speed[k];
+    ss += by_speed[k] * by_speed[k];
+  }
+  constexpr double kClearlyRelated = 0.9;
+  if (!(xx > 0.0) || !(ss > 0.0) || std::abs(xs) < kClearlyRelated * std::sqrt(xx) * std::sqrt(ss)) return;
+  const double factor = ss / xs;
+  if (factor > 1.0 / kUnitFactor && factor < kUnitFactor) return;
+  const std::string pair = fmt::format("columns {} and {}", name_of(record, &Record::w), name_of(record, &Record::x));
+  if (factor < 0.0)
+    fail(record, fmt::format("{}: the speed runs against the position (factor {:.4g}); turn the sign of one of them",
+                             pair, factor));
+  fail(record, fmt::format("{}: a unit cannot be right: the speed is {:.4g} times what the position's change gives; {}",
+                           pair, factor, nearest_mistake(factor, record.kind)));
+}
+
+void scale(std::vector<double>& values, sim::DriveKind from, sim::DriveKind to) {
+  if (from == to) return;
+  for (double& value : values) value = to == sim::DriveKind::rotary ? value * 1000.0 : value / 1000.0;
+}
+
+}  // namespace
+
+void check_channels(const Record& record) {
+  check_range(record, &Record::u_V, -kLargestCommand_V, kLargestCommand_V,
+              "D/A converters and amplifiers take less; the numbers look like counts or mV");
+  check_range(record, &Record::i_A, -kLargestCurrent_A, kLargestCurrent_A, "the numbers look like mA or counts");
+  check_range(record, &Record::temp_C, kLowestTemperature_C, kHighestTemperature_C,
+              "the numbers look like kelvins or counts");
+  check_position_and_speed_alive(record);
+  check_effort_alive(record);
+  if (record.kind == sim::DriveKind::linear) check_speed_against_position(record, 1.0);
+}
+
+void adapt_to(Record& record, const sim::DataSheet& sheet) {
+  if (record.kind != sheet.kind && !record.kind_is_presumed)
+    fail(record, sheet.kind == sim::DriveKind::linear
+                     ? "column w_rad_s: a shaft speed, but the model is of a linear drive; name the right model, or "
+                       "give the speed as v_m_s"
+                     : "column v_m_s: the speed of a linear drive, but the model is of a rotary one; name the right "
+                       "model, or give the shaft speed as w_rad_s");
+  if (sheet.kind == sim::DriveKind::linear && record.u_V.empty())
+    fail(record,
+         "missing column: u_V; a linear drive's model knows its force by the command in volts, and the record "
+         "holds the current i_A alone");
+  scale(record.x, record.kind, sheet.kind);
+  scale(record.x_ref, record.kind, sheet.kind);
+  record.kind = sheet.kind;
+  record.kind_is_presumed = false;
+}
+
+void check_units(const Record& record, const sim::DataSheet& sheet) {
+  constexpr double kBeyondRange = 20.0;  // a command may ask for more than the converter gives, but not for that much
+  if (sheet.dac_limit_V > 0.0)
+    check_range(record, &Record::u_V, -kBeyondRange * sheet.dac_limit_V, kBeyondRange * sheet.dac_limit_V,
+                "far beyond the D/A converter of the model; the numbers look like counts or mV");
+  check_speed_against_position(record, sheet.lead);
+  if (!(sheet.encoder_resolution > 0.0) || !position_moves(record)) return;
+  const std::string_view unit = sheet.kind == sim::DriveKind::rotary ? "mm" : "m";
+  if (largest_step(record.x) < 0.5 * sheet.encoder_resolution)
+    fail(record,
+         fmt::format("column {}: a unit cannot be right: the position changes by {:.3g} {} a row at most, less "
+                     "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
+                     name_of(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
+  constexpr double kCoarse = 200.0;  // encoder steps: a unit that is 1000 times too small, and a slow start besides
+  if (smallest_step(record.x) > kCoarse * sheet.encoder_resolution)
+    fail(record, fmt::format("column {}: a unit cannot be right: the position never changes by less than {:.3g} {}, "
+                             "{:.0f} steps of the model's encoder ({:.3g} {}); the numbers look like a smaller unit",
+                             name_of(record, &Record::x), smallest_step(record.x), unit,
+                             smallest_step(record.x) / sheet.encoder_resolution, sheet.encoder_resolution, unit));
+}
+
+void require_rate(const Record& record, double lowest_Hz, std::string_view purpose) {
+  const double rate_Hz = 1.0 / record.sample_period_s;
+  if (rate_Hz < lowest_Hz)
+    fail(record, fmt::format("column t_s: sampled at {:.4g} Hz (every {:.4g} s), too slow to {}; record at {:.4g} Hz "
+                             "or faster",
+                             rate_Hz, record.sample_period_s, purpose, lowest_Hz));
+}
+
+void require_duration(const Record& record, double shortest_s, std::string_view purpose) {
+  const double length_s = record.sample_period_s * static_cast<double>(record.size());
+  if (length_s < shortest_s)
+    fail(record, fmt::format("column t_s: the record lasts {:.4g} s, too short to {}; record {:.4g} s or more",
+                             length_s, purpose, shortest_s));
+}
+
+}  // namespace host

@@ -1,0 +1,27 @@
+// Numbers in text files.
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+namespace host {
+
+inline std::string_view trim_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// The whole of `text` (blanks round it aside) as a number with a decimal point; empty when it is not one or does not
+/// fit a double. "nan" and "inf" are numbers here: callers test std::isfinite.
+inline std::optional<double> parse_number(std::string_view text) {
+  text = trim_blanks(text);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace host

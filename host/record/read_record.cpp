@@ -1,0 +1,323 @@
+#include "host/record/read_record.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "host/exit_codes.hpp"
+#include "host/read_file.hpp"
+#include "host/record/channel_checks.hpp"
+#include "host/record/columns.hpp"
+#include "host/record/number.hpp"
+#include "host/record/time_axis.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr std::string_view kFormat = "axis-record/1";
+
+/// The lines of a text, one by one, without their ends; counts them for messages.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    ++number_;
+    return true;
+  }
+  std::size_t number() const { return number_; }
+  bool only_blanks_left() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+  std::size_t bytes_left() const { return rest_.size(); }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+struct Column {
+  std::string_view name;
+  const KnownColumn* known = nullptr;
+  std::vector<double> values;
+  std::vector<std::string_view> fields;  ///< of columns that the format does not know
+};
+
+class Parser {
+ public:
+  Parser(std::string_view text, std::string_view name) : lines_(text), name_(name) { record_.path = name; }
+
+  Record parse() {
+    read_header();
+    read_column_names();
+    require_columns();
+    read_rows();
+    fill_channels();
+    const TimeAxis axis{record_.t_s, stamp_resolution_s_, first_row_line_};
+    record_.sample_period_s = check_time_axis(axis, header_period_s_, period_line_, record_.path);
+    if (record_.size() < kFewestRows)
+      fail("holds {} rows, and {} are the fewest that anything can be learned from; record for longer", record_.size(),
+           kFewestRows);
+    check_channels(record_);
+    return std::move(record_);
+  }
+
+ private:
+  template <typename... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
+    throw Failure(ExitCode::bad_input, fmt::format("{}: {}", name_, fmt::format(format, std::forward<Args>(args)...)));
+  }
+  template <typename... Args>
+  [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
+    fail("line {}: {}", lines_.number(), fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  /// Takes the `#` lines; leaves `line_` at the line that holds the column names.
+  void read_header() {
+    if (lines_.only_blanks_left()) fail("the file is empty; record again, or name another file");
+    while (lines_.next(line_) && line_.starts_with('#')) read_header_line();
+    if (line_.starts_with('#') || trim_blanks(line_).empty())
+      fail(
+          "line {}: the line with the column names is missing; put one (t_s,u_V,x_mm,…) after the lines that begin "
+          "with #",
+          lines_.number());
+    if (!record_.header.contains("format"))
+      fail(
+          "line 1: there is no '# format: {}' line, so what the columns mean is unknown; add it if the file follows "
+          "that format, else convert it: axistool import {} --map t_s=…,u_V=…,x_mm=… -o record.csv",
+          kFormat, name_);
+  }
+
+  void read_header_line() {
+    const std::size_t colon = line_.find(':');
+    if (colon == std::string_view::npos) return;  // a remark
+    const std::string key(trim_blanks(line_.substr(1, colon - 1)));
+    const std::string value(trim_blanks(line_.substr(colon + 1)));
+    if (!record_.header.emplace(key, value).second)
+      fail_here("'# {}:' stands in the header twice; keep one of them", key);
+    if (key == "format" && value != kFormat) fail_here("format '{}' is unknown; this program reads {}", value, kFormat);
+    if (key == "drive") record_.drive = value;
+    if (key == "sample_period_s") {
+      const auto period = parse_number(value);
+      if (!period || !std::isfinite(*period) || *period <= 0.0)
+        fail_here("sample_period_s: '{}' is not a positive number of seconds; correct it or leave the line out", value);
+      header_period_s_ = *period;
+      period_line_ = lines_.number();
+    }
+  }
+
+  void read_column_names() {
+    header_line_ = lines_.number();
+    for (std::string_view rest = line_;;) {
+      const std::size_t comma = rest.find(',');
+      const std::string_view name = trim_blanks(rest.substr(0, comma));
+      if (name.empty()) fail_here("column {} has no name; name it, or remove the comma", columns_.size() + 1);
+      if (parse_number(name))
+        fail_here("'{}' stands where column names belong; put a line such as t_s,u_V,x_mm before the rows", name);
+      columns_.push_back({name, find_known_column(name), {}, {}});
+      if (comma == std::string_view::npos) break;
+      rest.remove_prefix(comma + 1);
+    }
+    for (std::size_t k = 0; k < columns_.size(); ++k) refuse_twins_of(k);
+  }
+
+  /// Two columns may not claim the same name or the same quantity.
+  void refuse_twins_of(std::size_t k) const {
+    for (std::size_t j = 0; j < k; ++j) {
+      const Column &first = columns_[j], &second = columns_[k];
+      if (first.name == second.name)
+        fail_here("duplicated channel: columns {} and {} are both called {}; keep one of them", j + 1, k + 1,
+                  second.name);
+      if (first.known && second.known && first.known->channel == second.known->channel)
+        fail_here("columns {} and {} ({} and {}) hold the same quantity; keep one of them, or rename the other", j + 1,
+                  k + 1, first.name, second.name);
+      if (first.known && second.known && first.known->implies && second.known->implies &&
+          first.known->implies != second.known->implies)
+        fail_here(
+            "columns {} and {} belong to different kinds of drive (rad: rotary, m: linear); keep the one that "
+            "fits, or rename the other",
+            first.name, second.name);
+    }
+  }
+
+  bool has(std::vector<double> Record::*channel) const {
+    return std::ranges::any_of(columns_, [&](const Column& c) { return c.known && c.known->channel == channel; });
+  }
+
+  void require_columns() const {
+    std::string missing;
+    if (!has(&Record::t_s))
+      missing = "t_s (time in seconds)";
+    else if (!has(&Record::u_V) && !has(&Record::i_A))
+      missing = "u_V (command in volts) or i_A (motor current)";
+    else if (!has(&Record::x) && !has(&Record::w))
+      missing = "a position (x_mm or x_m) or a speed (w_rad_s, v_m_s or v_mm_s)";
+    if (missing.empty()) return;
+    std::vector<std::string_view> names;
+    for (const Column& column : columns_) names.push_back(column.name);
+    fail_here(
+        "missing column: {}; the file has {}. Rename the column, or convert its unit with axistool import --map "
+        "(for example t_s=t_ms*0.001)",
+        missing, fmt::join(names, ", "));
+  }
+
+  void read_rows() {
+    if (lines_.only_blanks_left())
+      fail("line {}: no rows follow the column names; the record is empty, record again", lines_.number());
+    const std::size_t expected_rows = lines_.bytes_left() / (2 * columns_.size()) + 1;
+    constexpr std::size_t kReserveAtMost = 1U << 20U;  // rows beyond grow the vectors as usual
+    for (Column& column : columns_) {
+      if (column.known)
+        column.values.reserve(std::min(expected_rows, kReserveAtMost));
+      else
+        column.fields.reserve(std::min(expected_rows, kReserveAtMost));
+    }
+    first_row_line_ = lines_.number() + 1;
+    while (!lines_.only_blanks_left() && lines_.next(line_)) read_row();
+  }
+
+  void read_row() {
+    if (line_.starts_with('#')) fail_here("a line that begins with # stands among the rows; move it to the top");
+    if (trim_blanks(line_).empty()) fail_here("the line is blank; remove it, or cut the record there");
+    std::string_view rest = line_;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const std::size_t comma = rest.find(',');
+      if ((comma == std::string_view::npos) != (k + 1 == columns_.size())) fail_field_count();
+      take_field(columns_[k], rest.substr(0, comma));
+      if (comma != std::string_view::npos) rest.remove_prefix(comma + 1);
+    }
+  }
+
+  [[noreturn]] void fail_field_count() const {
+    const std::size_t count = static_cast<std::size_t>(std::ranges::count(line_, ',')) + 1;
+    fail_here("wrong number of fields: {} where line {} names {} columns; {}", count, header_line_, columns_.size(),
+              lines_.only_blanks_left() && count < columns_.size()
+                  ? "the last line seems cut off: remove it"
+                  : "correct the line (numbers take a decimal point, fields are separated by one comma)");
+  }
+
+  void take_field(Column& column, std::string_view field) {
+    if (!column.known) {
+      column.fields.push_back(field);
+      return;
+    }
+    const auto value = parse_number(field);
+    if (!value || !std::isfinite(*value)) fail_value(column, trim_blanks(field));
+    column.values.push_back(*value);
+    if (column.known->channel == &Record::t_s) stamp_resolution_s_ = std::min(stamp_resolution_s_, last_digit(field));
+  }
+
+  [[noreturn]] void fail_value(const Column& column, std::string_view field) const {
+    const std::size_t number = static_cast<std::size_t>(&column - columns_.data()) + 1;
+    const auto value = parse_number(field);
+    const std::string what = field.empty()                 ? "the field is empty"
+                             : value && std::isnan(*value) ? fmt::format("'{}' (NaN) is not a measured value", field)
+                             : value ? fmt::format("'{}' (infinite) is not a measured value", field)
+                                     : fmt::format("'{}' is not a number", field);
+    fail_here("column {} ({}): {}; correct it, or cut the record before this line", number, column.name, what);
+  }
+
+  /// The weight of a time stamp's last digit, s.
+  static double last_digit(std::string_view field) {
+    int exponent = 0;
+    field = trim_blanks(field);
+    const std::size_t e = field.find_first_of("eE");
+    if (e != std::string_view::npos) {
+      const auto power = parse_number(field.substr(e + 1));
+      exponent = power && std::abs(*power) < 400.0 ? static_cast<int>(*power) : 0;
+      field = field.substr(0, e);
+    }
+    const std::size_t point = field.find('.');
+    const int decimals =
+        point == std::string_view::npos ? 0 : static_cast<int>(std::min<std::size_t>(field.size() - point - 1, 300));
+    return decimals < static_cast<int>(kPowers.size()) && exponent == 0 ? kPowers[static_cast<std::size_t>(decimals)]
+                                                                        : std::pow(10.0, exponent - decimals);
+  }
+
+  void fill_channels() {
+    bool speed_known = false;
+    const Column* position = nullptr;
+    for (const Column& column : columns_) {
+      if (!column.known) continue;
+      if (column.known->implies) record_.kind = *column.known->implies, speed_known = true;
+      if (column.known->channel == &Record::x) position = &column;
+    }
+    if (!speed_known) {
+      record_.kind_is_presumed = true;
+      record_.kind = position->known->unit == ColumnUnit::m ? sim::DriveKind::linear : sim::DriveKind::rotary;
+    }
+    check_duplicates();
+    for (Column& column : columns_) {
+      if (column.known)
+        record_.*(column.known->channel) = in_own_unit(column);
+      else
+        record_.extra.push_back(as_extra(column));
+    }
+  }
+
+  /// Two channels that agree to the last digit while they vary are one channel logged twice.
+  void check_duplicates() const {
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      for (std::size_t j = 0; j < k; ++j) {
+        const std::vector<double>&first = columns_[j].values, &second = columns_[k].values;
+        if (first.size() < 2 || first != second ||
+            std::ranges::adjacent_find(first, std::not_equal_to<>()) == first.end())
+          continue;
+        fail(
+            "line {}: duplicated channel: columns {} ({}) and {} ({}) hold the same numbers in every row; log each "
+            "quantity by itself, or remove the copy",
+            first_row_line_, j + 1, columns_[j].name, k + 1, columns_[k].name);
+      }
+  }
+
+  std::vector<double> in_own_unit(Column& column) const {
+    const ColumnUnit own = record_.kind == sim::DriveKind::rotary ? ColumnUnit::mm : ColumnUnit::m;
+    if (column.known->unit != ColumnUnit::as_is && column.known->unit != own)
+      for (double& value : column.values) value = own == ColumnUnit::mm ? value * 1000.0 : value / 1000.0;
+    return std::move(column.values);
+  }
+
+  static ExtraChannel as_extra(const Column& column) {
+    ExtraChannel extra{std::string(column.name), {}, {}};
+    bool all_numbers = true;
+    for (const std::string_view field : column.fields) {
+      const auto value = parse_number(field);
+      extra.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+      all_numbers = all_numbers && value && std::isfinite(*value);
+    }
+    if (!all_numbers) extra.text.assign(column.fields.begin(), column.fields.end());
+    return extra;
+  }
+
+  static constexpr std::array kPowers = {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
+
+  Lines lines_;
+  std::string_view name_;
+  std::string_view line_;
+  Record record_;
+  std::vector<Column> columns_;
+  std::optional<double> header_period_s_;
+  std::size_t period_line_ = 0;
+  std::size_t header_line_ = 0;
+  std::size_t first_row_line_ = 0;
+  double stamp_resolution_s_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+Record parse_record(std::string_view text, std::string_view name) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return Parser(text, name).parse();
+}
+
+Record read_record(const std::string& path) { return parse_record(read_file(path), path); }
+
+}  // namespace host

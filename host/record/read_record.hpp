@@ -1,0 +1,30 @@
+// Measurements in (`axis-record/1`, CSV). Whatever is wrong with a file is said, and nothing is repaired in silence.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "host/record/record.hpp"
+
+namespace host {
+
+/// Fewest rows of a record: identification has four unknowns, and five rows for each is the least that leaves a
+/// residual worth looking at.
+inline constexpr std::size_t kFewestRows = 20;
+
+/// Reads and checks a record. The kind of drive follows from the speed column; a record with a position alone is
+/// presumed rotary in mm and linear in m until adapt_to() meets its drive.
+/// Throws Failure(bad_input) naming file, line, column and remedy.
+Record read_record(const std::string& path);
+
+/// The same from text that is already in memory; `name` stands for the path in messages.
+Record parse_record(std::string_view text, std::string_view name);
+
+/// Writes a record in the drive's own units beside its destination, fsyncs, renames. Reading it again gives the same
+/// numbers to the last bit. Throws Failure(bad_input) when it cannot.
+void write_record(const Record& record, const std::string& path);
+
+/// The text of write_record.
+std::string format_record(const Record& record);
+
+}  // namespace host
