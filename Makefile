@@ -1,7 +1,66 @@
-BUILD ?= build
-JOBS  ?= $(shell nproc)
+# The targets that people type; everything else is CMake's (cmake/CMakeLists.txt). `make help` lists them.
+# Each target first installs the Debian packages that it lacks; the lists are in cmake/packages/.
+BUILD   ?= build
+CHECKED ?= $(BUILD)/checked
+JOBS    ?= $(shell nproc)
+NEED     = @cmake/packages/install.sh
+SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null)
+
+# Configures the build tree $1 with the options $2.
+configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING $2
+
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
 
 .PHONY: all
-all:
-	cmake -S cmake -B $(BUILD) -G Ninja
+all: ## Build everything for this machine into build/; the program is build/bin/axistool
+	$(NEED) build
+	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS)
+
+.PHONY: demo
+demo: ## Identify a real record, control both axes in simulation, show the result (EMPS=DIR adds the public benchmark)
+	$(NEED) build
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	$(BUILD)/bin/axistool demo --output $(BUILD)/demo $(if $(EMPS),--emps $(EMPS))
+
+.PHONY: test
+test: ## Build and run all tests, again with sanitizers, and a short fuzz run of everything that reads files
+	$(NEED) build test
+	$(call configure,$(BUILD),-DAXIS_CHECKED_BUILD=$(abspath $(CHECKED)))
+	ninja -C $(BUILD) -j $(JOBS)
+	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON)
+	ninja -C $(CHECKED) -j $(JOBS)
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+.PHONY: bench
+bench: ## Measure speed: plant and predictor against real time, identification, diagnosis (FILTER=regex)
+	$(NEED) build bench
+	$(call configure,$(BUILD),-DAXIS_BENCH=ON)
+	ninja -C $(BUILD) -j $(JOBS) axis_bench
+	$(BUILD)/bin/axis_bench $(if $(FILTER),--benchmark_filter='$(FILTER)')
+
+.PHONY: format
+format: ## Format all sources in place
+	$(NEED) format
+	clang-format-14 -i $(SOURCES)
+
+.PHONY: lint
+lint: ## Static analysis, include rules, formatting, file length; no finding is allowed
+	$(NEED) build test lint
+	cmake/checks/file_length.sh .
+	cmake/checks/include_rules.sh .
+	clang-format-14 --dry-run -Werror $(SOURCES)
+	$(call configure,$(BUILD))
+	cmake/checks/cppcheck.sh . $(JOBS)
+	cmake/checks/clang_tidy.sh $(BUILD) $(JOBS)
+
+.PHONY: clean
+clean: ## Remove everything that was built
+	rm -rf $(BUILD)
+
+.PHONY: help
+help: ## This list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@echo "Variables: BUILD (folder, now $(BUILD)), JOBS (parallel jobs, now $(JOBS))"

@@ -7,6 +7,9 @@ if(AXIS_SANITIZE)
   target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(axis_flags INTERFACE -fsanitize=address,undefined)
 endif()
+if(AXIS_FUZZ)
+  target_compile_options(axis_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # The control core is compiled for a microcontroller too: on the host it obeys the same restrictions.
 add_library(axis_core_flags INTERFACE)

@@ -1,0 +1,73 @@
+#!/bin/sh
+# Fails when an include of the tree $1 breaks the rules of who may know whom. Ours are the folders at the top; their
+# headers are included in quotes, by the path from the root.
+set -eu
+cd "$1"
+find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' \) 2>/dev/null | LC_ALL=C sort | awk '
+  # The longest folder that matches the including file decides; the value lists the folders that it may include.
+  BEGIN {
+    may["hal/"] = "hal/"
+    may["hal/pc/"] = "hal/ sim/"
+    may["firmware/core/"] = "hal/ firmware/core/"
+    may["firmware/app/"] = "hal/ firmware/core/ firmware/app/"
+    may["firmware/boards/"] = "hal/ firmware/"
+    may["firmware/boards/pc/"] = "hal/ firmware/ sim/"
+    may["sim/"] = "sim/"
+    may["host/"] = "host/ sim/ hal/ firmware/core/ firmware/app/"
+    may["host/axistool/"] = "host/ host/axistool/ sim/ hal/ firmware/core/ firmware/app/"
+    may["tests/"] = "tests/ host/ host/axistool/ sim/ hal/ firmware/"
+
+    # The standard headers that the microcontroller build allows: nothing that allocates, throws or does I/O.
+    count = split("algorithm array atomic bit climits cmath compare concepts cstddef cstdint cstring initializer_list " \
+                  "iterator limits numbers numeric optional ratio span tuple type_traits utility variant version", names)
+    for (i = 1; i <= count; i++) freestanding[names[i]] = 1
+  }
+
+  function longest_rule(path,   folder, best) {
+    best = ""
+    for (folder in may) if (index(path, folder) == 1 && length(folder) > length(best)) best = folder
+    return best
+  }
+
+  function allowed(rule, header,   folders, n, i) {
+    if (index(header, "host/axistool/") == 1) return index(may[rule], "host/axistool/") > 0
+    n = split(may[rule], folders, " ")
+    for (i = 1; i <= n; i++) if (index(header, folders[i]) == 1) return 1
+    return 0
+  }
+
+  function complain(text) {
+    printf "%s:%d: %s\n", path, line_number, text
+    broken = 1
+  }
+
+  function check(header, quoted,   rule) {
+    rule = longest_rule(path)
+    if (header ~ /^(firmware|hal|host|sim|tests)\//) {
+      if (!quoted) complain("include of <" header ">: our own headers stand in quotes")
+      else if (!allowed(rule, header)) complain(rule " may not include \"" header "\"")
+    } else if (quoted) {
+      complain("include of \"" header "\": write the path from the root of the project")
+    } else if (rule == "firmware/core/" && !(header in freestanding)) {
+      complain("firmware/core/ may not include <" header ">: it is not in the freestanding part that the target has")
+    }
+  }
+
+  {
+    path = $0
+    line_number = 0
+    while ((getline line < path) > 0) {
+      line_number++
+      if (line !~ /^[ \t]*#[ \t]*include[ \t]*[<"]/) continue
+      quoted = line ~ /include[ \t]*"/
+      sub(/^[^<"]*[<"]/, "", line)
+      sub(/[>"].*$/, "", line)
+      check(line, quoted)
+    }
+    close(path)
+    files++
+  }
+  END {
+    if (!files) { print "include rules: no source file found"; exit 2 }
+    exit broken
+  }'

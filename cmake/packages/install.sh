@@ -1,0 +1,51 @@
+#!/bin/sh
+# Installs the Debian packages that this machine lacks of the lists named: install.sh build test
+# Silent and quick when nothing is missing.
+set -eu
+
+lists_folder=$(dirname "$0")
+
+listed() {
+  for list in "$@"; do
+    sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$lists_folder/$list.txt"
+  done | sort -u
+}
+
+if ! command -v dpkg-query >/dev/null 2>&1; then
+  echo "packages: this is no Debian system; its equivalents of these must be present:" $(listed "$@") >&2
+  exit 0
+fi
+
+wanted=$(listed "$@")
+installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' $wanted 2>/dev/null | sed -n 's/^installed //p' | sort -u)
+missing=
+for package in $wanted; do
+  case "
+$installed
+" in
+    *"
+$package
+"*) ;;
+    *) missing="$missing $package" ;;
+  esac
+done
+[ -n "$missing" ] || exit 0
+
+if [ "$(id -u)" -eq 0 ]; then
+  as_root=
+elif command -v sudo >/dev/null 2>&1 && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
+  as_root=sudo
+else
+  echo "packages: missing:$missing" >&2
+  echo "packages: neither root nor sudo is at hand. Let an administrator run this once, then repeat:" >&2
+  echo "  apt-get update && apt-get install --no-install-recommends$missing" >&2
+  exit 1
+fi
+
+echo "packages: installing$missing"
+apt="$as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=600 -qq"
+$apt update </dev/null || echo "packages: the package index could not be refreshed; trying with the one at hand" >&2
+if ! $apt install -y --no-install-recommends -o Dpkg::Use-Pty=0 $missing </dev/null >/dev/null; then
+  echo "packages: installation failed; see above. By hand: apt-get install --no-install-recommends$missing" >&2
+  exit 1
+fi
