@@ -44,14 +44,14 @@ bench: ## Measure speed: plant and predictor against real time, identification, 
 .PHONY: format
 format: ## Format all sources in place
 	$(NEED) format
-	clang-format-14 -i $(SOURCES)
+	@clang-format-14 -i $(SOURCES)
 
 .PHONY: lint
 lint: ## Static analysis, include rules, formatting, file length; no finding is allowed
 	$(NEED) build test lint
 	cmake/checks/file_length.sh .
 	cmake/checks/include_rules.sh .
-	clang-format-14 --dry-run -Werror $(SOURCES)
+	@clang-format-14 --dry-run -Werror $(SOURCES)
 	$(call configure,$(BUILD))
 	cmake/checks/cppcheck.sh . $(JOBS)
 	cmake/checks/clang_tidy.sh $(BUILD) $(JOBS)

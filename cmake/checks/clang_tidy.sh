@@ -5,7 +5,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 log=$1/clang-tidy.log
 if ! run-clang-tidy-14 -clang-tidy-binary clang-tidy-14 -quiet -p "$1" -j "$2" \
   "^$root/(firmware|hal|host|sim|tests)/" >"$log" 2>&1; then
-  grep -E 'error:|warning:' "$log" | sort -u >&2 || cat "$log" >&2
+  sed 's,\x1b\[[0-9;]*m,,g' "$log" | grep -E 'error:|warning:' | sort -u >&2 || cat "$log" >&2
   echo "clang-tidy: findings; the whole output is in $log" >&2
   exit 1
 fi
