@@ -1,0 +1,48 @@
+// The fields of `[drive]`: where each stands in the file, what it fills, and what it may hold.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+enum class Presence { required, optional, alternative_unit };
+
+struct DataSheetField {
+  std::string_view table;  ///< "" for [drive] itself, else the name of its sub-table
+  std::string_view key;
+  std::optional<sim::DriveKind> only;  ///< the kind of drive that has it; empty: both
+  double sim::DataSheet::*value;
+  bool zero_allowed;  ///< all are physical sizes: none is negative
+  Presence presence;
+  double divisor = 1.0;  ///< from the key's unit to the data sheet's
+
+  bool belongs_to(sim::DriveKind kind) const { return !only || *only == kind; }
+};
+
+/// In the order in which they are written.
+inline constexpr DataSheetField kDataSheetFields[] = {
+    {"", "amplifier_gain_A_per_V", sim::DriveKind::rotary, &sim::DataSheet::amplifier_gain_A_per_V, false,
+     Presence::required},
+    {"", "torque_constant_Nm_per_A", sim::DriveKind::rotary, &sim::DataSheet::torque_constant_Nm_per_A, false,
+     Presence::required},
+    {"", "lead_mm_per_rad", sim::DriveKind::rotary, &sim::DataSheet::lead, false, Presence::required},
+    {"", "force_constant_N_per_V", sim::DriveKind::linear, &sim::DataSheet::force_constant_N_per_V, false,
+     Presence::required},
+    {"", "sample_period_s", {}, &sim::DataSheet::sample_period_s, false, Presence::required},
+    {"dac", "resolution_V", {}, &sim::DataSheet::dac_resolution_V, true, Presence::optional},
+    {"dac", "limit_V", {}, &sim::DataSheet::dac_limit_V, false, Presence::optional},
+    {"encoder", "resolution_mm", sim::DriveKind::rotary, &sim::DataSheet::encoder_resolution, true, Presence::optional},
+    {"encoder", "resolution_m", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true, Presence::optional},
+    {"encoder", "resolution_mm", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true,
+     Presence::alternative_unit, 1000.0},
+};
+
+/// Variance of the tachometer's noise: the one field that the data sheet itself may lack.
+constexpr std::string_view tach_noise_key(sim::DriveKind kind) {
+  return kind == sim::DriveKind::rotary ? "noise_variance_rad2_s2" : "noise_variance_m2_s2";
+}
+
+}  // namespace host

@@ -1,0 +1,26 @@
+#include "host/model/effect_forms.hpp"
+
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both) {
+  std::vector<std::string_view> ids;
+  std::string_view rest = both.pair_of;
+  while (!rest.empty()) {
+    const std::size_t blank = rest.find(' ');
+    ids.push_back(rest.substr(0, blank));
+    rest.remove_prefix(blank == std::string_view::npos ? rest.size() : blank + 1);
+  }
+  return ids;
+}
+
+bool may_repeat(const sim::EffectInfo& info) { return info.periodic || info.kind == "external_torque"; }
+
+std::vector<std::string_view> effect_kinds() {
+  std::vector<std::string_view> kinds;
+  for (const sim::EffectInfo* info : sim::catalogue()) kinds.push_back(info->kind);
+  return kinds;
+}
+
+}  // namespace host

@@ -1,0 +1,20 @@
+// Effects whose parameters may be given per direction or once for both.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "sim/effect.hpp"
+
+namespace host {
+
+/// The ids that a one-for-both-directions parameter stands for ("positive negative" -> two ids).
+std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both);
+
+/// A drive may have several effects of one kind: each has a period or a time of its own.
+bool may_repeat(const sim::EffectInfo& info);
+
+/// All kinds of the catalogue, for messages.
+std::vector<std::string_view> effect_kinds();
+
+}  // namespace host

@@ -1,0 +1,283 @@
+#include "host/model/model_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/exit_codes.hpp"
+#include "host/model/data_sheet_fields.hpp"
+#include "host/model/effect_forms.hpp"
+#include "host/nearest_name.hpp"
+#include "host/read_file.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+using sim::DriveKind;
+using Names = std::vector<std::string_view>;
+
+constexpr std::string_view kFormat = "axis-model/1";
+constexpr std::string_view kIntervalSuffix = "_ci95";
+
+class ModelReader {
+ public:
+  ModelReader(std::string_view text, std::string_view name) : name_(name) {
+    try {
+      root_ = toml::parse(text);
+    } catch (const toml::parse_error& error) {
+      fail(error.source().begin.line, "not valid TOML: {}; correct the line", error.description());
+    }
+  }
+
+  sim::DriveDescription read(bool effects_required) {
+    refuse_unknown(root_, {"format", "name", "drive", "effect"}, "at the top");
+    const std::string format = text_at(root_, "format", "the top", true);
+    if (format != kFormat)
+      fail(line_of(*root_.get("format")), "format: '{}' is unknown; this program reads {}", format, kFormat);
+    model_.name = text_at(root_, "name", "the top", false);
+    read_data_sheet();
+    read_effects(effects_required);
+    return std::move(model_);
+  }
+
+ private:
+  template <typename... Args>
+  [[noreturn]] void fail(std::size_t line, fmt::format_string<Args...> format, Args&&... args) const {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: line {}: {}", name_, line, fmt::format(format, std::forward<Args>(args)...)));
+  }
+
+  static std::size_t line_of(const toml::node& node) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(node.source().begin.line));
+  }
+
+  void refuse_unknown(const toml::table& table, const Names& known, std::string_view where) const {
+    for (const auto& [key, node] : table)
+      if (std::ranges::find(known, key.str()) == known.end())
+        fail(std::max<std::size_t>(1, key.source().begin.line), "unknown field {} {}{} (known: {})", key.str(), where,
+             did_you_mean(key.str(), known), fmt::join(known, ", "));
+  }
+
+  std::string text_at(const toml::table& table, std::string_view key, std::string_view where, bool required) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr && !required) return {};
+    if (node == nullptr) fail(line_of(table), "missing field {} at {}; add {} = \"…\"", key, where, key);
+    if (!node->is_string()) fail(line_of(*node), "{}: a text in quotes belongs here", key);
+    return node->as_string()->get();
+  }
+
+  double number_of(const toml::node& node, std::string_view key) const {
+    if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+    const auto* real = node.as_floating_point();
+    if (real == nullptr) fail(line_of(node), "{}: a number belongs here, without quotes", key);
+    if (!std::isfinite(real->get())) fail(line_of(node), "{}: a finite number belongs here", key);
+    return real->get();
+  }
+
+  /// A sub-table, or nullptr when it is absent.
+  const toml::table* table_at(const toml::table& parent, std::string_view key) const {
+    const toml::node* node = parent.get(key);
+    if (node != nullptr && !node->is_table())
+      fail(line_of(*node), "{}: a table belongs here, headed by its name in brackets", key);
+    return node == nullptr ? nullptr : node->as_table();
+  }
+
+  void read_data_sheet() {
+    const toml::table* drive = table_at(root_, "drive");
+    if (drive == nullptr) fail(line_of(root_), "missing table [drive]; add the drive's data-sheet values");
+    const std::string kind = text_at(*drive, "kind", "[drive]", true);
+    if (kind != "rotary" && kind != "linear")
+      fail(line_of(*drive->get("kind")), "kind: '{}' is unknown; write \"rotary\" or \"linear\"", kind);
+    model_.data.kind = kind == "rotary" ? DriveKind::rotary : DriveKind::linear;
+    refuse_unknown_in_drive(*drive);
+    for (const DataSheetField& field : kDataSheetFields)
+      if (field.belongs_to(model_.data.kind)) read_field(*drive, field);
+    if (const toml::table* tach = table_at(*drive, "tach")) read_tachometer(*tach);
+  }
+
+  void refuse_unknown_in_drive(const toml::table& drive) const {
+    for (const DataSheetField& field : kDataSheetFields)
+      if (const toml::node* node = drive.get(field.key);
+          field.table.empty() && !field.belongs_to(model_.data.kind) && node != nullptr)
+        fail(line_of(*node), "{} belongs to a {} drive, but kind is \"{}\"; remove the one that is wrong", field.key,
+             *field.only == DriveKind::rotary ? "rotary" : "linear",
+             *field.only == DriveKind::rotary ? "linear" : "rotary");
+    refuse_unknown(drive, known_in(""), "in [drive]");
+    for (const std::string_view name : {"dac", "encoder"})
+      if (const toml::table* table = table_at(drive, name))
+        refuse_unknown(*table, known_in(name), fmt::format("in [drive.{}]", name));
+    if (const toml::table* tach = table_at(drive, "tach"))
+      refuse_unknown(*tach, {tach_noise_key(model_.data.kind)}, "in [drive.tach]");
+  }
+
+  Names known_in(std::string_view table) const {
+    Names known;
+    if (table.empty()) known = {"kind", "dac", "encoder", "tach"};
+    for (const DataSheetField& field : kDataSheetFields)
+      if (field.table == table && field.belongs_to(model_.data.kind)) known.push_back(field.key);
+    return known;
+  }
+
+  void read_field(const toml::table& drive, const DataSheetField& field) {
+    const toml::table* table = field.table.empty() ? &drive : table_at(drive, field.table);
+    const toml::node* node = table == nullptr ? nullptr : table->get(field.key);
+    if (node == nullptr && field.presence == Presence::required)
+      fail(line_of(drive), "missing field {} in [drive]; add {} = … from the data sheet", field.key, field.key);
+    if (node == nullptr) return;
+    if (field.presence == Presence::alternative_unit && table->size() > 1)
+      fail(line_of(*node), "{}: the same quantity stands beside it in another unit; keep one of them", field.key);
+    model_.data.*field.value = positive_number(*node, field.key, field.zero_allowed) / field.divisor;
+  }
+
+  double positive_number(const toml::node& node, std::string_view key, bool zero_allowed) const {
+    const double value = number_of(node, key);
+    if (value < 0.0 || (value == 0.0 && !zero_allowed))
+      fail(line_of(node), "{}: {} is out of bounds; it must be {}", key, value, zero_allowed ? "0 or more" : "above 0");
+    return value;
+  }
+
+  void read_tachometer(const toml::table& tach) {
+    const std::string_view key = tach_noise_key(model_.data.kind);
+    const toml::node* node = tach.get(key);
+    if (node == nullptr)
+      fail(line_of(tach),
+           "missing field {} in [drive.tach]; add it, or remove the table where the drive has no "
+           "tachometer",
+           key);
+    model_.data.tach_noise_variance = positive_number(*node, key, true);
+  }
+
+  void read_effects(bool required) {
+    const toml::node* node = root_.get("effect");
+    if (node == nullptr && !required) return;
+    if (node == nullptr)
+      fail(line_of(root_), "no [[effect]] in the model; identify the drive first (axistool identify RECORD --drive {})",
+           name_);
+    const toml::array* array = node->as_array();
+    if (array == nullptr) fail(line_of(*node), "effect: write each effect under a heading [[effect]]");
+    for (const toml::node& entry : *array) {
+      if (!entry.is_table()) fail(line_of(entry), "effect: write each effect under a heading [[effect]]");
+      read_effect(*entry.as_table());
+    }
+    if (required && model_.find("inertia") == nullptr)
+      fail(line_of(*node), "missing effect inertia: without one nothing moves; add [[effect]] kind = \"inertia\"");
+  }
+
+  void read_effect(const toml::table& table) {
+    sim::EffectEntry entry;
+    entry.kind = text_at(table, "kind", "[[effect]]", true);
+    const sim::EffectInfo* info = sim::find_effect(entry.kind);
+    if (info == nullptr) {
+      const Names kinds = effect_kinds();
+      fail(line_of(*table.get("kind")), "kind: effect '{}' is unknown{} (known: {})", entry.kind,
+           did_you_mean(entry.kind, kinds), fmt::join(kinds, ", "));
+    }
+    if (model_.find(entry.kind) != nullptr && !may_repeat(*info))
+      fail(line_of(table), "effect {} stands in the model twice; keep one of them", entry.kind);
+    entry.from = text_at(table, "from", "[[effect]]", false);
+    refuse_unknown_in_effect(table, *info);
+    for (const sim::ParameterInfo& parameter : info->parameters) read_parameter(table, parameter, entry);
+    require_parameters(table, *info, entry);
+    model_.effects.push_back(std::move(entry));
+  }
+
+  void refuse_unknown_in_effect(const toml::table& table, const sim::EffectInfo& info) const {
+    Names known = {"kind", "from"};
+    for (const sim::ParameterInfo& parameter : info.parameters) known.push_back(parameter.key(model_.data.kind));
+    std::vector<std::string> intervals;
+    for (std::size_t k = 2; k < known.size(); ++k) intervals.push_back(fmt::format("{}{}", known[k], kIntervalSuffix));
+    refuse_keys_of_other_kind(table, info, known);
+    Names allowed = known;
+    allowed.insert(allowed.end(), intervals.begin(), intervals.end());
+    refuse_unknown(table, allowed, fmt::format("in effect {}", info.kind));
+  }
+
+  void refuse_keys_of_other_kind(const toml::table& table, const sim::EffectInfo& info, const Names& known) const {
+    const bool rotary = model_.data.kind == DriveKind::rotary;
+    for (const sim::ParameterInfo& parameter : info.parameters) {
+      const std::string_view other = parameter.key(rotary ? DriveKind::linear : DriveKind::rotary);
+      const toml::node* node = table.get(other);
+      if (node != nullptr && std::ranges::find(known, other) == known.end())
+        fail(line_of(*node), "{} belongs to a {} drive; this one is {}: give {}", other, rotary ? "linear" : "rotary",
+             rotary ? "rotary" : "linear", parameter.key(model_.data.kind));
+    }
+  }
+
+  void read_parameter(const toml::table& table, const sim::ParameterInfo& parameter, sim::EffectEntry& entry) const {
+    const std::string key(parameter.key(model_.data.kind));
+    const toml::node* node = table.get(key);
+    const std::string interval_key = key + std::string(kIntervalSuffix);
+    const toml::node* interval = table.get(interval_key);
+    if (node == nullptr && interval != nullptr)
+      fail(line_of(*interval), "{} stands without {}; add the value, or remove its interval", interval_key, key);
+    if (node == nullptr) return;
+    const double value = number_of(*node, key);
+    if (value < parameter.lower || value > parameter.upper)
+      fail(line_of(*node), "{}: {} is out of bounds ({}); it must lie within {} … {}", key, value, parameter.doc,
+           parameter.lower, parameter.upper);
+    const std::string id(parameter.id);
+    entry.parameters[id] = value;
+    if (interval != nullptr) entry.ci95[id] = interval_of(*interval, interval_key);
+  }
+
+  std::array<double, 2> interval_of(const toml::node& node, std::string_view key) const {
+    const toml::array* ends = node.as_array();
+    if (ends == nullptr || ends->size() != 2) fail(line_of(node), "{}: write the interval as [low, high]", key);
+    const std::array<double, 2> interval = {number_of(*ends->get(0), key), number_of(*ends->get(1), key)};
+    if (interval[0] > interval[1])
+      fail(line_of(node), "{}: its low end {} is above its high end {}; swap them", key, interval[0], interval[1]);
+    return interval;
+  }
+
+  /// Every parameter must be there, in one of the forms that the effect knows.
+  void require_parameters(const toml::table& table, const sim::EffectInfo& info, const sim::EffectEntry& entry) const {
+    for (const sim::ParameterInfo& parameter : info.parameters) {
+      if (!parameter.pair_of.empty())
+        require_one_form(table, info, parameter, entry);
+      else if (!parameter.optional && !entry.has(std::string(parameter.id)))
+        fail(line_of(table), "missing field {} in effect {} ({}); add it", parameter.key(model_.data.kind), info.kind,
+             parameter.doc);
+    }
+  }
+
+  void require_one_form(const toml::table& table, const sim::EffectInfo& info, const sim::ParameterInfo& both,
+                        const sim::EffectEntry& entry) const {
+    Names keys, missing;
+    for (const std::string_view id : ids_of_pair(both)) {
+      keys.push_back(info.parameter(id)->key(model_.data.kind));
+      if (!entry.has(std::string(id))) missing.push_back(keys.back());
+    }
+    const std::string_view single = both.key(model_.data.kind);
+    if (entry.has(std::string(both.id)) && missing.size() < keys.size())
+      fail(line_of(*table.get(single)), "{} stands beside a value for one direction ({}); keep one form", single,
+           fmt::join(keys, ", "));
+    if (!entry.has(std::string(both.id)) && !missing.empty())
+      fail(line_of(table), "missing field {} in effect {}; give {}, or {} for both directions", missing.front(),
+           info.kind, fmt::join(keys, " and "), single);
+  }
+
+  std::string_view name_;
+  toml::table root_;
+  sim::DriveDescription model_;
+};
+
+}  // namespace
+
+sim::DriveDescription parse_model(std::string_view text, std::string_view name) {
+  return ModelReader(text, name).read(true);
+}
+
+sim::DriveDescription parse_drive(std::string_view text, std::string_view name) {
+  return ModelReader(text, name).read(false);
+}
+
+sim::DriveDescription read_model(const std::string& path) { return parse_model(read_file(path), path); }
+
+sim::DriveDescription read_drive(const std::string& path) { return parse_drive(read_file(path), path); }
+
+}  // namespace host
