@@ -1,0 +1,213 @@
+// The control law of one axis: measure, estimate, take the reference, control, put out.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/axis_check.hpp"
+#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/axis_telemetry.hpp"
+#include "firmware/core/dac_conversion.hpp"
+#include "firmware/core/friction_feedforward.hpp"
+#include "firmware/core/kalman_estimator.hpp"
+#include "firmware/core/reference_generator.hpp"
+#include "firmware/core/reference_preview.hpp"
+#include "hal/axis_hal.hpp"
+
+namespace firmware {
+
+/// step() runs once a sample period, in the control interrupt; everything else is called between steps. Nothing here
+/// allocates, waits or throws, and a step's work has a constant bound.
+///
+///   u(k) = Kc1 (xref(k) - x_hat(k)) - Kc2 w_hat(k) + sum of weight[i] wref(k+i)     (50), or with zero phase error
+///        + friction(wref(k+1))                                                     if switched on, (19)
+///        + d_hat(k)                                                                if switched on
+///
+/// The estimator is given what the converter really put out, less the friction feed-forward: d_hat is the disturbance
+/// that feed-forward left over, so that cancelling it on top does not count friction twice. Friction takes wref(k+1),
+/// the velocity of the interval during which u(k) is held.
+template <typename Scalar, hal::AxisHal Hal>
+class Axis {
+ public:
+  explicit constexpr Axis(Hal& hal) : hal_(hal) {}
+
+  /// Takes new parameters, or says what is wrong with them and keeps the old. Only while disabled.
+  constexpr ParameterError configure(const AxisParameters<Scalar>& parameters) {
+    if (telemetry_.enabled) return ParameterError::controller_is_enabled;
+    const ParameterError error = check(parameters);
+    if (error != ParameterError::none) return error;
+    parameters_ = parameters;
+    limits_ = motion_limits(parameters);
+    const Scalar travel_per_velocity = parameters.lead * parameters.sample_period_s;
+    counts_per_sample_per_velocity_ = parameters.sample_period_s / parameters.encoder_resolution;
+    estimator_.configure(parameters.drive, parameters.Kobs, parameters.encoder_resolution);
+    preview_.configure(parameters.encoder_resolution / travel_per_velocity);
+    feedforward_ = parameters.zero_phase_feedforward_on
+                       ? zero_phase_feedforward(parameters.drive, parameters.Kc, travel_per_velocity)
+                       : backward_difference_feedforward(parameters.Kc);
+    if (parameters.friction_feedforward_on) friction_.configure(parameters.friction);
+    generator_.configure(limits_);
+    dac_.configure(parameters.dac_resolution_V, parameters.dac_limit_V);
+    is_configured_ = true;
+    is_synchronised_ = false;
+    return ParameterError::none;
+  }
+
+  /// Closes the loop from the next step on, with the reference where the axis stands. False (and telemetry().fault says
+  /// why) while a fault is latched or no parameters have been accepted.
+  constexpr bool enable() {
+    if (!is_configured_) telemetry_.fault = AxisFault::parameters_missing;
+    if (telemetry_.fault != AxisFault::none) return false;
+    if (!telemetry_.enabled) {
+      telemetry_.enabled = true;
+      hal_.drive_enable().set(true);
+    }
+    return true;
+  }
+
+  /// Opens the loop at once: 0 V, enable line off.
+  constexpr void disable() {
+    telemetry_.enabled = false;
+    hal_.drive_enable().set(false);
+    put_out_zero();
+  }
+
+  constexpr void clear_fault() {
+    telemetry_.fault = AxisFault::none;
+    is_synchronised_ = false;
+  }
+
+  /// Velocity reference, mm/s (m/s), limited to the velocity limit; 0 slows down to standstill. False while disabled.
+  constexpr bool jog(Scalar velocity) {
+    if (!telemetry_.enabled || ScalarTraits<Scalar>::is_nan(velocity)) return false;
+    const Scalar limit = parameters_.velocity_limit;
+    if (velocity > limit) velocity = limit;
+    if (velocity < Scalar(0) - limit) velocity = Scalar(0) - limit;
+    generator_.jog(ScalarTraits<Scalar>::to_increment(velocity * counts_per_sample_per_velocity_));
+    return true;
+  }
+
+  /// Slows down to standstill within the limits.
+  constexpr void stop() { generator_.stop(); }
+
+  /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
+  constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
+    return plan_move(target - preview_.leading(), limits_);
+  }
+
+  /// Starts a plan made while the reference was at rest, as it must still be. False otherwise, or while disabled.
+  constexpr bool start(const MovePlan& plan) { return telemetry_.enabled && generator_.start(plan); }
+
+  /// The reference, and what of it is still in the preview, has come to rest.
+  constexpr bool is_at_rest() const { return generator_.at_rest() && preview_.position() == preview_.leading(); }
+
+  /// One control period with the axis's own reference.
+  constexpr const AxisTelemetry<Scalar>& step() { return step_with(telemetry_.enabled ? generator_.next() : 0); }
+
+  /// One control period whose reference increment, for kPreviewSamples from now, comes from an interpolator that
+  /// coordinates several axes; |increment| < 2^62. The axis's own generator must be at rest.
+  constexpr const AxisTelemetry<Scalar>& step_with(Increment increment) {
+    if (!is_configured_) return telemetry_;
+    if (!measure()) return telemetry_;
+    if (!telemetry_.enabled) {
+      hold_reference_here();
+      put_out_zero();
+      return telemetry_;
+    }
+    preview_.push(increment);
+    control();
+    return telemetry_;
+  }
+
+  constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
+  constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
+
+ private:
+  using Traits = ScalarTraits<Scalar>;
+
+  constexpr bool measure() {
+    const hal::EncoderReading encoder = hal_.encoder().read();
+    if (!encoder.valid) return fail(AxisFault::encoder_invalid);
+    if (!is_synchronised_) {
+      estimator_.reset(counter_.extend(encoder.counts));
+      preview_.reset(CountPosition::at(counter_.counts()));
+      model_input_V_ = Scalar(0);
+      is_synchronised_ = true;
+    }
+    telemetry_.encoder_counts = counter_.extend(encoder.counts);
+    if (parameters_.tachometer_fitted) {
+      const hal::TachometerReading tachometer = hal_.tachometer().read();
+      if (!tachometer.valid) return fail(AxisFault::tachometer_invalid);
+      telemetry_.tachometer_velocity =
+          Traits::from_integer(tachometer.code) * parameters_.tachometer_gain - parameters_.tachometer_offset;
+      estimator_.update(model_input_V_, telemetry_.encoder_counts, telemetry_.tachometer_velocity);
+    } else {
+      estimator_.update(model_input_V_, telemetry_.encoder_counts);
+    }
+    telemetry_.estimate = estimator_.estimate();
+    return true;
+  }
+
+  constexpr void control() {
+    const AxisEstimate<Scalar>& estimate = estimator_.estimate();
+    telemetry_.reference = preview_.position();
+    telemetry_.reference_velocity = preview_.velocity(0);
+    telemetry_.position_error =
+        counts_from<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution -
+        estimate.offset;
+    telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
+    Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity +
+                       preview_.weighted_sum(feedforward_) + telemetry_.friction_V;
+    if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
+    telemetry_.control_V = control_V;
+    if (Traits::is_nan(control_V)) {
+      fail(AxisFault::control_signal_not_a_number);
+      return;
+    }
+    const DacWord<Scalar> word = dac_(control_V);
+    telemetry_.dac_code = word.code;
+    telemetry_.saturated = word.saturated;
+    model_input_V_ = word.volts - telemetry_.friction_V;
+    if (!hal_.dac().write(word.code)) fail(AxisFault::dac_write_failed);
+  }
+
+  constexpr void hold_reference_here() {
+    generator_.reset();
+    preview_.reset(CountPosition::at(telemetry_.encoder_counts));
+    telemetry_.reference = preview_.position();
+    telemetry_.reference_velocity = Scalar(0);
+    telemetry_.position_error = Scalar(0) - telemetry_.estimate.offset;
+  }
+
+  constexpr void put_out_zero() {
+    telemetry_.control_V = telemetry_.friction_V = model_input_V_ = Scalar(0);
+    telemetry_.dac_code = 0;
+    telemetry_.saturated = false;
+    if (!hal_.dac().write(0) && telemetry_.fault == AxisFault::none) telemetry_.fault = AxisFault::dac_write_failed;
+  }
+
+  /// Latches the first fault and opens the loop. Always false, for the caller to return.
+  constexpr bool fail(AxisFault fault) {
+    if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
+    disable();
+    is_synchronised_ = false;
+    return false;
+  }
+
+  Hal& hal_;
+  AxisParameters<Scalar> parameters_{};
+  MotionLimits limits_{};
+  Scalar counts_per_sample_per_velocity_{};
+  KalmanEstimator<Scalar> estimator_;
+  ReferenceGenerator generator_;
+  ReferencePreview<Scalar> preview_;
+  ReferenceFeedforward<Scalar> feedforward_{};
+  FrictionFeedforward<Scalar> friction_;
+  DacConversion<Scalar> dac_;
+  CountExtender counter_;
+  Scalar model_input_V_{};
+  AxisTelemetry<Scalar> telemetry_{};
+  bool is_configured_ = false;
+  bool is_synchronised_ = false;
+};
+
+}  // namespace firmware

@@ -1,0 +1,84 @@
+// Checks parameters, and turns limits into the units of references.
+#pragma once
+
+#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/motion_limits.hpp"
+
+namespace firmware {
+
+namespace parameter_check {
+
+template <typename Scalar>
+constexpr bool is_positive(Scalar value) {
+  return value > Scalar(0);  // false for not-a-number
+}
+
+template <typename Scalar>
+constexpr bool is_valid(const FrictionDirection<Scalar>& direction) {
+  return direction.static_V >= Scalar(0) && direction.coulomb_V >= Scalar(0) && direction.omega1_rad_s >= Scalar(0) &&
+         direction.omega2_rad_s >= Scalar(0) && !ScalarTraits<Scalar>::is_nan(direction.viscous_V_s_per_rad);
+}
+
+/// Length per second^order as an increment per sample^order; 0 where it is out of range.
+template <typename Scalar>
+constexpr Increment motion(Scalar limit, Scalar count_length, Scalar sample_period_s, int order) {
+  Scalar counts = limit / count_length;
+  for (int i = 0; i < order; ++i) counts = counts * sample_period_s;
+  constexpr Scalar kMost = Scalar(16384);  // 2^14 counts
+  return counts > Scalar(0) && counts <= kMost ? ScalarTraits<Scalar>::to_increment(counts) : 0;
+}
+
+}  // namespace parameter_check
+
+template <typename Scalar>
+constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
+  using parameter_check::motion;
+  return {motion(p.velocity_limit, p.encoder_resolution, p.sample_period_s, 1),
+          motion(p.acceleration_limit, p.encoder_resolution, p.sample_period_s, 2),
+          motion(p.jerk_limit, p.encoder_resolution, p.sample_period_s, 3)};
+}
+
+/// The first thing that is wrong, in the order of the enumeration.
+template <typename Scalar>
+constexpr ParameterError check(const AxisParameters<Scalar>& p) {
+  using parameter_check::is_positive;
+  using Traits = ScalarTraits<Scalar>;
+  if (!is_positive(p.sample_period_s)) return ParameterError::sample_period;
+  if (!is_positive(p.lead)) return ParameterError::lead;
+  if (!is_positive(p.encoder_resolution)) return ParameterError::encoder_resolution;
+  if (!is_positive(p.dac_resolution_V)) return ParameterError::dac_resolution;
+  constexpr Scalar kMostCodes = Scalar(8388608);  // 2^23: such codes are exact in a float
+  const Scalar codes = p.dac_limit_V / p.dac_resolution_V;
+  if (!(codes >= Scalar(2) && codes <= kMostCodes)) return ParameterError::dac_limit;
+  if (p.tachometer_fitted && !is_positive(p.tachometer_gain) && !is_positive(Scalar(0) - p.tachometer_gain))
+    return ParameterError::tachometer_gain;
+  if (p.tachometer_fitted && Traits::is_nan(p.tachometer_offset)) return ParameterError::tachometer_gain;
+  const DiscreteDrive<Scalar>& drive = p.drive;
+  if (!is_positive(drive.Ad12) || !is_positive(drive.Bd1) || !is_positive(drive.Bd2) || !is_positive(drive.Ad22) ||
+      drive.Ad22 > Scalar(1))
+    return ParameterError::drive_model;
+  for (const auto& row : p.Kobs)
+    for (const Scalar gain : row)
+      if (Traits::is_nan(gain)) return ParameterError::kalman_gain;
+  if (Traits::is_nan(p.Kc[0]) || Traits::is_nan(p.Kc[1])) return ParameterError::state_feedback;
+  if (p.friction_feedforward_on) {
+    using parameter_check::is_valid;
+    if (!is_valid(p.friction.positive) || !is_valid(p.friction.negative)) return ParameterError::friction_curve;
+    if (!is_positive(p.friction.blend_velocity_rad_s)) return ParameterError::friction_blend;
+  }
+  switch (check(motion_limits(p))) {
+    case MotionLimitError::velocity_out_of_range:
+      return ParameterError::velocity_limit;
+    case MotionLimitError::acceleration_out_of_range:
+      return ParameterError::acceleration_limit;
+    case MotionLimitError::jerk_out_of_range:
+      return ParameterError::jerk_limit;
+    case MotionLimitError::jerk_time_out_of_range:
+      return ParameterError::jerk_time;
+    case MotionLimitError::none:
+      break;
+  }
+  return ParameterError::none;
+}
+
+}  // namespace firmware

@@ -1,0 +1,59 @@
+// Everything that one axis is told: plain values, checked once, before they are used.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/discrete_drive.hpp"
+#include "firmware/core/friction_feedforward.hpp"
+#include "firmware/core/kalman_estimator.hpp"
+#include "firmware/core/reference_feedforward.hpp"
+
+namespace firmware {
+
+/// Lengths are mm for a rotary drive and m for a linear one; velocities of the drive are rad/s and m/s.
+template <typename Scalar>
+struct AxisParameters {
+  Scalar sample_period_s{};       ///< Ts, > 0
+  Scalar lead{};                  ///< rg, mm/rad; 1 for a linear drive; > 0
+  Scalar encoder_resolution{};    ///< dx, mm (m) a count, > 0
+  Scalar dac_resolution_V{};      ///< du, > 0
+  Scalar dac_limit_V{};           ///< output range is -limit..+limit; 2 du .. 2^23 du
+  bool tachometer_fitted = true;  ///< false: the estimate rests on the encoder alone
+  Scalar tachometer_gain{};       ///< rad/s (m/s) a code
+  Scalar tachometer_offset{};     ///< rad/s (m/s) at code 0, subtracted
+
+  DiscreteDrive<Scalar> drive{};
+  KalmanGain<Scalar> Kobs{};
+  StateFeedbackGain<Scalar> Kc{};
+  FrictionParameters<Scalar> friction{};
+
+  bool friction_feedforward_on = false;
+  bool disturbance_cancellation_on = false;
+  bool zero_phase_feedforward_on = false;  ///< off: the reference velocity alone, eqs. (50) and (52)
+
+  Scalar velocity_limit{};      ///< of references, mm/s (m/s)
+  Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
+  Scalar jerk_limit{};          ///< mm/s^3 (m/s^3)
+};
+
+enum class ParameterError : std::uint8_t {
+  none = 0,
+  sample_period = 1,          ///< not above 0
+  lead = 2,                   ///< not above 0
+  encoder_resolution = 3,     ///< not above 0
+  dac_resolution = 4,         ///< not above 0
+  dac_limit = 5,              ///< below 2 or above 2^23 steps of the converter
+  tachometer_gain = 6,        ///< zero or not a number although a tachometer is fitted
+  drive_model = 7,            ///< Ad12, Bd1 or Bd2 not above 0, or Ad22 outside (0, 1]
+  kalman_gain = 8,            ///< not a number
+  state_feedback = 9,         ///< not a number
+  friction_curve = 10,        ///< a magnitude below 0
+  friction_blend = 11,        ///< not above 0 although friction feed-forward is on
+  velocity_limit = 12,        ///< not above 0, or outside the references' range (motion_limits.hpp)
+  acceleration_limit = 13,    ///< likewise
+  jerk_limit = 14,            ///< likewise
+  jerk_time = 15,             ///< acceleration limit / jerk limit too long
+  controller_is_enabled = 16  ///< parameters change only while the axis is disabled
+};
+
+}  // namespace firmware

@@ -1,0 +1,68 @@
+// A position that never loses resolution: whole encoder counts and a binary fraction of one.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "firmware/core/scalar.hpp"
+
+namespace firmware {
+
+/// Travel in one sample, in units of 2^-48 encoder counts. As speed it reaches 2^15 counts a sample (80 m/s at 1 kHz
+/// and 2.44 um), and resolves a drift of one count in 9000 years at 1 kHz.
+using Increment = std::int64_t;
+
+inline constexpr Increment kOneCount = Increment{1} << kFractionBits;
+
+/// Position = counts + fraction * 2^-48, with 0 <= fraction < 2^48. Sums are exact.
+struct CountPosition {
+  std::int64_t counts = 0;
+  std::int64_t fraction = 0;
+
+  static constexpr CountPosition at(std::int64_t whole_counts) { return {whole_counts, 0}; }
+
+  constexpr void advance(Increment increment) {
+    const std::int64_t sum = fraction + (increment & (kOneCount - 1));
+    counts += (increment >> kFractionBits) + (sum >> kFractionBits);
+    fraction = sum & (kOneCount - 1);
+  }
+
+  constexpr bool operator==(const CountPosition&) const = default;
+
+  constexpr bool operator<(const CountPosition& other) const {
+    return counts != other.counts ? counts < other.counts : fraction < other.fraction;
+  }
+
+  constexpr CountPosition operator-(const CountPosition& other) const {
+    const std::int64_t difference = fraction - other.fraction;
+    return {counts - other.counts + (difference >> kFractionBits), difference & (kOneCount - 1)};
+  }
+};
+
+/// Distance from a whole count to a position, counts, as a scalar. Beyond 2^31 counts it stays at that limit.
+template <typename Scalar>
+constexpr Scalar counts_from(std::int64_t origin, const CountPosition& position) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  std::int64_t whole = position.counts - origin;
+  if (whole > kMost) whole = kMost;
+  if (whole < -kMost) whole = -kMost;
+  return ScalarTraits<Scalar>::from_integer(static_cast<std::int32_t>(whole)) +
+         ScalarTraits<Scalar>::from_increment(position.fraction);
+}
+
+/// Extends a counter that wraps at 2^32 to 64 bits, from a first reading in -2^31..2^31-1. Right while it moves less
+/// than 2^31 counts between two readings.
+class CountExtender {
+ public:
+  constexpr std::int64_t extend(std::uint32_t reading) {
+    counts_ += static_cast<std::int32_t>(reading - static_cast<std::uint32_t>(counts_));
+    return counts_;
+  }
+
+  constexpr std::int64_t counts() const { return counts_; }
+
+ private:
+  std::int64_t counts_ = 0;
+};
+
+}  // namespace firmware

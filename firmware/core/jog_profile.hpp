@@ -1,0 +1,89 @@
+// Velocity reference with acceleration and jerk limits, re-targetable at any sample.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/motion_limits.hpp"
+
+namespace firmware {
+
+/// The acceleration moves on a lattice of whole steps: step * s, with s = acceleration limit / ceil(limit / jerk), so
+/// one step a sample keeps the jerk limit and the full acceleration can be reached. While step n is held or approached,
+/// the velocity that braking n, n-1, ..., 1 will still add is s n (n+1) / 2; each sample takes the largest step that
+/// does not add more than is missing. What the lattice cannot express, less than s, is added in one last sample. No
+/// division, no square root: a constant number of operations a sample.
+class JogProfile {
+ public:
+  /// `limits` have passed check().
+  constexpr void configure(const MotionLimits& limits) {
+    velocity_limit_ = limits.velocity;
+    most_steps_ = (limits.acceleration + limits.jerk - 1) / limits.jerk;
+    acceleration_step_ = limits.acceleration / most_steps_;
+    reset();
+  }
+
+  /// Takes over at `velocity`, from an acceleration of at most one jerk: the next sample has none. The target is that
+  /// velocity.
+  constexpr void take_over(Increment velocity) {
+    velocity_ = target_ = velocity;
+    step_ = 0;
+    settling_ = true;
+  }
+
+  /// Standing, from now on.
+  constexpr void reset() {
+    velocity_ = target_ = 0;
+    step_ = 0;
+    settling_ = false;
+  }
+
+  /// Limited to the velocity limit; 0 stops.
+  constexpr void set_target(Increment velocity) {
+    target_ =
+        velocity > velocity_limit_ ? velocity_limit_ : (velocity < -velocity_limit_ ? -velocity_limit_ : velocity);
+  }
+
+  constexpr Increment next() {
+    const Increment missing = target_ - velocity_;
+    if (settling_) {  // the last sample's acceleration was off the lattice: pass through zero before the next step
+      settling_ = false;
+      return velocity_;
+    }
+    const Increment amount = missing < 0 ? -missing : missing;
+    if (step_ == 0 && amount < acceleration_step_) {
+      settling_ = amount != 0;
+      velocity_ = target_;
+      return velocity_;
+    }
+    const bool upward = missing >= 0;
+    step_ = upward ? best_step(step_, amount) : -best_step(-step_, amount);
+    velocity_ += acceleration_step_ * step_;
+    return velocity_;
+  }
+
+  /// Standing, with nothing left to do.
+  constexpr bool at_rest() const { return velocity_ == 0 && target_ == 0 && step_ == 0 && !settling_; }
+  constexpr bool at_target() const { return velocity_ == target_ && step_ == 0 && !settling_; }
+  constexpr Increment velocity() const { return velocity_; }
+
+ private:
+  /// Velocity added while the step falls from n to 0, one a sample, n included.
+  constexpr Increment run_out(std::int64_t n) const { return acceleration_step_ * (n * (n + 1) / 2); }
+
+  /// The next step towards a velocity that lies `amount` ahead; a step below 0 still leads away from it.
+  constexpr std::int64_t best_step(std::int64_t step, Increment amount) const {
+    if (step < 0) return step + 1;
+    if (step < most_steps_ && run_out(step + 1) <= amount) return step + 1;
+    return run_out(step) <= amount ? step : step - 1;
+  }
+
+  Increment velocity_limit_ = 0;
+  Increment acceleration_step_ = 1;
+  std::int64_t most_steps_ = 1;
+  std::int64_t step_ = 0;
+  Increment velocity_ = 0;
+  Increment target_ = 0;
+  bool settling_ = false;
+};
+
+}  // namespace firmware

@@ -1,0 +1,68 @@
+// Plays a move plan back, one sample at a time.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/move_plan.hpp"
+
+namespace firmware {
+
+/// Additions only. A move can be cut short: its acceleration then runs out at the planned jerk, and what is left is a
+/// steady velocity for a jog to take over.
+class MoveProfile {
+ public:
+  constexpr void start(const MovePlan& plan) {
+    plan_ = plan;
+    elapsed_ = 0;
+    velocity_ = acceleration_ = last_ = 0;
+  }
+
+  constexpr bool is_done() const { return elapsed_ >= plan_.samples(); }
+
+  /// True while the velocity changes according to a jerk; false in the steady stretch and before and after the move.
+  constexpr bool is_accelerating() const { return !is_done() && pulse_sample() < pulse_samples(); }
+
+  constexpr bool is_slowing_down() const { return elapsed_ >= plan_.N1; }
+
+  /// The last increment: the velocity to go on with where a jog takes over.
+  constexpr Increment velocity() const { return last_; }
+
+  /// Lets the acceleration run out from where it is now. Ask is_accelerating() for the end of it.
+  constexpr void cut_acceleration() {
+    const std::int32_t executed = pulse_sample();
+    if (executed >= pulse_samples()) return;
+    if (plan_.N3 > executed) plan_.N3 = executed;
+    if (plan_.N2 > executed) plan_.N2 = executed;
+  }
+
+  constexpr Increment next() {
+    if (is_done()) return 0;
+    const std::int32_t sample = pulse_sample();
+    if (sample == 0) acceleration_ = 0;
+    if (sample < pulse_samples()) {
+      if (sample < plan_.N3) acceleration_ += jerk_at(sample);
+      if (sample >= plan_.N2) acceleration_ -= jerk_at(sample - plan_.N2);
+      const Increment change = acceleration_ + (sample < plan_.acceleration_remainder ? 1 : 0);
+      velocity_ += is_slowing_down() ? -change : change;
+    }
+    const Increment increment = velocity_ + (elapsed_ < plan_.velocity_remainder ? 1 : 0);
+    ++elapsed_;
+    last_ = plan_.negative ? -increment : increment;
+    return last_;
+  }
+
+ private:
+  constexpr std::int32_t pulse_sample() const { return is_slowing_down() ? elapsed_ - plan_.N1 : elapsed_; }
+  constexpr std::int32_t pulse_samples() const { return plan_.N2 + plan_.N3 - 1; }
+  constexpr Increment jerk_at(std::int32_t sample) const {
+    return plan_.jerk + (sample < plan_.jerk_remainder ? 1 : 0);
+  }
+
+  MovePlan plan_{};
+  std::int32_t elapsed_ = 0;
+  Increment velocity_ = 0;
+  Increment acceleration_ = 0;
+  Increment last_ = 0;
+};
+
+}  // namespace firmware

@@ -1,0 +1,48 @@
+// What the control core asks of its number type: float on a processor with FPU, fixed point elsewhere.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+
+namespace firmware {
+
+/// Fractional bits of reference positions and of their increments (see count_position.hpp).
+inline constexpr int kFractionBits = 48;
+
+/// Conversions between a scalar and integers. Each is a fixed sequence of operations, so that its result is the same to
+/// the last bit on every machine. A fixed-point type specialises this template.
+template <typename Scalar>
+struct ScalarTraits;
+
+template <std::floating_point Real>
+struct ScalarTraits<Real> {
+  static constexpr Real from_integer(std::int32_t value) { return static_cast<Real>(value); }
+
+  /// Toward zero. |value| < 2^31; outside that range machines differ, so callers limit first.
+  static constexpr std::int32_t truncate(Real value) { return static_cast<std::int32_t>(value); }
+
+  static constexpr bool is_nan(Real value) { return !(value <= Real(0)) && !(value > Real(0)); }
+
+  /// value * 2^-exponent, 0 <= exponent < 127.
+  static constexpr Real scale_down(Real value, std::int32_t exponent) {
+    return value * static_cast<Real>(std::bit_cast<float>(static_cast<std::uint32_t>(127 - exponent) << 23));
+  }
+
+  /// An increment, counts * 2^48, as counts. |increment| < 2^63. Both halves are converted on their own because a
+  /// 64-bit conversion is a library call on a 32-bit processor.
+  static constexpr Real from_increment(std::int64_t increment) {
+    constexpr Real kHighUnit = Real(1) / Real(std::int64_t{1} << (kFractionBits - 32));
+    constexpr Real kLowUnit = Real(1) / Real(std::int64_t{1} << kFractionBits);
+    const auto high = static_cast<std::int32_t>(increment >> 32);
+    const auto low = static_cast<std::uint32_t>(increment);
+    return static_cast<Real>(high) * kHighUnit + static_cast<Real>(low) * kLowUnit;
+  }
+
+  /// Counts as an increment, toward zero. |counts| < 2^15.
+  static constexpr std::int64_t to_increment(Real counts) {
+    return static_cast<std::int64_t>(counts * Real(std::int64_t{1} << kFractionBits));
+  }
+};
+
+}  // namespace firmware

@@ -1,0 +1,24 @@
+// What the control law of one axis needs of the world.
+#pragma once
+
+#include <type_traits>
+
+#include "hal/dac.hpp"
+#include "hal/drive_enable.hpp"
+#include "hal/encoder.hpp"
+#include "hal/tachometer.hpp"
+
+namespace hal {
+
+/// Contract: the four accessors return the same objects at every call. In one control period the law reads the encoder
+/// and the tachometer once each, writes the converter once, and sets the enable line only when its state changes. A
+/// drive without tachometer still has the accessor; its readings are invalid, and the parameters say not to use them.
+template <typename T>
+concept AxisHal = requires(T& axis) {
+  requires Encoder<std::remove_reference_t<decltype(axis.encoder())>>;
+  requires Tachometer<std::remove_reference_t<decltype(axis.tachometer())>>;
+  requires Dac<std::remove_reference_t<decltype(axis.dac())>>;
+  requires DriveEnable<std::remove_reference_t<decltype(axis.drive_enable())>>;
+};
+
+}  // namespace hal

@@ -1,0 +1,24 @@
+// Incremental encoder on a quadrature counter.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+
+namespace hal {
+
+/// One reading. `counts` runs modulo 2^32 in both directions; the difference of two readings, taken modulo 2^32 and
+/// read as a signed number, is the travel between them as long as that stays below 2^31 counts.
+struct EncoderReading {
+  std::uint32_t counts = 0;
+  bool valid = false;  ///< false: wire break, illegal edge or bus error; `counts` must then not be used
+};
+
+/// Contract: `read()` latches the counter once and returns at once. Positive counts are positive travel of the axis.
+/// A reading never goes back to an earlier value by itself (no reset at the index pulse). An error is an invalid
+/// reading; it lasts as long as its cause.
+template <typename T>
+concept Encoder = requires(T& encoder) {
+  { encoder.read() } -> std::same_as<EncoderReading>;
+};
+
+}  // namespace hal

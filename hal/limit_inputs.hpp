@@ -1,0 +1,21 @@
+// Switches at the ends of travel and at the home position.
+#pragma once
+
+#include <concepts>
+
+namespace hal {
+
+struct LimitState {
+  bool positive_end = false;
+  bool negative_end = false;
+  bool home = false;
+};
+
+/// Contract: `read()` samples the inputs at this instant. true means that the switch is actuated or that its wire is
+/// broken (normally closed contacts); the home input is normally open, so there true means actuated only.
+template <typename T>
+concept LimitInputs = requires(T& inputs) {
+  { inputs.read() } -> std::same_as<LimitState>;
+};
+
+}  // namespace hal
