@@ -1,0 +1,68 @@
+#include "host/identify/least_squares.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace host {
+
+double student_t_95(double degrees) {
+  // Cornish-Fisher expansion about the normal quantile; Abramowitz & Stegun 26.7.5. Below 3 degrees it is too short:
+  // there the exact values (26.7 table) stand.
+  if (degrees < 1.5) return 12.7062;
+  if (degrees < 2.5) return 4.3027;
+  constexpr double z = 1.959963984540054;
+  const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  const double n = degrees;
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
+}
+
+Regression solve_blocks(const std::vector<NormalEquations>& blocks, std::size_t rows) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Regression result;
+  result.rows = rows;
+  result.condition_number = infinity;
+  if (blocks.empty()) return result;
+  const Eigen::Index p = blocks.front().projection.size();
+  result.parameters = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
+  result.covariance = Eigen::MatrixXd::Constant(p, p, infinity);
+
+  Eigen::MatrixXd moment = Eigen::MatrixXd::Zero(p, p);
+  Eigen::VectorXd projection = Eigen::VectorXd::Zero(p);
+  for (const NormalEquations& block : blocks) {
+    moment += block.moment;
+    projection += block.projection;
+  }
+  const Eigen::VectorXd scale = moment.diagonal().cwiseSqrt();
+  if (!(scale.minCoeff() > 0.0) || !moment.allFinite()) return result;
+  const Eigen::VectorXd unscale = scale.cwiseInverse();
+  const Eigen::MatrixXd scaled = unscale.asDiagonal() * moment * unscale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(scaled);
+  const double smallest = spectrum.eigenvalues()(0), largest = spectrum.eigenvalues()(p - 1);
+  if (smallest <= largest * 1e-15) return result;
+  result.condition_number = std::sqrt(largest / smallest);
+
+  const Eigen::MatrixXd inverse =
+      unscale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(p, p)) * unscale.asDiagonal();
+  result.parameters = inverse * projection;
+  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);
+  for (const NormalEquations& block : blocks) {
+    const Eigen::VectorXd score = block.projection - block.moment * result.parameters;
+    meat += score * score.transpose();
+  }
+  const double count = static_cast<double>(blocks.size());
+  const double degrees = std::max(1.0, count - static_cast<double>(p));
+  result.covariance = count / degrees * inverse * meat * inverse;
+  result.t_quantile = student_t_95(degrees);
+  return result;
+}
+
+std::size_t rows_per_block(std::size_t rows, double row_period_s) {
+  constexpr double kShortest_s = 0.1;
+  constexpr std::size_t kBlocks = 50;
+  const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / row_period_s));
+  return std::max({std::size_t{1}, shortest, rows / kBlocks});
+}
+
+}  // namespace host

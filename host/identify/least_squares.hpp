@@ -1,0 +1,75 @@
+// Linear least squares in one pass over the rows, with intervals that hold when residuals are correlated.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+namespace host {
+
+/// Two-sided 95 % quantile of Student's t for `degrees` >= 1 degrees of freedom.
+double student_t_95(double degrees);
+
+/// What a regression found.
+struct Regression {
+  Eigen::VectorXd parameters;
+  Eigen::MatrixXd covariance;     ///< of the parameters, by block sums (see BlockedRegression)
+  double condition_number = 0.0;  ///< of the regressors with columns scaled to unit length; infinite when singular
+  double t_quantile = 0.0;        ///< half-width of a 95 % interval in standard deviations
+  std::size_t rows = 0;
+};
+
+/// Normal equations of one block of consecutive rows.
+struct NormalEquations {
+  Eigen::MatrixXd moment;      ///< Phi'Phi
+  Eigen::VectorXd projection;  ///< Phi'y
+};
+
+/// Solves the sum of the blocks. Covariance: sandwich estimate with the blocks as independent clusters (batch means),
+/// right for residuals of any colour and variance whose correlation is shorter than a block; intervals use Student's t
+/// with (blocks - parameters) degrees. Parameters are NaN when the equations are singular.
+Regression solve_blocks(const std::vector<NormalEquations>& blocks, std::size_t rows);
+
+/// Gathers rows into blocks. A block's score (sum of regressor times residual) follows from its own sums once the
+/// parameters are known, so one pass over the data gives estimate and intervals.
+template <int P>
+class BlockedRegression {
+ public:
+  using Row = Eigen::Matrix<double, P, 1>;
+
+  explicit BlockedRegression(std::size_t rows_per_block) : rows_per_block_(rows_per_block) {}
+
+  void add(const Row& phi, double y) {
+    moment_.noalias() += phi * phi.transpose();
+    projection_.noalias() += phi * y;
+    ++rows_;
+    if (++rows_in_block_ == rows_per_block_) end_block();
+  }
+
+  /// Call between records: rows on both sides are not consecutive.
+  void end_block() {
+    if (rows_in_block_ == 0) return;
+    blocks_.push_back({moment_, projection_});
+    moment_.setZero();
+    projection_.setZero();
+    rows_in_block_ = 0;
+  }
+
+  Regression solve() {
+    end_block();
+    return solve_blocks(blocks_, rows_);
+  }
+
+ private:
+  std::size_t rows_per_block_;
+  std::size_t rows_in_block_ = 0;
+  std::size_t rows_ = 0;
+  Eigen::Matrix<double, P, P> moment_ = Eigen::Matrix<double, P, P>::Zero();
+  Row projection_ = Row::Zero();
+  std::vector<NormalEquations> blocks_;
+};
+
+/// Rows in a block for this many rows at a time: at least 0.1 s, at most a fiftieth of the data, so that blocks outlast
+/// the residual's correlation and are enough in number for a variance.
+std::size_t rows_per_block(std::size_t rows, double row_period_s);
+
+}  // namespace host

@@ -1,0 +1,178 @@
+#include "host/identify/motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/zero_phase_filter.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kPaperDeadband_rad_s = 0.5;  // p. 1499
+constexpr double kHighestCutoff_Hz = 100.0;
+constexpr double kLowestCutoff_Hz = 10.0;
+
+/// Step of the encoder in shaft units (rad or m): the data sheet's, or else the smallest step that the record shows.
+double encoder_step(const Record& record, const sim::DataSheet& data) {
+  if (data.encoder_resolution > 0.0) return data.encoder_resolution / data.lead;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < record.size(); ++k) {
+    const double step = std::abs(record.x[k] - record.x[k - 1]);
+    if (step > 0.0) smallest = std::min(smallest, step);
+  }
+  return std::isfinite(smallest) ? smallest / data.lead : 0.0;
+}
+
+/// Variance of the acceleration that white sensor noise leaves below a cut-off: differentiated twice (position) or
+/// once.
+double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
+  const double rate_Hz = 1.0 / record.sample_period_s;
+  const double circle = 2.0 * std::numbers::pi;
+  if (record.has_position()) {
+    const double step = encoder_step(record, data);
+    return step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4) * std::pow(cutoff_Hz, 5) / 5.0;
+  }
+  return data.tach_noise_variance.value_or(0.0) * (2.0 / rate_Hz) * circle * circle * std::pow(cutoff_Hz, 3) / 3.0;
+}
+
+double sum_of_squares(const std::vector<double>& signal) {
+  double sum = 0.0;
+  for (const double value : signal) sum += value * value;
+  return sum;
+}
+
+void trim(std::vector<double>& signal, std::size_t margin) {
+  signal.erase(signal.end() - static_cast<std::ptrdiff_t>(margin), signal.end());
+  signal.erase(signal.begin(), signal.begin() + static_cast<std::ptrdiff_t>(margin));
+}
+
+/// Marks the samples whose speed keeps its sign and stays beyond the dead band for `reach` samples on both sides.
+std::vector<bool> slides(const std::vector<double>& speed, double deadband, std::size_t reach, std::size_t stride) {
+  std::vector<std::size_t> run(speed.size());  // samples of sliding up to and including this one
+  for (std::size_t k = 0; k < speed.size(); ++k) {
+    const bool same = k > 0 && speed[k] * speed[k - 1] > 0.0;
+    run[k] = std::abs(speed[k]) > deadband ? (same ? run[k - 1] : 0) + 1 : 0;
+  }
+  std::vector<bool> counts;
+  for (std::size_t k = 0; k < speed.size(); k += stride) {
+    counts.push_back(k >= reach && k + reach < speed.size() && run[k + reach] > 2 * reach);
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::vector<double> Motion::seen(const std::vector<double>& signal) const {
+  const std::vector<double> low = decimate(signal, decimation, sample_rate_Hz);
+  std::vector<double> kept;
+  kept.reserve(low.size());
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    if (counts[k]) kept.push_back(low[k]);
+  }
+  return kept;
+}
+
+std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data) {
+  std::vector<double> effort;
+  effort.reserve(record.size());
+  if (!record.u_V.empty()) {
+    const double per_volt = data.effort_per_volt();
+    if (!(per_volt > 0.0)) {
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format("{}: volts cannot be turned into {}; give {} in the [drive] table of --drive", record.path,
+                      data.kind == sim::DriveKind::rotary ? "torque" : "force",
+                      data.kind == sim::DriveKind::rotary ? "amplifier_gain_A_per_V and torque_constant_Nm_per_A"
+                                                          : "force_constant_N_per_V"));
+    }
+    for (const double u : record.u_V) effort.push_back(per_volt * std::clamp(u, -data.dac_limit_V, data.dac_limit_V));
+    return effort;
+  }
+  if (data.kind == sim::DriveKind::linear || !(data.torque_constant_Nm_per_A > 0.0)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: only a current was logged (i_A); that needs torque_constant_Nm_per_A of a rotary "
+                              "drive, or log u_V",
+                              record.path));
+  }
+  for (const double i : record.i_A) effort.push_back(data.torque_constant_Nm_per_A * i);
+  return effort;
+}
+
+std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
+  const auto low_pass = ZeroPhaseLowPass::butterworth(cutoff_Hz, 1.0 / record.sample_period_s);
+  if (!record.has_position()) return low_pass(record.w);
+  std::vector<double> speed = central_difference(low_pass(record.x), record.sample_period_s);
+  for (double& w : speed) w /= data.lead;
+  return speed;
+}
+
+double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data) {
+  constexpr double kNoiseShare = 0.01;
+  constexpr double kStep = 0.8;
+  const double rate_Hz = 1.0 / records.front().sample_period_s;
+  const double lowest = std::min(kLowestCutoff_Hz, rate_Hz / 50.0);
+  double cutoff = std::min(kHighestCutoff_Hz, rate_Hz / 10.0);
+  while (cutoff * kStep >= lowest) {
+    double noise = 0.0, signal = 0.0;
+    for (const Record& record : records) {
+      signal += sum_of_squares(central_difference(smooth_speed(record, data, cutoff), record.sample_period_s));
+      noise += acceleration_noise(record, data, cutoff) * static_cast<double>(record.size());
+    }
+    if (noise <= kNoiseShare * kNoiseShare * signal) break;
+    cutoff *= kStep;
+  }
+  return cutoff;
+}
+
+Motion prepare_motion(const Record& record, const sim::DataSheet& data, const MotionOptions& options) {
+  Motion motion;
+  motion.sample_rate_Hz = 1.0 / record.sample_period_s;
+  motion.cutoff_Hz = options.cutoff_Hz ? *options.cutoff_Hz : choose_cutoff({record}, data);
+  if (!(motion.cutoff_Hz > 0.0) || motion.cutoff_Hz >= 0.5 * motion.sample_rate_Hz) {
+    throw Failure(ExitCode::usage, fmt::format("--cutoff is {} Hz but must lie between 0 and half the sampling rate of "
+                                               "{} ({} Hz)",
+                                               motion.cutoff_Hz, record.path, 0.5 * motion.sample_rate_Hz));
+  }
+  motion.deadband = options.deadband.value_or(data.kind == sim::DriveKind::rotary ? kPaperDeadband_rad_s : 0.0);
+  const bool sliding_only = motion.deadband > 0.0;
+  const double samples_per_cutoff = motion.sample_rate_Hz / motion.cutoff_Hz;
+  const auto usual = sliding_only ? std::size_t{1} : static_cast<std::size_t>(std::lround(samples_per_cutoff));
+  motion.decimation = std::max<std::size_t>(1, options.decimation.value_or(usual));
+  if (static_cast<double>(record.size()) <
+      20.0 * std::max(samples_per_cutoff, static_cast<double>(motion.decimation))) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: {} samples are too few for a filter at {:g} Hz; record at least {:.2g} s",
+                              record.path, record.size(), motion.cutoff_Hz, 20.0 / motion.cutoff_Hz));
+  }
+
+  const auto low_pass = ZeroPhaseLowPass::butterworth(motion.cutoff_Hz, motion.sample_rate_Hz);
+  motion.t_s = record.t_s;
+  motion.travel = record.has_position() ? low_pass(record.x) : std::vector<double>(record.size());
+  motion.speed = smooth_speed(record, data, motion.cutoff_Hz);
+  motion.acceleration = central_difference(motion.speed, record.sample_period_s);
+  std::vector<double> effort = motor_effort(record, data);
+  if (sliding_only && !record.u_V.empty()) {
+    for (std::size_t k = effort.size() - 1; k > 0; --k) effort[k] = 0.5 * (effort[k] + effort[k - 1]);
+  }
+  motion.effort = low_pass(effort);
+
+  constexpr std::size_t kMargin = 2;  // two differences, each of which needs both neighbours
+  for (auto* signal : {&motion.t_s, &motion.travel, &motion.speed, &motion.acceleration, &motion.effort}) {
+    trim(*signal, kMargin);
+  }
+  if (sliding_only) {
+    const auto reach = static_cast<std::size_t>(std::ceil(0.5 * samples_per_cutoff)) + motion.decimation / 2;
+    motion.counts = slides(motion.speed, motion.deadband, reach, motion.decimation);
+  } else {
+    motion.counts.assign((motion.speed.size() + motion.decimation - 1) / motion.decimation, true);
+  }
+  return motion;
+}
+
+}  // namespace host

@@ -1,0 +1,56 @@
+// Speed, acceleration and effort of a record, free of delay: what the inverse model T = J dw/dt + friction(w) needs.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// How the signals are prepared. Two recipes, chosen by the dead band:
+/// * dead band > 0: only samples count that slide for sure, that is whose speed stays beyond the dead band as far as
+/// the
+///   filter reaches. The command is taken in the middle of its hold. No decimation.
+/// * dead band 0: every sample counts, as in published inverse-model identification (parallel filtering): all signals,
+///   the sign of the speed included, pass the same steep filter and are decimated. The command counts at its sample.
+struct MotionOptions {
+  std::optional<double> deadband;         ///< rad/s or m/s; default 0.5 rad/s (the paper, p. 1499), linear 0
+  std::optional<double> cutoff_Hz;        ///< default: choose_cutoff
+  std::optional<std::size_t> decimation;  ///< default 1 with a dead band, else sample rate / cut-off
+};
+
+/// One record's signals at its own rate, without the two samples at each end whose differences lack a neighbour.
+struct Motion {
+  double sample_rate_Hz = 0.0;
+  double cutoff_Hz = 0.0;
+  double deadband = 0.0;
+  std::size_t decimation = 1;
+  std::vector<double> t_s;
+  std::vector<double> travel;        ///< filtered, mm or m; zeros where the record has no position
+  std::vector<double> speed;         ///< from the position where there is one, else from the tachometer
+  std::vector<double> acceleration;  ///< rad/s^2 or m/s^2
+  std::vector<double> effort;        ///< of the motor, filtered, Nm or N
+  std::vector<bool> counts;          ///< by decimated sample: whether it may be used
+
+  /// A signal of full rate passed through what the regression sees: decimated, and only the samples that count.
+  std::vector<double> seen(const std::vector<double>& signal) const;
+};
+
+/// Effort of the motor from the record's command (limited by the converter) or current, unfiltered.
+/// Throws Failure(bad_input) when the drive's constants are missing.
+std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data);
+
+/// The record's shaft speed from its encoder after the zero-phase filter, or from the tachometer without an encoder.
+std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz);
+
+/// Cut-off for these records: a tenth of the sampling rate, at most 100 Hz (above lie resonances, not the rigid axis),
+/// lowered until the acceleration noise that the sensor leaves (encoder steps, tachometer noise) is below 1 % of the
+/// acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
+double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data);
+
+/// Prepares one record. Throws Failure(bad_input) for a record that is too short for the filter.
+Motion prepare_motion(const Record& record, const sim::DataSheet& data, const MotionOptions& options);
+
+}  // namespace host

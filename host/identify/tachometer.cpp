@@ -1,0 +1,96 @@
+#include "host/identify/tachometer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace host {
+
+namespace {
+
+double smallest_step(const Record& record) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < record.size(); ++k) {
+    const double step = std::abs(record.x[k] - record.x[k - 1]);
+    if (step > 0.0) smallest = std::min(smallest, step);
+  }
+  return smallest;
+}
+
+bool has_both_sensors(const std::vector<Record>& records) {
+  return std::ranges::all_of(records, [](const Record& r) { return r.has_position() && r.has_speed(); });
+}
+
+}  // namespace
+
+std::optional<TachometerCalibration> calibrate_tachometer(const std::vector<Record>& records,
+                                                          const sim::DataSheet& data) {
+  constexpr double kWindow_s = 0.1;
+  constexpr double kLeastSteps = 100.0;
+  if (records.empty() || !has_both_sensors(records)) return std::nullopt;
+  double travelled = 0.0, step = std::numeric_limits<double>::infinity();
+  std::size_t windows = 0;
+  for (const Record& record : records) {
+    const auto [low, high] = std::ranges::minmax(record.x);
+    travelled = std::max(travelled, high - low);
+    step = std::min(step, smallest_step(record));
+    windows += static_cast<std::size_t>(static_cast<double>(record.size()) * record.sample_period_s / kWindow_s);
+  }
+  if (data.encoder_resolution > 0.0) step = data.encoder_resolution;
+  if (!(travelled >= kLeastSteps * step)) return std::nullopt;
+
+  BlockedRegression<2> regression(rows_per_block(windows, kWindow_s));
+  for (const Record& record : records) {
+    const auto length = static_cast<std::size_t>(std::max(1.0, std::round(kWindow_s / record.sample_period_s)));
+    for (std::size_t start = 0; start + length < record.size(); start += length) {
+      double integral = 0.5 * (record.w[start] + record.w[start + length]);
+      for (std::size_t k = start + 1; k < start + length; ++k) integral += record.w[k];
+      const double angle = (record.x[start + length] - record.x[start]) / data.lead;
+      regression.add({angle, record.sample_period_s * static_cast<double>(length)}, integral * record.sample_period_s);
+    }
+    regression.end_block();
+  }
+  const Regression found = regression.solve();
+  if (!std::isfinite(found.condition_number)) return std::nullopt;
+  const auto estimate = [&](Eigen::Index k) {
+    const double half = found.t_quantile * std::sqrt(found.covariance(k, k));
+    return Estimate{found.parameters(k), {found.parameters(k) - half, found.parameters(k) + half}};
+  };
+  return TachometerCalibration{estimate(0), estimate(1)};
+}
+
+void apply_calibration(const TachometerCalibration& calibration, std::vector<Record>& records) {
+  for (Record& record : records) {
+    for (double& w : record.w) w = (w - calibration.offset.value) / calibration.gain.value;
+  }
+}
+
+std::optional<double> standstill_variance(const std::vector<Record>& records) {
+  constexpr double kStretch_s = 0.2;
+  constexpr std::size_t kFewest = 3;
+  if (records.empty() || !has_both_sensors(records)) return std::nullopt;
+  double squares = 0.0, degrees = 0.0;
+  std::size_t stretches = 0;
+  for (const Record& record : records) {
+    const auto length = static_cast<std::size_t>(std::max(2.0, std::round(kStretch_s / record.sample_period_s)));
+    const double step = smallest_step(record);
+    for (std::size_t start = 0; start + length <= record.size(); start += length) {
+      const auto [low, high] = std::minmax_element(record.x.begin() + static_cast<std::ptrdiff_t>(start),
+                                                   record.x.begin() + static_cast<std::ptrdiff_t>(start + length));
+      if (*high - *low > 1.5 * step) continue;
+      double sum = 0.0, sum_of_squares = 0.0;
+      for (std::size_t k = start; k < start + length; ++k) {
+        sum += record.w[k];
+        sum_of_squares += record.w[k] * record.w[k];
+      }
+      const double n = static_cast<double>(length);
+      squares += sum_of_squares - sum * sum / n;
+      degrees += n - 1.0;
+      ++stretches;
+    }
+  }
+  if (stretches < kFewest) return std::nullopt;
+  return squares / degrees;
+}
+
+}  // namespace host

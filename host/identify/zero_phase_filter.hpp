@@ -1,0 +1,44 @@
+// Low-pass filters without delay: run forwards and backwards.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace host {
+
+/// A low-pass applied in both directions, so that nothing is shifted in time. Each direction starts from the steady
+/// state of an odd extension of the signal: levels and ramps pass unchanged up to the ends.
+/// Cut-offs in Hz, 0 < cutoff < sample rate / 2; else std::invalid_argument.
+class ZeroPhaseLowPass {
+ public:
+  /// 4th-order Butterworth: -3 dB at the cut-off for one direction, -6 dB for both.
+  static ZeroPhaseLowPass butterworth(double cutoff_Hz, double sample_rate_Hz);
+
+  /// 8th-order Chebyshev of 0.05 dB ripple: flat up to its cut-off and steep beyond, the usual guard before decimation.
+  static ZeroPhaseLowPass chebyshev(double cutoff_Hz, double sample_rate_Hz);
+
+  /// Filtered signal of the same length. Any length.
+  std::vector<double> operator()(std::span<const double> signal) const;
+
+ private:
+  struct Section {
+    double b0, b1, b2, a1, a2;
+  };
+  struct PolePair {
+    double real, imaginary;  ///< of the analogue prototype with cut-off 1 rad/s, real < 0
+  };
+  ZeroPhaseLowPass(std::span<const PolePair> poles, double cutoff_Hz, double sample_rate_Hz);
+  void run_once(std::vector<double>& signal) const;
+
+  std::vector<Section> sections_;
+  std::size_t extension_;
+};
+
+/// Anti-alias filter (Chebyshev at 0.8 of the new Nyquist rate), then every `factor`-th sample from the first.
+/// A factor of 1 returns the signal unchanged.
+std::vector<double> decimate(std::span<const double> signal, std::size_t factor, double sample_rate_Hz);
+
+/// (y[k+1] - y[k-1]) / (2 Ts), in 1/s; one-sided at both ends.
+std::vector<double> central_difference(std::span<const double> signal, double sample_period_s);
+
+}  // namespace host
