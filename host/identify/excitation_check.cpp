@@ -1,0 +1,132 @@
+#include "host/identify/excitation_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kLeastSliding_s = 0.1;
+
+const char* speed_unit(const sim::DataSheet& data) { return data.kind == sim::DriveKind::rotary ? "rad/s" : "m/s"; }
+
+double percentile_of_magnitude(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  for (double& value : values) value = std::abs(value);
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, rank);
+  return *rank;
+}
+
+/// What to do instead, in volts where the command is known.
+std::string better_excitation(const ExcitationSummary& summary, const sim::DataSheet& data) {
+  std::string amplitude = "larger steps";
+  if (summary.peak_command_V > 0.0) {
+    const double suggested = std::min(data.dac_limit_V, 2.0 * summary.peak_command_V);
+    amplitude = summary.peak_command_V < 0.99 * data.dac_limit_V
+                    ? fmt::format(
+                          "steps of about ±{:.2g} V (twice what was tried; the converter gives {:g} V), larger "
+                          "still if the axis does not break away",
+                          suggested, data.dac_limit_V)
+                    : fmt::format(
+                          "the full ±{:g} V; if the axis stands even then, check drive enable, brake and "
+                          "amplifier",
+                          data.dac_limit_V);
+  }
+  return fmt::format(
+      "Excite it with {}, in both directions, each held for 0.1 s or more so that several speeds well above {:g} {} "
+      "are "
+      "reached",
+      amplitude, summary.threshold, speed_unit(data));
+}
+
+}  // namespace
+
+ExcitationSummary summarise_excitation(const std::vector<Record>& records, const std::vector<Motion>& motions,
+                                       const sim::DataSheet& data) {
+  ExcitationSummary summary;
+  std::vector<double> efforts;
+  for (const Motion& motion : motions) {
+    for (const double w : motion.speed) summary.top_speed = std::max(summary.top_speed, std::abs(w));
+    efforts.insert(efforts.end(), motion.effort.begin(), motion.effort.end());
+  }
+  for (const Record& record : records) {
+    for (const double u : record.u_V) summary.peak_command_V = std::max(summary.peak_command_V, std::abs(u));
+  }
+  summary.peak_effort = percentile_of_magnitude(std::move(efforts), 0.99);
+  // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can fake in 0.1 s.
+  const double fake = data.encoder_resolution / data.lead / kLeastSliding_s * 10.0;
+  summary.threshold = motions.front().deadband;
+  if (!(summary.threshold > 0.0)) summary.threshold = std::max(0.01 * summary.top_speed, fake);
+  for (const Motion& motion : motions) {
+    for (const double w : motion.speed) {
+      if (w > summary.threshold) summary.forward_s += 1.0 / motion.sample_rate_Hz;
+      if (w < -summary.threshold) summary.backward_s += 1.0 / motion.sample_rate_Hz;
+    }
+  }
+  return summary;
+}
+
+void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data) {
+  const bool forward = summary.forward_s >= kLeastSliding_s, backward = summary.backward_s >= kLeastSliding_s;
+  if (forward && backward) return;
+  const char* what = forward || backward ? "the axis moved in one direction only" : "the axis did not move enough";
+  throw Failure(
+      ExitCode::refused,
+      fmt::format("{}: {:.2f} s forward and {:.2f} s backward beyond {:g} {}, at commands up to {:.2g} V. {}.", what,
+                  summary.forward_s, summary.backward_s, summary.threshold, speed_unit(data), summary.peak_command_V,
+                  better_excitation(summary, data)));
+}
+
+void require_determined(const RigidEstimate& estimate, const ExcitationSummary& summary, const sim::DataSheet& data) {
+  const bool determined = std::isfinite(estimate.condition_number) && estimate.inertia.ci95[0] > 0.0;
+  if (determined) return;
+  throw Failure(
+      ExitCode::refused,
+      fmt::format("the record does not determine the inertia (condition number {:.3g}): the speed changes too "
+                  "little or too seldom. {}.",
+                  estimate.condition_number, better_excitation(summary, data)));
+}
+
+std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const ExcitationSummary& summary,
+                                        const sim::DataSheet& data) {
+  // At the paper's Ku = 5 friction takes 47 % (x) and 57 % (y) of the motor's effort, at 7.5 it takes 32 % and 38 %.
+  constexpr double kDominantShare = 0.4;
+  constexpr double kWideInterval = 0.05;
+  constexpr double kPoorCondition = 50.0;  // a relative error of 2 % in the signals may then pass unattenuated
+  std::vector<std::string> warnings;
+  if (estimate.positive && estimate.negative) {
+    const double friction = std::max(estimate.positive->value, -estimate.negative->value);
+    if (friction > kDominantShare * summary.peak_effort) {
+      warnings.push_back(fmt::format(
+          "static friction dominates: friction takes {:.0f} % of the motor's largest effort, so the estimates are "
+          "biased. {}.",
+          100.0 * friction / summary.peak_effort, better_excitation(summary, data)));
+    }
+  }
+  if (estimate.inertia.half_width() > kWideInterval * estimate.inertia.value) {
+    warnings.push_back(
+        fmt::format("the inertia is known to ±{:.0f} % only: use stronger steps in both directions, or "
+                    "more records",
+                    100.0 * estimate.inertia.half_width() / estimate.inertia.value));
+  }
+  if (estimate.condition_number > kPoorCondition) {
+    warnings.push_back(
+        fmt::format("the record hardly separates the parameters (condition number {:.0f}): vary amplitude "
+                    "and duration of the steps",
+                    estimate.condition_number));
+  }
+  if (estimate.viscous.ci95[1] < 0.0) {
+    warnings.push_back(
+        "viscous friction comes out negative, which no drive has: friction falls with speed (Stribeck), or the sign or "
+        "the scale of a channel is off");
+  }
+  return warnings;
+}
+
+}  // namespace host

@@ -1,0 +1,155 @@
+#include "host/identify/identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/inverse_model.hpp"
+
+namespace host {
+
+namespace {
+
+void require_same_rate(const std::vector<Record>& records) {
+  if (records.empty()) throw Failure(ExitCode::usage, "no record was given");
+  for (const Record& record : records) {
+    if (std::abs(record.sample_period_s - records.front().sample_period_s) > 1e-6 * record.sample_period_s) {
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format("{}: sampled every {:g} s but {} every {:g} s; records that are stacked need one rate "
+                      "(axistool import --resample)",
+                      record.path, record.sample_period_s, records.front().path, records.front().sample_period_s));
+    }
+  }
+}
+
+std::string origin_of(const std::vector<Record>& records) {
+  std::string origin;
+  for (const Record& record : records) origin += (origin.empty() ? "" : ", ") + record.path;
+  return origin;
+}
+
+void set_entry(sim::DriveDescription& model, const std::string& kind, const std::string& from,
+               const std::vector<std::pair<std::string, Estimate>>& values) {
+  sim::EffectEntry entry{.kind = kind, .parameters = {}, .ci95 = {}, .from = from};
+  for (const auto& [id, estimate] : values) {
+    entry.parameters[id] = estimate.value;
+    entry.ci95[id] = estimate.ci95;
+  }
+  model.effects.push_back(std::move(entry));
+}
+
+/// One level for both directions from the two, as the drive's description has it.
+Estimate common_level(const Estimate& positive, const Estimate& negative) {
+  const double value = 0.5 * (positive.value - negative.value);
+  const double half = 0.5 * std::hypot(positive.half_width(), negative.half_width());
+  return {value, {value - half, value + half}};
+}
+
+sim::DriveDescription model_from(const sim::DriveDescription& drive, const RigidEstimate& estimate,
+                                 const std::string& from) {
+  sim::DriveDescription model;
+  model.name = drive.name;
+  model.data = drive.data;
+  set_entry(model, "inertia", from, {{"J", estimate.inertia}});
+  set_entry(model, "viscous", from, {{"B", estimate.viscous}});
+  if (estimate.positive && estimate.negative) {
+    const sim::EffectEntry* before = drive.find("coulomb");
+    if (before != nullptr && before->has("level")) {
+      set_entry(model, "coulomb", from, {{"level", common_level(*estimate.positive, *estimate.negative)}});
+    } else {
+      set_entry(model, "coulomb", from, {{"positive", *estimate.positive}, {"negative", *estimate.negative}});
+    }
+  }
+  return model;
+}
+
+void warn_of_tachometer(Identification& result, bool corrected) {
+  if (!result.tachometer) return;
+  constexpr double kGainOff = 0.002;   // moves B by several per cent
+  constexpr double kOffsetOff = 0.05;  // rad/s: a tenth of the paper's dead band
+  const auto [gain, offset] = *result.tachometer;
+  const bool gain_off = std::abs(gain.value - 1.0) > std::max(kGainOff, gain.half_width());
+  const bool offset_off = result.model.data.kind == sim::DriveKind::rotary &&
+                          std::abs(offset.value) > std::max(kOffsetOff, offset.half_width());
+  if (!gain_off && !offset_off) return;
+  result.warnings.push_back(fmt::format(
+      "the tachometer disagrees with the encoder: gain {:.4f} ± {:.4f}, offset {:+.3g} ± {:.2g}; {}. Re-scale it, or "
+      "add "
+      "the effects tach_gain and tach_offset",
+      gain.value, gain.half_width(), offset.value, offset.half_width(),
+      corrected ? "corrected here before the estimate" : "the estimates take the record as it is and carry the error"));
+}
+
+std::string dropped_effects(const sim::DriveDescription& drive) {
+  std::string kinds;
+  for (const sim::EffectEntry& entry : drive.effects) {
+    if (entry.kind == "inertia" || entry.kind == "viscous" || entry.kind == "coulomb") continue;
+    kinds += (kinds.empty() ? "" : ", ") + entry.kind;
+  }
+  return kinds;
+}
+
+}  // namespace
+
+std::string_view method_name(IdentificationMethod method) {
+  switch (method) {
+    case IdentificationMethod::simple_ls:
+      return "ls";
+    case IdentificationMethod::unbiased_ls:
+      return "unbiased-ls";
+    case IdentificationMethod::sliding_ls:
+      return "sliding-ls";
+  }
+  return "";
+}
+
+IdentificationMethod default_method(const std::vector<Record>& records) {
+  const bool tachometer = std::ranges::all_of(records, &Record::has_speed);
+  return tachometer ? IdentificationMethod::sliding_ls : IdentificationMethod::unbiased_ls;
+}
+
+Identification identify_drive(const std::vector<Record>& given, const sim::DriveDescription& drive,
+                              IdentificationMethod method, const MotionOptions& options) {
+  require_same_rate(given);
+  Identification result;
+  result.method = method;
+  result.tachometer = calibrate_tachometer(given, drive.data);
+  result.tach_noise_variance = standstill_variance(given);
+  std::vector<Record> records = given;
+  const bool corrected = method == IdentificationMethod::sliding_ls && result.tachometer.has_value();
+  if (corrected) apply_calibration(*result.tachometer, records);
+
+  MotionOptions settled = options;
+  if (!settled.cutoff_Hz) settled.cutoff_Hz = choose_cutoff(records, drive.data);
+  std::vector<Motion> motions;
+  for (const Record& record : records) motions.push_back(prepare_motion(record, drive.data, settled));
+  result.cutoff_Hz = motions.front().cutoff_Hz;
+  result.decimation = motions.front().decimation;
+  result.excitation = summarise_excitation(records, motions, drive.data);
+  require_motion(result.excitation, drive.data);
+
+  const bool tachometer = std::ranges::all_of(records, &Record::has_speed);
+  const Coulomb coulomb = method == IdentificationMethod::simple_ls ? Coulomb::left_out : Coulomb::estimated;
+  result.estimate = tachometer && method != IdentificationMethod::sliding_ls
+                        ? discrete_least_squares(records, drive.data, motions.front().deadband, coulomb)
+                        : inverse_least_squares(motions, coulomb);
+  require_determined(result.estimate, result.excitation, drive.data);
+  result.warnings = judge_estimate(result.estimate, result.excitation, drive.data);
+
+  result.model = model_from(drive, result.estimate, origin_of(given));
+  if (result.tach_noise_variance && tachometer) result.model.data.tach_noise_variance = result.tach_noise_variance;
+  result.relative_error = relative_error(result.model, records, settled);
+  warn_of_tachometer(result, corrected);
+  if (const std::string kinds = dropped_effects(drive); !kinds.empty()) {
+    result.warnings.push_back(
+        fmt::format("effects of the drive's file that are not part of this fit were not taken over: "
+                    "{}; add them again with axistool add",
+                    kinds));
+  }
+  return result;
+}
+
+}  // namespace host

@@ -1,0 +1,45 @@
+// From records to a model: inertia, viscous and Coulomb friction of a drive, its tachometer and its noise.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/identify/excitation_check.hpp"
+#include "host/identify/tachometer.hpp"
+
+namespace host {
+
+enum class IdentificationMethod {
+  simple_ls,    ///< eqs. (20)-(25): friction left out
+  unbiased_ls,  ///< eqs. (28)-(40): Coulomb friction estimated too. Encoder-only drives: all samples of the inverse
+                ///< model
+  sliding_ls,   ///< inverse model on the samples that slide for sure: free of the bias from tachometer noise
+};
+
+std::string_view method_name(IdentificationMethod method);  ///< "ls", "unbiased-ls", "sliding-ls"
+
+/// The method where the user names none: sliding_ls with a tachometer, unbiased_ls with an encoder only.
+IdentificationMethod default_method(const std::vector<Record>& records);
+
+struct Identification {
+  IdentificationMethod method{};
+  sim::DriveDescription model;  ///< data sheet plus inertia, viscous, coulomb with intervals and origin
+  RigidEstimate estimate;
+  double relative_error = 0.0;  ///< of the inverse model on the same records
+  double cutoff_Hz = 0.0;       ///< of the zero-phase filter
+  std::size_t decimation = 1;
+  ExcitationSummary excitation;
+  std::optional<TachometerCalibration> tachometer;
+  std::optional<double> tach_noise_variance;  ///< measured at standstill (46)
+  std::vector<std::string> warnings;
+};
+
+/// Identifies from one or several records of the same drive and sampling period. `drive` gives the data sheet; a base
+/// effect that it has in the one-level form keeps that form, other effects are not taken over (a warning says so).
+/// sliding_ls corrects the tachometer by the encoder first; the paper's methods take the records as they are.
+/// Throws Failure(refused) for want of excitation, Failure(bad_input) for records that do not fit the drive.
+Identification identify_drive(const std::vector<Record>& records, const sim::DriveDescription& drive,
+                              IdentificationMethod method, const MotionOptions& options = {});
+
+}  // namespace host
