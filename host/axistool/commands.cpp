@@ -10,6 +10,9 @@ void end_with(host::ExitCode code) { ending = code; }
 
 int exit_status() { return static_cast<int>(ending); }
 
-void add_all_commands(CLI::App&) {}
+void add_all_commands(CLI::App& app) {
+  add_identify(app);
+  add_design(app);
+}
 
 }  // namespace axistool

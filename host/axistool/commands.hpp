@@ -11,6 +11,9 @@ namespace axistool {
 /// Registers every command with the program's option parser.
 void add_all_commands(CLI::App& app);
 
+void add_identify(CLI::App& app);
+void add_design(CLI::App& app);
+
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);
 

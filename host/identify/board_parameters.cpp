@@ -21,6 +21,15 @@ struct Units {
 constexpr Units kRotaryUnits{"mm", "rad/s", "Nm", "kg m^2", "Nm s/rad"};
 constexpr Units kLinearUnits{"m", "m/s", "N", "kg", "N s/m"};
 
+/// "Nm", "rad/s" -> "Nm/(rad/s)"; equal units cancel.
+std::string per(const std::string& numerator, const std::string& denominator) {
+  if (numerator == denominator) return "";
+  const auto grouped = [](const std::string& unit) {
+    return unit.find('/') == std::string::npos ? unit : "(" + unit + ")";
+  };
+  return grouped(numerator) + "/" + grouped(denominator);
+}
+
 bool is_bare_key(const std::string& name) {
   return !name.empty() &&
          std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
@@ -38,16 +47,17 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
 
   std::vector<BoardParameter> list = {
       {"drive.sample_period", model.data.sample_period_s, "s", "control period that the gains are designed for"},
-      {"drive.lead", model.data.lead, travel + "/(" + speed + " s)", "travel per shaft angle, rg"},
+      {"drive.lead", model.data.lead, model.data.kind == sim::DriveKind::rotary ? "mm/rad" : "",
+       "travel per shaft angle, rg"},
       {"drive.encoder_resolution", model.data.encoder_resolution, travel, "travel per count"},
       {"drive.dac_limit", model.data.dac_limit_V, "V", "largest command, both signs"},
-      {"drive.effort_per_volt", design.axis.effort_per_volt, effort + "/V", "Ka*Kt"},
+      {"drive.effort_per_volt", design.axis.effort_per_volt, per(effort, "V"), "Ka*Kt"},
       {"drive.inertia", design.axis.inertia, unit.inertia, "J"},
       {"drive.viscous", design.axis.viscous, unit.viscous, "B"},
-      {"model.a12", A(0, 1), travel + "/(" + speed + ")", "travel in a period per speed, eq. (7)"},
+      {"model.a12", A(0, 1), per(travel, speed), "travel in a period per speed, eq. (7)"},
       {"model.a22", A(1, 1), "", "pole pwd, eq. (6)"},
-      {"model.b1", B(0), travel + "/V", "travel in a period per command"},
-      {"model.b2", B(1), speed + "/V", "speed gained in a period per command"},
+      {"model.b1", B(0), per(travel, "V"), "travel in a period per command"},
+      {"model.b2", B(1), per(speed, "V"), "speed gained in a period per command"},
   };
   const char* const states[] = {"position", "speed", "disturbance"};
   const std::string state_units[] = {travel, speed, "V"};
@@ -56,12 +66,12 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 2; ++column) {
       list.push_back({fmt::format("kalman.k{}{}", row + 1, column + 1), gain(row, column),
-                      fmt::format("{}/({})", state_units[row], sensor_units[column]),
+                      per(state_units[row], sensor_units[column]),
                       fmt::format("correction of the {} by the {}, eq. (43)", states[row], sensors[column])});
     }
   }
-  list.push_back({"feedback.k1", design.Kc(0), "V/" + travel, "on the position error, eq. (50)"});
-  list.push_back({"feedback.k2", design.Kc(1), "V/(" + speed + ")", "on the speed error, eq. (50)"});
+  list.push_back({"feedback.k1", design.Kc(0), per("V", travel), "on the position error, eq. (50)"});
+  list.push_back({"feedback.k2", design.Kc(1), per("V", speed), "on the speed error, eq. (50)"});
   for (const bool forward : {true, false}) {
     const FrictionSideLaw& side = forward ? friction.positive : friction.negative;
     const char* sign = forward ? "positive" : "negative";

@@ -182,7 +182,8 @@ TEST(Design, BoardParametersNameEveryGainWithItsUnit) {
   const host::AxisDesign design = host::design_axis(model_of(kX), printed_options(kX));
   const std::string toml = host::board_parameters_toml(model_of(kX), design);
   EXPECT_THAT(toml, testing::HasSubstr("format = \"axis-params/1\""));
-  EXPECT_THAT(toml, testing::HasSubstr("[x.kalman]\nk11 = 0.34611427  # mm/(mm)"));
+  EXPECT_THAT(toml, testing::HasSubstr("[x.kalman]\nk11 = 0.34611427  # correction"));
+  EXPECT_THAT(toml, testing::HasSubstr("k21 = 65.0704645  # (rad/s)/mm: correction"));
   EXPECT_THAT(toml, testing::HasSubstr("k1 = 48.4440533  # V/mm"));
 }
 

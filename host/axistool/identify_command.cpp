@@ -1,0 +1,142 @@
+// axistool identify: inertia, viscous and Coulomb friction from records.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/axistool/load_records.hpp"
+#include "host/identify/identification_json.hpp"
+#include "host/identify/paper_drives.hpp"
+#include "host/model/model_file.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct IdentifyArguments {
+  std::vector<std::string> records;
+  std::string output, drive, method, json;
+  host::MotionOptions options;
+};
+
+constexpr const char* kDriveExample = R"(  format = "axis-model/1"
+  name = "stage"
+  [drive]
+  kind = "linear"
+  force_constant_N_per_V = 35.1507
+  sample_period_s = 0.001
+A rotary drive has amplifier_gain_A_per_V, torque_constant_Nm_per_A and lead_mm_per_rad in place of the force constant.)";
+
+/// The data sheet to work with: the file that was named, or the paper's drive that the record names.
+sim::DriveDescription drive_for(const IdentifyArguments& arguments, std::vector<std::string>& warnings) {
+  if (!arguments.drive.empty()) return host::read_drive(arguments.drive);
+  const host::Record first = host::read_record(arguments.records.front());
+  const auto known = first.kind == sim::DriveKind::rotary ? host::paper_drive(first.drive) : std::nullopt;
+  if (!known) {
+    throw host::Failure(
+        host::ExitCode::usage,
+        fmt::format("{}: which drive is this? Volts become {} only with its data sheet. Write one and "
+                    "give it with --drive DRIVE.toml, for example:\n{}",
+                    first.path, first.kind == sim::DriveKind::linear ? "newtons" : "torque", kDriveExample));
+  }
+  warnings.push_back(
+      fmt::format("no --drive was given: taking the data sheet of the paper's drive {} (Ka = {:g} A/V, "
+                  "Kt = {:g} Nm/A), which the record names",
+                  first.drive, known->data.amplifier_gain_A_per_V, known->data.torque_constant_Nm_per_A));
+  return *known;
+}
+
+host::IdentificationMethod method_for(const std::string& name, const std::vector<host::Record>& records) {
+  using enum host::IdentificationMethod;
+  for (const auto method : {simple_ls, unbiased_ls, sliding_ls}) {
+    if (name == host::method_name(method)) return method;
+  }
+  return host::default_method(records);
+}
+
+void print_row(const char* name, const char* unit, const host::Estimate& estimate) {
+  fmt::print("  {:<22} {:>12.6g}  [{:.6g}, {:.6g}] {}\n", name, estimate.value, estimate.ci95[0], estimate.ci95[1],
+             unit);
+}
+
+void print_table(const host::Identification& found, const std::string& output) {
+  const bool rotary = found.model.data.kind == sim::DriveKind::rotary;
+  const char* effort = rotary ? "Nm" : "N";
+  const char* speed = rotary ? "rad/s" : "m/s";
+  fmt::print("{} on {} samples, zero-phase filter at {:.3g} Hz\n\n", host::method_name(found.method),
+             found.estimate.rows, found.cutoff_Hz);
+  fmt::print("  {:<22} {:>12}  95 % interval\n", "parameter", "value");
+  print_row(rotary ? "inertia J" : "mass M", rotary ? "kg m^2" : "kg", found.estimate.inertia);
+  print_row("viscous B", rotary ? "Nm s/rad" : "N s/m", found.estimate.viscous);
+  if (found.estimate.positive) print_row("Coulomb forward", effort, *found.estimate.positive);
+  if (found.estimate.negative) print_row("Coulomb backward", effort, *found.estimate.negative);
+  if (found.tachometer) {
+    print_row("tachometer gain", "", found.tachometer->gain);
+    print_row("tachometer offset", speed, found.tachometer->offset);
+  }
+  if (found.tach_noise_variance) {
+    fmt::print("  {:<22} {:>12.4g}  ({})^2, at standstill\n", "tachometer variance", *found.tach_noise_variance, speed);
+  }
+  fmt::print("\n  residual {:.3g} % of the {}; condition number {:.3g}; top speed {:.3g} {}\n",
+             100.0 * found.relative_error, rotary ? "torque" : "force", found.estimate.condition_number,
+             found.excitation.top_speed, speed);
+  for (const std::string& warning : found.warnings) fmt::print("\nwarning: {}\n", warning);
+  if (!output.empty()) {
+    fmt::print(
+        "\nModel written to {0}. Next: axistool friction RECORD --model {0} -o {0} (jogs at constant speeds), or\n"
+        "axistool compare {0} RECORD (a record that was not fitted).\n",
+        output);
+  }
+}
+
+void run(const IdentifyArguments& arguments) {
+  std::vector<std::string> warnings;
+  const sim::DriveDescription drive = drive_for(arguments, warnings);
+  const std::vector<host::Record> records = load_records(arguments.records, drive.data);
+  host::Identification found =
+      host::identify_drive(records, drive, method_for(arguments.method, records), arguments.options);
+  found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+  if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
+  if (!arguments.json.empty()) write_json(host::identification_json(found), arguments.json);
+  if (arguments.json != "-") print_table(found, arguments.output);
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app) {
+  auto arguments = std::make_shared<IdentifyArguments>();
+  CLI::App* command = app.add_subcommand("identify", "inertia, viscous and Coulomb friction from records -> model");
+  command->add_option("RECORD", arguments->records, "records of one drive (axis-record/1); several are stacked")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "model to write (axis-model/1)");
+  command->add_option("--drive", arguments->drive, "data sheet of the drive: a model file, with or without effects");
+  command
+      ->add_option("--method", arguments->method,
+                   "ls: friction left out; unbiased-ls: the paper's, with Coulomb friction; sliding-ls: inverse model "
+                   "on the samples that slide for sure. Default sliding-ls with a tachometer, unbiased-ls without")
+      ->check(CLI::IsMember({"unbiased-ls", "ls", "sliding-ls"}));
+  command
+      ->add_option("--deadband", arguments->options.deadband,
+                   "speed that counts as standstill, rad/s (default 0.5) or m/s (default 0: every sample counts)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--cutoff", arguments->options.cutoff_Hz,
+                      "of the zero-phase filter, Hz. Default: a tenth of the sampling rate, at most 100 Hz, lowered "
+                      "until sensor noise is below 1 % of the acceleration");
+  command
+      ->add_option("--decimation", arguments->options.decimation,
+                   "use every n-th filtered sample. Default: sampling rate / cut-off where every sample counts, else 1")
+      ->check(CLI::PositiveNumber);
+  add_json_option(*command, arguments->json);
+  command->footer(
+      "Examples:\n"
+      "  axistool identify steps.csv -o x.toml --drive x-drive.toml\n"
+      "  axistool identify a.csv b.csv -o x.toml --drive x-drive.toml --method unbiased-ls --json -\n"
+      "Good excitation: open-loop steps in both directions, well above breakaway, of several amplitudes and "
+      "durations.\n"
+      "Intervals hold for coloured residuals (block sums with Student's t). Exit code 8: the axis did not move "
+      "enough.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,96 @@
+// Open-loop steps on a plant that obeys Table 1 of the paper, at the paper's seven scalings of the input.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/excitation.hpp"
+#include "host/identify/identification.hpp"
+#include "host/identify/paper_drives.hpp"
+#include "tests/host/identify/plant_record.hpp"
+
+namespace {
+
+using host::IdentificationMethod;
+using identify_test::open_loop_record;
+using testing::HasSubstr;
+
+// Table 1, typed again here so that a slip in the drive's description cannot cancel out.
+struct Truth {
+  const char* axis;
+  double J, B, coulomb[2];
+};
+constexpr Truth kTruths[] = {{"x", 7.65e-3, 0.0321, {2.205, -1.656}}, {"y", 9.79e-3, 0.0287, {3.058, -2.739}}};
+
+sim::DriveDescription data_sheet_of(const char* axis) {
+  sim::DriveDescription drive = *host::paper_drive(axis);
+  drive.effects.clear();
+  return drive;
+}
+
+host::Record steps(const char* axis, double Ku) {
+  return open_loop_record(*host::paper_drive(axis), host::doublet_series(Ku * host::kStepUnit_V, 0.001));
+}
+
+class StepIdentification : public testing::TestWithParam<Truth> {};
+
+TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
+  for (const double Ku : {1.0, 2.5}) {
+    for (const auto method :
+         {IdentificationMethod::simple_ls, IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
+      try {
+        host::identify_drive({steps(GetParam().axis, Ku)}, data_sheet_of(GetParam().axis), method);
+        FAIL() << "accepted Ku = " << Ku;
+      } catch (const host::Failure& failure) {
+        EXPECT_EQ(failure.code, host::ExitCode::refused);
+        EXPECT_THAT(failure.what(), HasSubstr("did not move enough"));
+        EXPECT_THAT(failure.what(), HasSubstr("both directions"));
+        EXPECT_THAT(failure.what(), HasSubstr(Ku == 1.0 ? "±0.6 V" : "±1.5 V"));
+      }
+    }
+  }
+}
+
+TEST_P(StepIdentification, WarnsWhereStaticFrictionDominates) {
+  for (const auto method : {IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
+    const auto found = host::identify_drive({steps(GetParam().axis, 5.0)}, data_sheet_of(GetParam().axis), method);
+    EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("static friction dominates")));
+  }
+}
+
+TEST_P(StepIdentification, UnbiasedEstimateHoldsFromKu10AndSimpleOneIsWorse) {
+  const Truth& truth = GetParam();
+  for (const double Ku : {10.0, 12.5, 15.0}) {
+    SCOPED_TRACE(Ku);
+    const host::Record record = steps(truth.axis, Ku);
+    const auto unbiased = host::identify_drive({record}, data_sheet_of(truth.axis), IdentificationMethod::unbiased_ls);
+    EXPECT_THAT(unbiased.warnings, testing::Not(testing::Contains(HasSubstr("static friction"))));
+    EXPECT_NEAR(unbiased.estimate.inertia.value, truth.J, 0.02 * truth.J);
+    EXPECT_NEAR(unbiased.estimate.viscous.value, truth.B, 0.20 * truth.B);
+    EXPECT_NEAR(unbiased.estimate.positive->value, truth.coulomb[0], 0.12 * truth.coulomb[0]);
+    EXPECT_NEAR(unbiased.estimate.negative->value, truth.coulomb[1], -0.12 * truth.coulomb[1]);
+
+    const auto simple = host::identify_drive({record}, data_sheet_of(truth.axis), IdentificationMethod::simple_ls);
+    // The paper, (41) against (42): friction that is left out makes J and B look larger, B several times.
+    EXPECT_GT(simple.estimate.inertia.value, 1.01 * unbiased.estimate.inertia.value);
+    EXPECT_GT(simple.estimate.viscous.value, 1.5 * unbiased.estimate.viscous.value);
+    EXPECT_GT(simple.relative_error, 3.0 * unbiased.relative_error);
+  }
+}
+
+TEST_P(StepIdentification, SlidingEstimateIsFreeOfTheTachometersBias) {
+  const Truth& truth = GetParam();
+  const auto found = host::identify_drive({steps(truth.axis, 10.0), steps(truth.axis, 12.5), steps(truth.axis, 15.0)},
+                                          data_sheet_of(truth.axis), IdentificationMethod::sliding_ls);
+  EXPECT_NEAR(found.estimate.inertia.value, truth.J, 0.005 * truth.J);
+  EXPECT_NEAR(found.estimate.viscous.value, truth.B, 0.05 * truth.B);
+  EXPECT_NEAR(found.estimate.positive->value, truth.coulomb[0], 0.05 * truth.coulomb[0]);
+  EXPECT_NEAR(found.estimate.negative->value, truth.coulomb[1], -0.05 * truth.coulomb[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(PaperAxes, StepIdentification, testing::ValuesIn(kTruths),
+                         [](const auto& truth) { return std::string(truth.param.axis); });
+
+}  // namespace
