@@ -43,7 +43,7 @@ ZeroPhaseLowPass::ZeroPhaseLowPass(std::span<const PolePair> poles, double cutof
     const double gain = square / norm;  // every section has gain 1 at 0 Hz
     sections_.push_back({gain, 2.0 * gain, gain, 2.0 * (square - 1.0) / norm, (1.0 - damping + square) / norm});
   }
-  const double periods = static_cast<double>(2 * poles.size());  // steeper filters ring longer
+  const double periods = static_cast<double>(3 * poles.size());  // steeper filters ring longer
   extension_ = static_cast<std::size_t>(std::ceil(periods * sample_rate_Hz / cutoff_Hz));
 }
 
