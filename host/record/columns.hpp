@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,13 +44,23 @@ inline const KnownColumn* find_known_column(std::string_view name) {
 }
 
 /// What a channel is called in files that hold the drive's own units (rotary: mm, rad/s; linear: m, m/s).
-inline std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKind kind) {
-  const ColumnUnit travel = kind == sim::DriveKind::rotary ? ColumnUnit::mm : ColumnUnit::m;
-  for (const KnownColumn& column : kKnownColumns)
-    if (column.channel == channel && (column.implies ? *column.implies == kind : true) &&
-        (column.unit == ColumnUnit::as_is || column.unit == travel))
-      return column.name;
-  return {};
-}
+std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKind kind);
+
+/// What is wrong with a set of column names: one twice, two for the same quantity or of different kinds of drive, a
+/// required one missing. Empty when nothing is.
+std::string fault_of_columns(std::span<const std::string_view> names);
+
+/// Numbers under one of the names that the format knows, in the unit of that name.
+struct NamedColumn {
+  std::string_view name;
+  std::vector<double> values;
+};
+
+/// Names the first two columns that hold the same varying numbers: one channel logged twice. Empty when there are none.
+std::string fault_of_copies(std::span<const NamedColumn> columns);
+
+/// Puts columns into the record's channels, in the drive's own units, and finds the kind of drive by its speed column.
+/// Needs names without fault.
+void fill_channels(std::vector<NamedColumn> columns, Record& record);
 
 }  // namespace host

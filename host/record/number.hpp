@@ -24,4 +24,7 @@ inline std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
+/// The weight of the last digit of a number in text: 0.001 for "12.500", 10 for "3e1".
+double last_digit_of(std::string_view number);
+
 }  // namespace host

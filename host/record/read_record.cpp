@@ -1,10 +1,8 @@
 #include "host/record/read_record.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -57,9 +55,8 @@ class Parser {
   Record parse() {
     read_header();
     read_column_names();
-    require_columns();
     read_rows();
-    fill_channels();
+    fill();
     const TimeAxis axis{record_.t_s, stamp_resolution_s_, first_row_line_};
     record_.sample_period_s = check_time_axis(axis, header_period_s_, period_line_, record_.path);
     if (record_.size() < kFewestRows)
@@ -125,47 +122,9 @@ class Parser {
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
     }
-    for (std::size_t k = 0; k < columns_.size(); ++k) refuse_twins_of(k);
-  }
-
-  /// Two columns may not claim the same name or the same quantity.
-  void refuse_twins_of(std::size_t k) const {
-    for (std::size_t j = 0; j < k; ++j) {
-      const Column &first = columns_[j], &second = columns_[k];
-      if (first.name == second.name)
-        fail_here("duplicated channel: columns {} and {} are both called {}; keep one of them", j + 1, k + 1,
-                  second.name);
-      if (first.known && second.known && first.known->channel == second.known->channel)
-        fail_here("columns {} and {} ({} and {}) hold the same quantity; keep one of them, or rename the other", j + 1,
-                  k + 1, first.name, second.name);
-      if (first.known && second.known && first.known->implies && second.known->implies &&
-          first.known->implies != second.known->implies)
-        fail_here(
-            "columns {} and {} belong to different kinds of drive (rad: rotary, m: linear); keep the one that "
-            "fits, or rename the other",
-            first.name, second.name);
-    }
-  }
-
-  bool has(std::vector<double> Record::*channel) const {
-    return std::ranges::any_of(columns_, [&](const Column& c) { return c.known && c.known->channel == channel; });
-  }
-
-  void require_columns() const {
-    std::string missing;
-    if (!has(&Record::t_s))
-      missing = "t_s (time in seconds)";
-    else if (!has(&Record::u_V) && !has(&Record::i_A))
-      missing = "u_V (command in volts) or i_A (motor current)";
-    else if (!has(&Record::x) && !has(&Record::w))
-      missing = "a position (x_mm or x_m) or a speed (w_rad_s, v_m_s or v_mm_s)";
-    if (missing.empty()) return;
     std::vector<std::string_view> names;
     for (const Column& column : columns_) names.push_back(column.name);
-    fail_here(
-        "missing column: {}; the file has {}. Rename the column, or convert its unit with axistool import --map "
-        "(for example t_s=t_ms*0.001)",
-        missing, fmt::join(names, ", "));
+    if (const std::string fault = fault_of_columns(names); !fault.empty()) fail_here("{}", fault);
   }
 
   void read_rows() {
@@ -211,7 +170,8 @@ class Parser {
     const auto value = parse_number(field);
     if (!value || !std::isfinite(*value)) fail_value(column, trim_blanks(field));
     column.values.push_back(*value);
-    if (column.known->channel == &Record::t_s) stamp_resolution_s_ = std::min(stamp_resolution_s_, last_digit(field));
+    if (column.known->channel == &Record::t_s)
+      stamp_resolution_s_ = std::min(stamp_resolution_s_, last_digit_of(field));
   }
 
   [[noreturn]] void fail_value(const Column& column, std::string_view field) const {
@@ -224,64 +184,16 @@ class Parser {
     fail_here("column {} ({}): {}; correct it, or cut the record before this line", number, column.name, what);
   }
 
-  /// The weight of a time stamp's last digit, s.
-  static double last_digit(std::string_view field) {
-    int exponent = 0;
-    field = trim_blanks(field);
-    const std::size_t e = field.find_first_of("eE");
-    if (e != std::string_view::npos) {
-      const auto power = parse_number(field.substr(e + 1));
-      exponent = power && std::abs(*power) < 400.0 ? static_cast<int>(*power) : 0;
-      field = field.substr(0, e);
-    }
-    const std::size_t point = field.find('.');
-    const int decimals =
-        point == std::string_view::npos ? 0 : static_cast<int>(std::min<std::size_t>(field.size() - point - 1, 300));
-    return decimals < static_cast<int>(kPowers.size()) && exponent == 0 ? kPowers[static_cast<std::size_t>(decimals)]
-                                                                        : std::pow(10.0, exponent - decimals);
-  }
-
-  void fill_channels() {
-    bool speed_known = false;
-    const Column* position = nullptr;
-    for (const Column& column : columns_) {
-      if (!column.known) continue;
-      if (column.known->implies) record_.kind = *column.known->implies, speed_known = true;
-      if (column.known->channel == &Record::x) position = &column;
-    }
-    if (!speed_known) {
-      record_.kind_is_presumed = true;
-      record_.kind = position->known->unit == ColumnUnit::m ? sim::DriveKind::linear : sim::DriveKind::rotary;
-    }
-    check_duplicates();
+  void fill() {
+    std::vector<NamedColumn> known;
     for (Column& column : columns_) {
       if (column.known)
-        record_.*(column.known->channel) = in_own_unit(column);
+        known.push_back({column.name, std::move(column.values)});
       else
         record_.extra.push_back(as_extra(column));
     }
-  }
-
-  /// Two channels that agree to the last digit while they vary are one channel logged twice.
-  void check_duplicates() const {
-    for (std::size_t k = 0; k < columns_.size(); ++k)
-      for (std::size_t j = 0; j < k; ++j) {
-        const std::vector<double>&first = columns_[j].values, &second = columns_[k].values;
-        if (first.size() < 2 || first != second ||
-            std::ranges::adjacent_find(first, std::not_equal_to<>()) == first.end())
-          continue;
-        fail(
-            "line {}: duplicated channel: columns {} ({}) and {} ({}) hold the same numbers in every row; log each "
-            "quantity by itself, or remove the copy",
-            first_row_line_, j + 1, columns_[j].name, k + 1, columns_[k].name);
-      }
-  }
-
-  std::vector<double> in_own_unit(Column& column) const {
-    const ColumnUnit own = record_.kind == sim::DriveKind::rotary ? ColumnUnit::mm : ColumnUnit::m;
-    if (column.known->unit != ColumnUnit::as_is && column.known->unit != own)
-      for (double& value : column.values) value = own == ColumnUnit::mm ? value * 1000.0 : value / 1000.0;
-    return std::move(column.values);
+    if (const std::string fault = fault_of_copies(known); !fault.empty()) fail("line {}: {}", header_line_, fault);
+    fill_channels(std::move(known), record_);
   }
 
   static ExtraChannel as_extra(const Column& column) {
@@ -295,8 +207,6 @@ class Parser {
     if (!all_numbers) extra.text.assign(column.fields.begin(), column.fields.end());
     return extra;
   }
-
-  static constexpr std::array kPowers = {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
 
   Lines lines_;
   std::string_view name_;

@@ -183,8 +183,8 @@ TEST_F(BadRecord, DuplicatedChannel) {
   const std::string copied = std::string(kHeader) + "t_s,u_V,x_mm,w_rad_s\n" + rows_of(500, [](int, Row r) {
                                return fmt::format("{},{},{},{}", r.t_s, r.u_V, r.w_rad_s, r.w_rad_s);
                              });
-  EXPECT_THAT(message_of(copied), AllOf(HasSubstr("duplicated channel"), HasSubstr("3 (x_mm)"),
-                                        HasSubstr("4 (w_rad_s)"), HasSubstr("remove the copy")));
+  EXPECT_THAT(message_of(copied),
+              AllOf(HasSubstr("duplicated channel"), HasSubstr("x_mm and w_rad_s"), HasSubstr("remove the copy")));
 }
 
 std::string with_columns(const std::function<void(int, Row&)>& change, int count = 1000,
