@@ -11,6 +11,7 @@ void end_with(host::ExitCode code) { ending = code; }
 int exit_status() { return static_cast<int>(ending); }
 
 void add_all_commands(CLI::App& app) {
+  add_import(app);
   add_identify(app);
   add_design(app);
 }

@@ -11,6 +11,7 @@ namespace axistool {
 /// Registers every command with the program's option parser.
 void add_all_commands(CLI::App& app);
 
+void add_import(CLI::App& app);
 void add_identify(CLI::App& app);
 void add_design(CLI::App& app);
 

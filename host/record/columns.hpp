@@ -37,6 +37,10 @@ inline constexpr KnownColumn kKnownColumns[] = {
     {"temp_C", &Record::temp_C, ColumnUnit::as_is, {}},
 };
 
+/// All channels, in the order in which records are written.
+inline constexpr std::vector<double> Record::*kChannelsInFileOrder[] = {
+    &Record::t_s, &Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref, &Record::temp_C};
+
 inline const KnownColumn* find_known_column(std::string_view name) {
   for (const KnownColumn& column : kKnownColumns)
     if (column.name == name) return &column;

@@ -31,6 +31,17 @@ double rounding_of_a_step(const TimeAxis& axis, double period_s) {
   return std::abs(digits - std::round(digits)) < 1e-3 ? 0.0 : axis.stamp_resolution_s;
 }
 
+/// The period in as few digits as describe it: what a person would ask for.
+double round_period(double period_s) {
+  constexpr double kNear = 2e-3;
+  for (int digits = 0; digits < 6; ++digits) {
+    const double unit = std::pow(10.0, std::floor(std::log10(period_s)) - digits);
+    const double rounded = std::round(period_s / unit) * unit;
+    if (std::abs(rounded - period_s) <= kNear * period_s) return rounded;
+  }
+  return period_s;
+}
+
 }  // namespace
 
 void check_time_increases(const TimeAxis& axis, const std::string& path) {
@@ -104,12 +115,12 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
         "steps jitter by {}); record again, cut the record at the gaps, or fill them knowingly with "
         "axistool import --resample {:.6g}",
         where(axis, spacing.first_gap_row), axis.t_s[spacing.first_gap_row] - axis.t_s[spacing.first_gap_row - 1],
-        spacing.gaps, spacing.dropped, jitter, spacing.period_s));
+        spacing.gaps, spacing.dropped, jitter, round_period(spacing.period_s)));
   if (!spacing.is_even)
     fail(
         fmt::format("{}: uneven sampling: steps jitter by {}; record with a steady clock, or make an evenly sampled "
                     "record with axistool import --resample {:.6g}",
-                    where(axis, spacing.worst_jitter_row), jitter, spacing.period_s));
+                    where(axis, spacing.worst_jitter_row), jitter, round_period(spacing.period_s)));
   if (header_period_s) return *header_period_s;
   constexpr double kPerPicosecond = 1e12;  // finer digits are the rounding of the stamps, not the clock
   const double rounded = std::round(spacing.period_s * kPerPicosecond) / kPerPicosecond;

@@ -10,9 +10,6 @@ namespace host {
 
 namespace {
 
-constexpr std::vector<double> Record::*kChannelsInFileOrder[] = {
-    &Record::t_s, &Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref, &Record::temp_C};
-
 void append_header(const Record& record, std::string& text) {
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "# format: axis-record/1\n");

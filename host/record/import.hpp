@@ -1,0 +1,29 @@
+// Records from other programs' logs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/record/import_log.hpp"
+#include "host/record/import_mapping.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+struct ImportOptions {
+  std::vector<Mapping> mappings;            ///< empty: every column keeps its name
+  std::optional<double> resample_period_s;  ///< make even samples of this period, and state what was done
+  std::string drive;                        ///< name of the drive; empty: as the log says, if it does
+};
+
+/// The row number of a log from 0, as if it were a column: for logs without time stamps, `t_s=row*0.001`.
+inline constexpr std::string_view kRowSource = "row";
+
+/// Makes a record of a log, with the checks of read_record(); the header says where each column came from and, after
+/// resampling, the jitter, the gaps and how values were found between samples.
+/// Throws Failure(bad_input) where variables are missing, lengths differ, values are no numbers, samples are uneven
+/// (naming the jitter and --resample) or the record would not pass its checks.
+Record import_record(const Log& log, const ImportOptions& options);
+
+}  // namespace host

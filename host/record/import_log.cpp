@@ -1,0 +1,69 @@
+#include "host/record/import_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "host/exit_codes.hpp"
+#include "host/nearest_name.hpp"
+#include "host/read_file.hpp"
+
+namespace host {
+
+namespace {
+
+/// Number of a column, from 1; 0 when the name is no number.
+std::size_t column_number(std::string_view name) {
+  if (name.starts_with('#')) name.remove_prefix(1);
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc{} && end == name.data() + name.size() ? number : 0;
+}
+
+/// `log(:,2)` as MATLAB writes it is `log(2)` here.
+std::string without_colon(std::string_view name) {
+  std::string plain;
+  for (const char c : name)
+    if (c != ':' && c != ',' && c != ' ') plain += c;
+  return plain;
+}
+
+bool is_matlab_file(std::string_view start, const std::string& path) {
+  return start.starts_with("MATLAB ") || start.starts_with("\x89HDF") ||
+         std::filesystem::path(path).extension() == ".mat";
+}
+
+}  // namespace
+
+const LogColumn& Log::find(std::string_view name) const {
+  for (const LogColumn& column : columns)
+    if (!column.name.empty() && (column.name == name || (name.ends_with(')') && column.name == without_colon(name))))
+      return column;
+  const std::size_t number = column_number(name);
+  if (number >= 1 && number <= columns.size()) return columns[number - 1];
+  std::vector<std::string_view> names;
+  for (const LogColumn& column : columns) names.push_back(column.name);
+  throw Failure(ExitCode::bad_input, fmt::format("{}: there is no variable or column '{}'{}; there is {}", path, name,
+                                                 did_you_mean(name, names), inventory()));
+}
+
+std::string Log::inventory() const {
+  constexpr std::size_t kListed = 60;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(columns.size(), kListed); ++k)
+    text += fmt::format("{}{} ({})", k == 0 ? "" : ", ",
+                        columns[k].name.empty() ? fmt::format("#{}", k + 1) : columns[k].name, columns[k].kind);
+  if (columns.size() > kListed) text += fmt::format(" and {} more", columns.size() - kListed);
+  return text.empty() ? "nothing" : text;
+}
+
+Log read_log(const std::string& path) {
+  const std::string text = read_file(path);
+  if (is_matlab_file(std::string_view(text).substr(0, 16), path)) return read_mat(path);
+  return parse_table(text, path);
+}
+
+}  // namespace host

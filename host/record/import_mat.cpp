@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+
+#include "host/exit_codes.hpp"
+#include "host/record/import_log.hpp"
+
+namespace host {
+
+namespace {
+
+struct CloseMat {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+
+std::string_view class_name(const matvar_t& variable) {
+  if (variable.isLogical != 0) return "logical";
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return "double";
+    case MAT_C_SINGLE:
+      return "single";
+    case MAT_C_INT8:
+      return "int8";
+    case MAT_C_UINT8:
+      return "uint8";
+    case MAT_C_INT16:
+      return "int16";
+    case MAT_C_UINT16:
+      return "uint16";
+    case MAT_C_INT32:
+      return "int32";
+    case MAT_C_UINT32:
+      return "uint32";
+    case MAT_C_INT64:
+      return "int64";
+    case MAT_C_UINT64:
+      return "uint64";
+    case MAT_C_STRUCT:
+      return "struct";
+    case MAT_C_CELL:
+      return "cell";
+    case MAT_C_CHAR:
+      return "char";
+    case MAT_C_SPARSE:
+      return "sparse";
+    default:
+      return "of a class that holds no numbers";
+  }
+}
+
+std::string size_of(const matvar_t& variable) {
+  std::string text;
+  for (int k = 0; k < variable.rank; ++k) text += fmt::format("{}{}", k == 0 ? "" : " x ", variable.dims[k]);
+  return text;
+}
+
+template <typename T>
+std::vector<double> as_doubles(const void* data, std::size_t count) {
+  const T* first = static_cast<const T*>(data);
+  std::vector<double> values(count);
+  std::transform(first, first + count, values.begin(), [](T value) { return static_cast<double>(value); });
+  return values;
+}
+
+/// All elements of an array, column by column; empty where it holds no real numbers. Every element becomes a double
+/// before anything is computed with it, so integers of the log neither wrap nor saturate.
+std::vector<double> numbers_of(const matvar_t& variable, std::size_t count) {
+  if (variable.isComplex != 0 || variable.data == nullptr) return {};
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return as_doubles<double>(variable.data, count);
+    case MAT_C_SINGLE:
+      return as_doubles<float>(variable.data, count);
+    case MAT_C_INT8:
+      return as_doubles<std::int8_t>(variable.data, count);
+    case MAT_C_UINT8:
+      return as_doubles<std::uint8_t>(variable.data, count);
+    case MAT_C_INT16:
+      return as_doubles<std::int16_t>(variable.data, count);
+    case MAT_C_UINT16:
+      return as_doubles<std::uint16_t>(variable.data, count);
+    case MAT_C_INT32:
+      return as_doubles<std::int32_t>(variable.data, count);
+    case MAT_C_UINT32:
+      return as_doubles<std::uint32_t>(variable.data, count);
+    case MAT_C_INT64:
+      return as_doubles<std::int64_t>(variable.data, count);
+    case MAT_C_UINT64:
+      return as_doubles<std::uint64_t>(variable.data, count);
+    default:
+      return {};
+  }
+}
+
+std::size_t element_count(const matvar_t& variable) {
+  std::size_t count = 1;
+  for (int k = 0; k < variable.rank; ++k) count *= variable.dims[k];
+  return count;
+}
+
+void append_array(const matvar_t& variable, const std::string& name, const std::string& kind, Log& log) {
+  const std::size_t count = element_count(variable);
+  const std::size_t bytes = variable.data_size > 0 ? variable.nbytes / static_cast<std::size_t>(variable.data_size) : 0;
+  const std::vector<double> values =
+      variable.rank == 2 && bytes >= count ? numbers_of(variable, count) : std::vector<double>{};
+  if (values.empty()) {
+    log.columns.push_back({name, kind, {}, fmt::format("'{}' ({}) holds no real numbers; name another", name, kind)});
+    return;
+  }
+  const std::size_t rows = variable.dims[0], columns = variable.dims[1];
+  if (rows == 1 || columns == 1) {
+    log.columns.push_back({name, kind, values, {}});
+    return;
+  }
+  const bool samples_run_down = rows >= columns;
+  const std::size_t channels = samples_run_down ? columns : rows, samples = samples_run_down ? rows : columns;
+  for (std::size_t c = 0; c < channels; ++c) {
+    LogColumn column{fmt::format("{}({})", name, c + 1),
+                     fmt::format("{} of {}", samples_run_down ? "column" : "row", kind),
+                     std::vector<double>(samples),
+                     {}};
+    for (std::size_t k = 0; k < samples; ++k)
+      column.values[k] = samples_run_down ? values[c * rows + k] : values[k * rows + c];
+    log.columns.push_back(std::move(column));
+  }
+}
+
+constexpr int kDeepestStruct = 8;
+
+void append_variable(matvar_t& variable, const std::string& name, int depth, Log& log) {
+  const std::string kind =
+      fmt::format("{}{}, {}", variable.isComplex != 0 ? "complex " : "", class_name(variable), size_of(variable));
+  if (variable.class_type != MAT_C_STRUCT || element_count(variable) != 1 || depth >= kDeepestStruct) {
+    append_array(variable, name, kind, log);
+    return;
+  }
+  const unsigned fields = Mat_VarGetNumberOfFields(&variable);
+  char* const* names = Mat_VarGetStructFieldnames(&variable);
+  for (unsigned k = 0; k < fields; ++k)
+    if (matvar_t* field = Mat_VarGetStructFieldByIndex(&variable, k, 0))
+      append_variable(*field, fmt::format("{}.{}", name, names[k]), depth + 1, log);
+}
+
+}  // namespace
+
+Log read_mat(const std::string& path) {
+  Mat_LogInitFunc("axistool", [](int, char*) {});  // failures are told by the exceptions below, not by the library
+  const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  if (!file)
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: not a MATLAB file that can be read; save it again with save -v7 or -v7.3", path));
+  Log log;
+  log.path = path;
+  while (const std::unique_ptr<matvar_t, FreeVariable> variable{Mat_VarReadNext(file.get())})
+    append_variable(*variable, variable->name != nullptr ? variable->name : "", 0, log);
+  if (log.columns.empty())
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: the file holds no variables, or is cut off; save it again", path));
+  return log;
+}
+
+}  // namespace host
