@@ -1,0 +1,134 @@
+// One axis of the simulated board: the board's side of the connectors, wired to a simulated drive.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+#include "hal/axis_hal.hpp"
+#include "hal/limit_inputs.hpp"
+#include "sim/plant.hpp"
+
+namespace hal::pc {
+
+/// What is wired to the board besides the drive itself.
+struct AxisWiring {
+  /// Tachometer A/D converter, rad/s (m/s) a code: 16 bits over -512..+512 rad/s. Far below the paper's noise of 0.22
+  /// rad/s, so the model's noise variance stays what it says.
+  double tachometer_resolution = 1.0 / 64.0;
+  double negative_end = -std::numeric_limits<double>::infinity();  ///< travel at which the switch acts, mm (m)
+  double positive_end = std::numeric_limits<double>::infinity();
+  double home = std::numeric_limits<double>::quiet_NaN();  ///< home switch: actuated at and beyond it; NaN: none
+};
+
+/// Satisfies AxisHal; limits() satisfies LimitInputs. The plant is the caller's, who also lets its time pass.
+class SimulatedAxis {
+ public:
+  /// Takes the current away from the drive, as a board does at reset. Throws std::invalid_argument for a drive whose
+  /// description lacks the converter's or the encoder's resolution: then there are no codes and no counts.
+  explicit SimulatedAxis(sim::Plant& plant, const AxisWiring& wiring = {})
+      : encoder_{plant},
+        tachometer_{plant, wiring.tachometer_resolution},
+        dac_{plant},
+        enable_{plant},
+        limits_{plant, wiring} {
+    if (!(plant.data().dac_resolution_V > 0.0))
+      throw std::invalid_argument(
+          "the simulated board needs the D/A converter's resolution: set resolution_V under "
+          "[drive.dac]");
+    if (!(plant.data().encoder_resolution > 0.0))
+      throw std::invalid_argument(
+          "the simulated board needs the encoder's resolution: set resolution_mm (or "
+          "resolution_m) under [drive.encoder]");
+    enable_.set(false);
+    dac_.write(0);
+  }
+  SimulatedAxis(const SimulatedAxis&) = delete;
+  SimulatedAxis& operator=(const SimulatedAxis&) = delete;
+
+  class SimulatedEncoder {
+   public:
+    explicit SimulatedEncoder(sim::Plant& plant) : plant_(plant) {}
+    EncoderReading read() { return {static_cast<std::uint32_t>(plant_.encoder_counts()), true}; }
+
+   private:
+    sim::Plant& plant_;
+  };
+
+  class SimulatedTachometer {
+   public:
+    SimulatedTachometer(sim::Plant& plant, double resolution) : plant_(plant), resolution_(resolution) {}
+
+    /// Invalid for a drive without a tachometer, and beyond the converter's 16 bits.
+    TachometerReading read() {
+      const auto velocity = plant_.read_tachometer();
+      if (!velocity) return {};
+      const double code = std::round(*velocity / resolution_);
+      if (!(std::abs(code) <= 32767.0)) return {};
+      return {static_cast<std::int32_t>(code), true};
+    }
+
+   private:
+    sim::Plant& plant_;
+    double resolution_;
+  };
+
+  class SimulatedDac {
+   public:
+    explicit SimulatedDac(sim::Plant& plant) : plant_(plant) {}
+    bool write(std::int32_t code) {
+      plant_.set_command(code * plant_.data().dac_resolution_V);
+      return true;
+    }
+
+   private:
+    sim::Plant& plant_;
+  };
+
+  class SimulatedEnable {
+   public:
+    explicit SimulatedEnable(sim::Plant& plant) : plant_(plant) {}
+    void set(bool on) {
+      is_on_ = on;
+      plant_.set_enabled(on);
+    }
+    bool is_faulted() { return false; }
+    bool is_on() const { return is_on_; }
+
+   private:
+    sim::Plant& plant_;
+    bool is_on_ = false;
+  };
+
+  class SimulatedLimits {
+   public:
+    SimulatedLimits(sim::Plant& plant, const AxisWiring& wiring) : plant_(plant), wiring_(wiring) {}
+    LimitState read() {
+      const double travel = static_cast<double>(plant_.encoder_counts()) * plant_.data().encoder_resolution;
+      return {travel >= wiring_.positive_end, travel <= wiring_.negative_end, travel >= wiring_.home};
+    }
+
+   private:
+    sim::Plant& plant_;
+    AxisWiring wiring_;
+  };
+
+  SimulatedEncoder& encoder() { return encoder_; }
+  SimulatedTachometer& tachometer() { return tachometer_; }
+  SimulatedDac& dac() { return dac_; }
+  SimulatedEnable& drive_enable() { return enable_; }
+  SimulatedLimits& limits() { return limits_; }
+
+ private:
+  SimulatedEncoder encoder_;
+  SimulatedTachometer tachometer_;
+  SimulatedDac dac_;
+  SimulatedEnable enable_;
+  SimulatedLimits limits_;
+};
+
+static_assert(AxisHal<SimulatedAxis>);
+static_assert(LimitInputs<SimulatedAxis::SimulatedLimits>);
+
+}  // namespace hal::pc
