@@ -35,7 +35,7 @@ struct RichContact {
     const FrictionSide& friction = drive.friction[static_cast<std::size_t>(side)];
     const double breakaway = friction.breakaway * (1.0 + state.breakaway_gain);
     const bool remembers = drive.friction_memory_s > 0.0;
-    FrictionPoint curve = stribeck_curve(friction, breakaway, remembers ? std::abs(state.friction_speed) : speed);
+    FrictionPoint curve = stribeck_curve(friction, breakaway, remembers ? state.friction_speed : speed);
     if (remembers) curve.slope = 0.0;
     FrictionPoint all = viscous(side, speed);
     all.effort += level * curve.effort + carried;
@@ -120,7 +120,8 @@ bool Drive::has_hidden_state() const {
 DriveState Drive::at(double x, double w) const {
   DriveState state;
   state.x = state.load_x = x;
-  state.w = state.load_w = state.friction_speed = state.tach = w;
+  state.w = state.load_w = state.tach = w;
+  state.friction_speed = std::abs(w);
   return state;
 }
 
@@ -167,12 +168,17 @@ void Drive::move(DriveState& state, double effort, double t_s, double duration_s
     state.w = mass.w;
   }
   if (friction_memory_s > 0.0)
-    lag_mean(state.friction_speed, 0.5 * (w_before + state.w), friction_memory_s, duration_s);
+    lag_mean(state.friction_speed, 0.5 * std::abs(w_before + state.w), friction_memory_s, duration_s);
   filter_tach(state, w_before, duration_s);
 }
 
 void Drive::hold(DriveState& state, double u_V, double t_s, double duration_s) const {
-  const int parts = std::max(1, static_cast<int>(std::ceil(duration_s / max_step_s - 1e-9)));
+  // The mean of a sine over an eighth of its period is within 2.5 % of its middle value; speeds are bounded by drives.
+  constexpr double kPeriodShare = 0.125;
+  constexpr double kMostParts = 64.0;
+  const double by_travel = std::abs(state.w) * lead * duration_s / (kPeriodShare * finest_period);
+  const int parts =
+      static_cast<int>(std::clamp(std::ceil(std::max(duration_s / max_step_s, by_travel) - 1e-9), 1.0, kMostParts));
   const double part_s = duration_s / parts;
   for (int part = 0; part < parts; ++part) move(state, deliver(state, u_V, part_s), t_s + part * part_s, part_s);
 }
@@ -215,37 +221,90 @@ void Drive::remember_command(DriveState& state, double u_V, std::size_t whole) c
   state.past_u_V[0] = u_V;
 }
 
-void Drive::follow(DriveState& state, double u_V, double x1, double w1, double duration_s) const {
-  const double w0 = state.w;
-  double applied = u_V;
-  if (delay_s > 0.0) {
-    const std::size_t whole = whole_periods_of_delay(duration_s);
-    applied = state.past_u_V[whole];
-    remember_command(state, u_V, whole);
-  }
-  const double effort = deliver(state, applied, duration_s);
-  const double mean_w = 0.5 * (w0 + w1);
-  if (friction_memory_s > 0.0) lag_mean(state.friction_speed, mean_w, friction_memory_s, duration_s);
-  if (dwell_gain > 0.0) {
-    if (w0 == 0.0 && w1 == 0.0) {
-      state.rest_s += duration_s;
-      state.breakaway_gain = dwell_gain * -std::expm1(-state.rest_s / dwell_time_s);
-    } else {
-      state.rest_s = 0.0;
-      if (w0 * w1 < 0.0) state.breakaway_gain = 0.0;
-    }
-  }
-  if (bristles) follow_bristles(*bristles, friction[mean_w >= 0.0 ? 0 : 1], state, mean_w, duration_s);
-  state.x = x1;
-  state.w = w1;
-  if (second_mass) follow_two_masses(*second_mass, inertia, lead, state, effort, friction);
-  filter_tach(state, w0, duration_s);
+double Drive::deliver_over(DriveState& state, double u_V, double duration_s) const {
+  if (delay_s <= 0.0) return deliver(state, u_V, duration_s);
+  const std::size_t whole = whole_periods_of_delay(duration_s);
+  const double older_s = std::min(delay_s - static_cast<double>(whole) * duration_s, duration_s);
+  double impulse = 0.0;
+  if (older_s > 0.0) impulse += older_s * deliver(state, state.past_u_V[whole], older_s);
+  if (older_s < duration_s)
+    impulse +=
+        (duration_s - older_s) * deliver(state, whole == 0 ? u_V : state.past_u_V[whole - 1], duration_s - older_s);
+  remember_command(state, u_V, whole);
+  return impulse / duration_s;
 }
 
-double Drive::encoder(const DriveState& state) const {
-  const double x = second_mass ? state.load_x : state.x;
-  return x + sum_at(encoder_error, x);
+bool Drive::shapes_effort() const {
+  return !command.empty() || delay_s > 0.0 || current_lag_s > 0.0 || !effort_limit.empty() || !effort_factor.empty() ||
+         !load_effort.empty();
 }
+
+void Drive::observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const {
+  // An alpha-beta tracker: the motor is drawn towards its measured travel as by a spring and a damper, which cannot
+  // excite the second mass. Alpha 0.3 averages the travel over some three samples.
+  constexpr double kAlpha = 0.3;
+  constexpr double kBeta = kAlpha * kAlpha / (2.0 - kAlpha);
+  step(state, u_V, t_s, duration_s);
+  const double off = x1 - state.x;
+  state.x += kAlpha * off;
+  state.w += kBeta * off / (lead * duration_s);
+}
+
+double Drive::follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const {
+  if (second_mass) {
+    observe(state, u_V, x1, t_s, duration_s);
+    return 0.0;
+  }
+  const double w0 = state.w;
+  const double middle_x = 0.5 * (state.x + x1);
+  const double mean_w = 0.5 * (w0 + w1);
+  double effort = deliver_over(state, u_V, duration_s) * product(effort_factor, middle_x);
+  for (const auto& load : load_effort) effort += load(t_s, middle_x);
+  if (friction_memory_s > 0.0) lag_mean(state.friction_speed, std::abs(mean_w), friction_memory_s, duration_s);
+  if (dwell_gain > 0.0) follow_rest(state, w0, w1, effort, duration_s);
+  const FrictionSide& side = friction[mean_w >= 0.0 ? 0 : 1];
+  if (bristles)
+    follow_bristles(*bristles, side, inertia, state, mean_w, effort - inertia * (w1 - w0) / duration_s, duration_s);
+  state.x = x1;
+  state.w = w1;
+  filter_tach(state, w0, duration_s);
+  return effort;
+}
+
+void Drive::follow_rest(DriveState& state, double w0, double w1, double effort, double duration_s) const {
+  if (w0 == 0.0 && w1 == 0.0) {
+    state.rest_s += duration_s;
+    state.slide_s = state.restuck = 0.0;
+    state.breakaway_gain = dwell_gain * -std::expm1(-state.rest_s / dwell_time_s);
+    return;
+  }
+  // A smoothed start may swing through zero for a moment; only a motion that has lasted can come to rest unseen.
+  constexpr double kRealMotion_s = 0.02;
+  state.rest_s = 0.0;
+  if (w0 * w1 < 0.0 && state.slide_s > kRealMotion_s) {
+    state.breakaway_gain = state.slide_s = state.restuck = 0.0;
+  }
+  state.slide_s += duration_s;
+  if (state.breakaway_gain <= 0.0) return;
+  // At creep a stop of a millisecond goes unseen, and the gain of the rest goes with it. The friction that the motion
+  // shows is held against the level with the gain and the level without, averaged over some 30 ms.
+  constexpr double kAveraging_s = 0.03;
+  const double w = 0.5 * (w0 + w1);
+  const FrictionSide& side = friction[w >= 0.0 ? 0 : 1];
+  const double without = stribeck_curve(side, side.breakaway, std::abs(w)).effort + side.viscous * std::abs(w);
+  const double with = stribeck_curve(side, side.breakaway * (1.0 + state.breakaway_gain), std::abs(w)).effort +
+                      side.viscous * std::abs(w);
+  const double shown = (w >= 0.0 ? 1.0 : -1.0) * (effort - inertia * (w1 - w0) / duration_s);
+  const double levels_apart = with - without;
+  if (levels_apart <= 1e-3 * with) return;
+  const double verdict = (0.5 * (with + without) - shown) / levels_apart;
+  state.restuck += (verdict - state.restuck) * duration_s / kAveraging_s;
+  if (state.slide_s > 2.0 * kAveraging_s && state.restuck > 0.25) state.breakaway_gain = 0.0;
+}
+
+double Drive::encoder(const DriveState& state) const { return state.x + encoder_error_at(state.x); }
+
+double Drive::encoder_error_at(double x) const { return sum_at(encoder_error, x); }
 
 double Drive::tachometer(const DriveState& state) const {
   return tach_gain * state.tach * (1.0 + sum_at(tach_ripple, state.x)) + tach_offset;

@@ -47,13 +47,15 @@ struct DriveState {
   double w = 0.0;       ///< speed of the motor
   double load_x = 0.0;  ///< travel of the table, where it is a mass of its own
   double load_w = 0.0;
-  double bristle = 0.0;               ///< deflection of the contact, rad or m
-  double friction_speed = 0.0;        ///< the speed that the friction remembers
-  double rest_s = 0.0;                ///< time at rest
-  double breakaway_gain = 0.0;        ///< what the last rest added to the static friction, relative
-  double effort = 0.0;                ///< what the current loop delivers, Nm or N
-  double tach = 0.0;                  ///< what the tachometer's filter holds
-  std::array<double, 32> past_u_V{};  ///< commands before the present one, latest first (only kept for a delay)
+  double bristle = 0.0;                ///< deflection of the contact, rad or m
+  double friction_speed = 0.0;         ///< the speed that the friction remembers
+  double rest_s = 0.0;                 ///< time at rest
+  double restuck = 0.0;                ///< evidence that an unseen stop has taken the rest's gain away, -1..1
+  double slide_s = 0.0;                ///< time since the last rest, while following a known motion
+  double breakaway_gain = 0.0;         ///< what the last rest added to the static friction, relative
+  double effort = 0.0;                 ///< what the current loop delivers, Nm or N
+  double tach = 0.0;                   ///< what the tachometer's filter holds
+  std::array<double, 128> past_u_V{};  ///< commands before the present one, latest first (only kept for a delay)
 };
 
 class Drive {
@@ -67,16 +69,26 @@ class Drive {
   /// Advances by `duration_s` with `u_V` held; `t_s` is the time at the start of the interval.
   void step(DriveState& state, double u_V, double t_s, double duration_s) const;
 
-  /// Lets the hidden states follow a motion that is known from (x, w) at the interval's start to (x1, w1) at its end.
-  void follow(DriveState& state, double u_V, double x1, double w1, double duration_s) const;
+  /// Lets the hidden states follow a motion that is known, from the state's to (x1, w1). Returns the mean effort that
+  /// reaches the drive's inertia before friction is taken off, Nm or N.
+  double follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const;
 
   /// What an ideal encoder reads, with the errors that belong to the drive but without quantisation.
   double encoder(const DriveState& state) const;
 
+  /// What the encoder's reading adds to the true travel.
+  double encoder_error_at(double x) const;
+
   /// What the tachometer reads without its noise.
   double tachometer(const DriveState& state) const;
 
+  /// The mean effort that the motor is given over an interval with `u_V` held, Nm or N; moves what the command path
+  /// remembers (dead time, current loop).
+  double deliver_over(DriveState& state, double u_V, double duration_s) const;
+
   bool has_hidden_state() const;
+  /// Whether anything but friction adds to or takes from the effort that the command asks for.
+  bool shapes_effort() const;
   bool has_second_mass() const { return second_mass.has_value(); }
 
   // The places where an effect can act. Effects fill them; an empty one costs nothing.
@@ -108,6 +120,8 @@ class Drive {
 
   /// Longest step of the integrator inside a sample, s; the constructor derives it from the drive's fastest mode.
   double max_step_s = 0.0;
+  /// Shortest period over the travel of anything that acts on the motion, mm or m; a step spans a small part of it.
+  double finest_period = std::numeric_limits<double>::infinity();
 
  private:
   void settle();
@@ -115,6 +129,8 @@ class Drive {
   double deliver(DriveState& state, double u_V, double duration_s) const;
   void hold(DriveState& state, double u_V, double t_s, double duration_s) const;
   void move(DriveState& state, double effort, double t_s, double duration_s) const;
+  void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;
+  void follow_rest(DriveState& state, double w0, double w1, double effort, double duration_s) const;
   void filter_tach(DriveState& state, double w_before, double duration_s) const;
   std::size_t whole_periods_of_delay(double period_s) const;
   void remember_command(DriveState& state, double u_V, std::size_t whole) const;

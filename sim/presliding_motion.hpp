@@ -69,13 +69,22 @@ inline void move_on_bristles(const Bristles& bristles, double inertia, double le
   state.w = w_end;
 }
 
-/// Lets the deflection follow a speed that is known: exact for a constant speed.
-inline void follow_bristles(const Bristles& bristles, const FrictionSide& side, DriveState& state, double w,
-                            double duration_s) {
+/// Lets the deflection follow a speed that is known: the bristle's equation, drawn towards the deflection that carries
+/// `contact_effort` (what the motor gives beyond acceleration) as fast as the mass on the bristles itself settles.
+inline void follow_bristles(const Bristles& bristles, const FrictionSide& side, double inertia, DriveState& state,
+                            double w, double contact_effort, double duration_s) {
   const double g = stribeck_curve(side, side.breakaway, std::abs(w)).effort;
-  if (w == 0.0 || g <= 0.0) return;
-  const double settled = (w > 0.0 ? g : -g) / bristles.stiffness;
-  state.bristle = settled + (state.bristle - settled) * std::exp(-bristles.stiffness * std::abs(w) / g * duration_s);
+  if (g <= 0.0) return;
+  const double settled = g / bristles.stiffness;
+  if (w != 0.0) {
+    const double end = w > 0.0 ? settled : -settled;
+    state.bristle = end + (state.bristle - end) * std::exp(-std::abs(w) / settled * duration_s);
+  }
+  const double carried = (contact_effort - side.viscous * w - bristles.damping * w) / bristles.stiffness;
+  const double rate = std::sqrt(bristles.stiffness / inertia);
+  // At speed the bristle's own equation settles faster than that, and knows better than a noisy acceleration.
+  if (std::abs(w) / settled < rate) state.bristle += (carried - state.bristle) * -std::expm1(-rate * duration_s);
+  state.bristle = std::clamp(state.bristle, -settled, settled);
 }
 
 }  // namespace sim

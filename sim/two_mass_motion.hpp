@@ -45,33 +45,15 @@ inline void move_two_masses(const SecondMass& second, double inertia, double lea
   const Coupling coupling(second, inertia, lead);
   // Positions half a step ahead, speeds over the whole step: symplectic, order 2 for the spring.
   const double half_s = 0.5 * duration_s;
-  state.x += half_s * lead * state.w;
-  double load_middle = state.load_x + half_s * lead * state.load_w;
-  const double spring = coupling.effort((state.x - load_middle) / lead, state.w - state.load_w);
-  state.w += duration_s * (effort - spring) / coupling.motor_inertia;
+  const double motor_middle = state.x + half_s * lead * state.w;
+  const double load_middle = state.load_x + half_s * lead * state.load_w;
+  const double spring = coupling.effort((motor_middle - load_middle) / lead, state.w - state.load_w);
   SlidingMass load{load_middle, state.load_w, coupling.load_inertia, 0.0};
   slide(load, spring, duration_s, contact);
+  state.w += duration_s * (effort - spring) / coupling.motor_inertia;
   state.load_w = load.w;
-  state.x += half_s * lead * state.w;
+  state.x = motor_middle + half_s * lead * state.w;
   state.load_x = load_middle + half_s * lead * state.load_w;
-}
-
-/// The spring's deflection that carries a known motion of the table: what accelerates it and overcomes its friction.
-inline void follow_two_masses(const SecondMass& second, double inertia, double lead, DriveState& state, double effort,
-                              const std::array<FrictionSide, 2>& friction) {
-  const Coupling coupling(second, inertia, lead);
-  state.load_x = state.x;
-  state.load_w = state.w;
-  double carried = effort;
-  if (state.w != 0.0) {
-    const FrictionSide& side = friction[state.w > 0.0 ? 0 : 1];
-    const double magnitude =
-        stribeck_curve(side, side.breakaway, std::abs(state.w)).effort + side.viscous * std::abs(state.w);
-    const double drag = state.w > 0.0 ? magnitude : -magnitude;
-    carried = drag + (effort - drag) * second.load_fraction;
-  }
-  const double side = carried > 0.0 ? 1.0 : -1.0;
-  state.x = state.load_x + lead * (carried / coupling.stiffness + side * coupling.half_gap);
 }
 
 }  // namespace sim

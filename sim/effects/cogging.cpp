@@ -1,4 +1,6 @@
 // Cogging.
+#include <algorithm>
+
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 #include "sim/harmonic.hpp"
@@ -9,6 +11,7 @@ namespace {
 
 void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
   const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
+  drive.finest_period = std::min(drive.finest_period, entry.at("period"));
   drive.load_effort.push_back([harmonic](double, double x) { return harmonic(x); });
 }
 

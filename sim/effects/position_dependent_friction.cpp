@@ -11,6 +11,7 @@ namespace {
 
 void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
   const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
+  drive.finest_period = std::min(drive.finest_period, entry.at("period"));
   drive.level_factor.push_back([harmonic](double, double x) { return std::max(0.0, 1.0 + harmonic(x)); });
 }
 

@@ -1,0 +1,57 @@
+// Records and floors that models are compared on, and the one number that compares them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "host/insight/error_floor.hpp"
+#include "host/insight/prediction.hpp"
+
+namespace host {
+
+/// A record with the floor of each of its windows.
+struct ComparedRecord {
+  PreparedRecord prepared;
+  ErrorFloor floor;
+};
+
+/// The records of one purpose (training, or validation).
+struct RecordSet {
+  std::vector<ComparedRecord> records;
+  std::size_t stride = 1;  ///< every so many-th window is used; more than 1 makes a search faster
+
+  std::size_t used_windows() const;
+};
+
+/// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
+RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
+                     double window_s = kWindow_s);
+
+/// Computes the floors again with a better model.
+void renew_floors(RecordSet& set, const sim::DriveDescription& reference);
+
+/// Mean over the windows and channels of (error/floor)^2 of one window.
+struct WindowScore {
+  std::size_t record;
+  std::size_t window;
+  double x = 0.0;  ///< mean squared error of the channel over its floor squared; 0 where the record lacks it
+  double w = 0.0;
+};
+
+/// RMS errors of a model on a set.
+struct SetError {
+  double combined = 0.0;  ///< RMS over windows and channels of error/floor; about 1 for a perfect model
+  double x_rms = 0.0;     ///< mm or m
+  double w_rms = 0.0;     ///< rad/s or m/s
+  double x_floor = 0.0;   ///< RMS of the windows' floors
+  double w_floor = 0.0;
+  std::vector<WindowScore> windows;
+};
+
+SetError error_of(const sim::Drive& drive, const RecordSet& set);
+
+/// Residuals (prediction - measurement)/floor of every used row, scaled so that their squares sum to combined^2.
+std::size_t residual_count(const RecordSet& set);
+void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out);
+
+}  // namespace host

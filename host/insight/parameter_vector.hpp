@@ -1,0 +1,39 @@
+// The free parameters of a drive as one vector, for solvers.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// One free number. It may stand for several entries of the model that are claimed to be equal: parameters that had the
+/// same magnitude in one direction (eq. 19 with W1 = W2) stay equal, so that a re-fit keeps the form that it found.
+struct FreeParameter {
+  std::size_t effect;                                   ///< index into DriveDescription::effects
+  std::vector<std::pair<std::string, double>> entries;  ///< parameter id and the sign it carries
+  double scale;                                         ///< typical size, > 0
+  double lower, upper;                                  ///< bounds of the number
+
+  std::string name(const sim::DriveDescription& description) const;  ///< "cogging.cosine"
+};
+
+class ParameterVector {
+ public:
+  /// All parameters of all effects. Scales come from the values, or from the catalogue where a value is zero.
+  explicit ParameterVector(const sim::DriveDescription& description);
+
+  const std::vector<FreeParameter>& parameters() const { return parameters_; }
+  std::size_t size() const { return parameters_.size(); }
+
+  Eigen::VectorXd read(const sim::DriveDescription& description) const;
+  /// Writes values, clamped to their bounds.
+  void write(const Eigen::VectorXd& values, sim::DriveDescription& description) const;
+
+ private:
+  std::vector<FreeParameter> parameters_;
+};
+
+}  // namespace host

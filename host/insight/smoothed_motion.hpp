@@ -1,0 +1,66 @@
+// The motion behind a record: travel and speed smoothed from encoder and command, with what is left uncertain.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// One sample an element. Travel in mm or m, speed in rad/s or m/s.
+struct SmoothedMotion {
+  std::vector<double> x;
+  std::vector<double> w;
+  std::vector<double> disturbance;  ///< effort that the linear drive does not explain, Nm or N (friction included)
+  std::vector<double> x_variance;   ///< of the errors of x and w, and their covariance
+  std::vector<double> w_variance;
+  std::vector<double> xw_covariance;
+  std::vector<bool> standing;  ///< the encoder shows no motion at all
+};
+
+/// Commands in volts as the drive's amplifier gets them: u_V, or the logged current over the amplifier's gain.
+/// Throws Failure(bad_input) where neither can be had.
+std::vector<double> command_volts(const Record& record, const sim::DataSheet& data);
+
+/// Rauch-Tung-Striebel smoother of the model (15): travel, speed and a random-walk disturbance, driven by the command
+/// and corrected by the encoder alone, so that errors of the tachometer stay out of it. A record without a position is
+/// smoothed from its speed. The gains belong to the record: further signals pass through the same filter.
+class MotionSmoother {
+ public:
+  /// `inertia` and `viscous` need to be right within some 30 %: the disturbance takes the rest. `friction_level` (Nm or
+  /// N) is about what friction jumps by where the motion starts, stops or reverses.
+  MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
+                 double friction_level);
+
+  const SmoothedMotion& motion() const { return motion_; }
+
+  /// What the smoothed travel and speed change by when the encoder's readings change by `reading` (mm or m) and the
+  /// command by `command_V`, row by row; either may be empty. The smoother is linear, so changes add up.
+  struct Change {
+    std::vector<double> x, w;
+  };
+  Change change(const std::vector<double>& reading, const std::vector<double>& command_V) const;
+
+ private:
+  struct Observation;
+  /// Gains of one sample: of its measurement, of the knowledge that it stands, and of the backward pass.
+  struct Gains {
+    Eigen::Vector3d measurement;
+    Eigen::Vector3d standstill;
+    Eigen::Matrix3d backward;
+    bool standing;
+  };
+  void solve_gains(const std::vector<Observation>& observed, double creep_variance);
+  void smooth(const std::vector<Observation>& observed, const std::vector<double>& u_V, const Eigen::Vector3d& start);
+
+  bool by_position_;
+  double effort_per_volt_;
+  Eigen::Matrix3d A_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d B_ = Eigen::Vector3d::Zero();
+  std::vector<Gains> gains_;
+  SmoothedMotion motion_;
+};
+
+}  // namespace host
