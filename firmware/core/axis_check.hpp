@@ -10,13 +10,15 @@ namespace parameter_check {
 
 template <typename Scalar>
 constexpr bool is_positive(Scalar value) {
-  return value > Scalar(0);  // false for not-a-number
+  return value > Scalar(0) && ScalarTraits<Scalar>::is_finite(value);
 }
 
 template <typename Scalar>
 constexpr bool is_valid(const FrictionDirection<Scalar>& direction) {
-  return direction.static_V >= Scalar(0) && direction.coulomb_V >= Scalar(0) && direction.omega1_rad_s >= Scalar(0) &&
-         direction.omega2_rad_s >= Scalar(0) && !ScalarTraits<Scalar>::is_nan(direction.viscous_V_s_per_rad);
+  const auto is_magnitude = [](Scalar value) { return value >= Scalar(0) && ScalarTraits<Scalar>::is_finite(value); };
+  return is_magnitude(direction.static_V) && is_magnitude(direction.coulomb_V) &&
+         is_magnitude(direction.omega1_rad_s) && is_magnitude(direction.omega2_rad_s) &&
+         ScalarTraits<Scalar>::is_finite(direction.viscous_V_s_per_rad);
 }
 
 /// Length per second^order as an increment per sample^order; 0 where it is out of range.
@@ -52,15 +54,15 @@ constexpr ParameterError check(const AxisParameters<Scalar>& p) {
   if (!(codes >= Scalar(2) && codes <= kMostCodes)) return ParameterError::dac_limit;
   if (p.tachometer_fitted && !is_positive(p.tachometer_gain) && !is_positive(Scalar(0) - p.tachometer_gain))
     return ParameterError::tachometer_gain;
-  if (p.tachometer_fitted && Traits::is_nan(p.tachometer_offset)) return ParameterError::tachometer_gain;
+  if (p.tachometer_fitted && !Traits::is_finite(p.tachometer_offset)) return ParameterError::tachometer_gain;
   const DiscreteDrive<Scalar>& drive = p.drive;
   if (!is_positive(drive.Ad12) || !is_positive(drive.Bd1) || !is_positive(drive.Bd2) || !is_positive(drive.Ad22) ||
       drive.Ad22 > Scalar(1))
     return ParameterError::drive_model;
   for (const auto& row : p.Kobs)
     for (const Scalar gain : row)
-      if (Traits::is_nan(gain)) return ParameterError::kalman_gain;
-  if (Traits::is_nan(p.Kc[0]) || Traits::is_nan(p.Kc[1])) return ParameterError::state_feedback;
+      if (!Traits::is_finite(gain)) return ParameterError::kalman_gain;
+  if (!Traits::is_finite(p.Kc[0]) || !Traits::is_finite(p.Kc[1])) return ParameterError::state_feedback;
   if (p.friction_feedforward_on) {
     using parameter_check::is_valid;
     if (!is_valid(p.friction.positive) || !is_valid(p.friction.negative)) return ParameterError::friction_curve;

@@ -10,7 +10,8 @@
 
 namespace firmware {
 
-/// Lengths are mm for a rotary drive and m for a linear one; velocities of the drive are rad/s and m/s.
+/// Every value is finite. Lengths are mm for a rotary drive and m for a linear one; velocities of the drive are rad/s
+/// and m/s.
 template <typename Scalar>
 struct AxisParameters {
   Scalar sample_period_s{};       ///< Ts, > 0
@@ -43,11 +44,11 @@ enum class ParameterError : std::uint8_t {
   encoder_resolution = 3,     ///< not above 0
   dac_resolution = 4,         ///< not above 0
   dac_limit = 5,              ///< below 2 or above 2^23 steps of the converter
-  tachometer_gain = 6,        ///< zero or not a number although a tachometer is fitted
+  tachometer_gain = 6,        ///< gain zero, or gain or offset not finite, although a tachometer is fitted
   drive_model = 7,            ///< Ad12, Bd1 or Bd2 not above 0, or Ad22 outside (0, 1]
-  kalman_gain = 8,            ///< not a number
-  state_feedback = 9,         ///< not a number
-  friction_curve = 10,        ///< a magnitude below 0
+  kalman_gain = 8,            ///< not finite
+  state_feedback = 9,         ///< not finite
+  friction_curve = 10,        ///< a magnitude below 0, or not finite
   friction_blend = 11,        ///< not above 0 although friction feed-forward is on
   velocity_limit = 12,        ///< not above 0, or outside the references' range (motion_limits.hpp)
   acceleration_limit = 13,    ///< likewise

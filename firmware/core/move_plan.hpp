@@ -94,7 +94,9 @@ constexpr bool is_admissible(const CountPosition& distance, std::int64_t N1, con
 /// The shortest plan, to within the rounding of its durations up to whole samples. `limits` have passed check(). Pure
 /// and bounded (some 60 trial durations), but it divides: run it outside the control interrupt.
 constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& limits) {
-  using namespace move_planning;
+  using move_planning::Division;
+  using move_planning::is_admissible;
+  using move_planning::Ramp;
   MovePlan plan;
   plan.negative = distance.counts < 0;
   if (plan.negative) distance = CountPosition{} - distance;
@@ -116,8 +118,8 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
     (is_admissible(distance, middle, reduced) ? admissible : too_short) = middle;
   }
 
-  const Division velocity = divide(distance, admissible);
-  const Ramp ramp = ramp_to(velocity.quotient + (velocity.remainder != 0 ? 1 : 0), reduced);
+  const Division velocity = move_planning::divide(distance, admissible);
+  const Ramp ramp = move_planning::ramp_to(velocity.quotient + (velocity.remainder != 0 ? 1 : 0), reduced);
   const Increment acceleration = velocity.quotient / ramp.N2;
   plan.N1 = static_cast<std::int32_t>(admissible);
   plan.N2 = static_cast<std::int32_t>(ramp.N2);

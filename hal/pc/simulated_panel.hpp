@@ -12,7 +12,7 @@ namespace hal::pc {
 class SimulatedClock {
  public:
   void advance_us(std::uint32_t duration_us) { now_us_ += duration_us; }
-  std::uint32_t now_us() { return now_us_; }
+  std::uint32_t now_us() const { return now_us_; }
 
  private:
   std::uint32_t now_us_ = 0;
@@ -22,7 +22,7 @@ class SimulatedEmergencyStop {
  public:
   void press() { pressed_ = true; }
   void release() { pressed_ = false; }
-  bool is_pressed() { return pressed_; }
+  bool is_pressed() const { return pressed_; }
 
  private:
   bool pressed_ = false;

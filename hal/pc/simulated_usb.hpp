@@ -16,7 +16,7 @@ class SimulatedUsb {
 
   bool send(const HidReport& report) { return configured_ && put(to_host_, report); }
   bool receive(HidReport& report) { return take(to_board_, report); }
-  bool is_configured() { return configured_; }
+  bool is_configured() const { return configured_; }
 
   bool host_send(const HidReport& report) { return configured_ && put(to_board_, report); }
   bool host_receive(HidReport& report) { return take(to_host_, report); }

@@ -351,6 +351,25 @@ TEST_F(AxisFaults, FailedConverterOpensTheLoop) {
   expect_stopped_by(AxisFault::dac_write_failed);
 }
 
+TEST(AxisFault, AControlSignalThatIsNotANumberNeverReachesTheConverter) {
+  auto p = parameters_of<float>(kPaperX);
+  p.Kobs[1][1] = 1e30f;  // finite, so it is accepted, and diverges within a few samples
+  p.disturbance_cancellation_on = true;
+  LinearAxis drive(p);
+  Axis<float, LinearAxis> axis(drive);
+  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  axis.step();
+  ASSERT_TRUE(axis.enable());
+  drive.velocity = 1.0;
+  for (int k = 0; k < 20; ++k) {
+    axis.step();
+    drive.advance();
+  }
+  EXPECT_EQ(axis.telemetry().fault, AxisFault::control_signal_not_a_number);
+  EXPECT_EQ(drive.command_V, 0.0);
+  EXPECT_FALSE(drive.drive_enable().on);
+}
+
 TEST_F(AxisFaults, AfterTheCauseIsGoneTheAxisHoldsWhereItStands) {
   drive.encoder().valid = false;
   expect_stopped_by(AxisFault::encoder_invalid);
@@ -388,7 +407,8 @@ TEST(AxisParameterCheck, NamesWhatIsWrong) {
   EXPECT_EQ(error_after([](auto& p) { p.tachometer_gain = 0.0f; }), ParameterError::tachometer_gain);
   EXPECT_EQ(error_after([](auto& p) { p.drive.Ad22 = 1.01f; }), ParameterError::drive_model);
   EXPECT_EQ(error_after([&](auto& p) { p.Kobs[2][1] = nan; }), ParameterError::kalman_gain);
-  EXPECT_EQ(error_after([&](auto& p) { p.Kc[1] = nan; }), ParameterError::state_feedback);
+  EXPECT_EQ(error_after([](auto& p) { p.Kc[1] = std::numeric_limits<float>::infinity(); }),
+            ParameterError::state_feedback);
   EXPECT_EQ(error_after([](auto& p) {
               p.friction_feedforward_on = true;
               p.friction.negative.static_V = -1.0f;

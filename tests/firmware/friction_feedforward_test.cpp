@@ -50,7 +50,8 @@ class FrictionFeedforward : public testing::TestWithParam<const PaperAxis*> {
 INSTANTIATE_TEST_SUITE_P(PaperAxes, FrictionFeedforward, testing::Values(&kPaperX, &kPaperY));
 
 TEST_P(FrictionFeedforward, IsEquation19InBothDirections) {
-  for (double w = blend; w < 160.0; w *= 1.003) {
+  for (int i = 0; i <= 2000; ++i) {
+    const double w = blend * std::pow(800.0, i / 2000.0);  // up to 160 rad/s
     ASSERT_NEAR(static_cast<double>(friction(static_cast<float>(w))), equation_19_V(*GetParam(), 0, w), 1e-6) << w;
     ASSERT_NEAR(static_cast<double>(friction(static_cast<float>(-w))), -equation_19_V(*GetParam(), 1, w), 1e-6) << w;
   }
@@ -62,7 +63,8 @@ TEST_P(FrictionFeedforward, IsContinuousThroughZeroAndZeroAtRest) {
   const double steepest = std::max(equation_19_V(*GetParam(), 0, blend), equation_19_V(*GetParam(), 1, blend)) / blend;
   const double step = 1e-3;
   double last = static_cast<double>(friction(-1.0f));
-  for (double w = -1.0 + step; w < 1.0; w += step) {
+  for (int i = -999; i <= 1000; ++i) {
+    const double w = i * step;
     const double now = static_cast<double>(friction(static_cast<float>(w)));
     ASSERT_LE(std::abs(now - last), 1.01 * steepest * step) << w;
     last = now;

@@ -89,7 +89,7 @@ TEST(KalmanEstimatorWithoutTachometer, NeedsNoVelocityReading) {
   firmware::KalmanEstimator<float> with_zero_column;
   for (auto& row : p.Kobs) row[1] = 0.0f;
   with_zero_column.configure(p.drive, p.Kobs, p.encoder_resolution);
-  for (int k = 0; k < 1000; ++k) {
+  for (std::int64_t k = 0; k < 1000; ++k) {
     without_reading.update(0.3f, 2 * k);
     with_zero_column.update(0.3f, 2 * k, 1000.0f);
   }
