@@ -1,0 +1,14 @@
+// The files that every report carries within itself, taken into the program when it is built.
+#pragma once
+
+#include <string_view>
+
+namespace host::assets {
+
+std::string_view dygraphs_script();      ///< dygraphs, minified (Debian: libjs-dygraphs)
+std::string_view synchronizer_script();  ///< its extra that joins zoom and cursor of several charts
+std::string_view dygraphs_style();
+std::string_view report_script();
+std::string_view report_style();
+
+}  // namespace host::assets

@@ -1,0 +1,117 @@
+// What a report shows: each struct is one figure or block, filled by the caller in physical units.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace host {
+
+/// What a series stands for. It decides the colour, so that the same thing has the same colour in every figure.
+enum class SeriesRole { measured, predicted, residual, before, after, train, validate, floor, model, other };
+
+enum class Tone { good, attention, bad, neutral };
+
+/// The answer, in plain words, at the top of the report.
+struct Verdict {
+  Tone tone = Tone::neutral;
+  std::string label;                   ///< one or two words, e.g. "effect missing"
+  std::string headline;                ///< one sentence
+  std::vector<std::string> sentences;  ///< why, and what to do next
+  std::string command;                 ///< the command line that does it; may be empty
+};
+
+/// One trace over the time axis of its plot; as long as `TimePlot::t_s`. NaN leaves a gap.
+struct TimeTrace {
+  std::string name;
+  SeriesRole role = SeriesRole::measured;
+  std::vector<double> values;
+};
+
+/// Traces that share a vertical axis.
+struct TracePanel {
+  std::string quantity;  ///< e.g. "speed"
+  std::string unit;      ///< e.g. "rad/s"
+  std::vector<TimeTrace> traces;
+};
+
+/// A stretch of time that is shaded, e.g. the windows with the largest error.
+struct TimeSpan {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+/// Stacked traces with one time axis: they zoom and pan together and share the cursor.
+struct TimePlot {
+  std::string title;
+  std::string caption;
+  std::vector<double> t_s;  ///< increasing
+  std::vector<TracePanel> panels;
+  std::vector<TimeSpan> shaded;
+};
+
+enum class SeriesStyle { line, points, line_and_points, stems };
+
+/// y over x. With `lower` and `upper` (both as long as y) a line gets a band, points get error bars. NaN leaves a gap.
+struct ScatterSeries {
+  std::string name;
+  SeriesRole role = SeriesRole::measured;
+  SeriesStyle style = SeriesStyle::points;
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> lower;
+  std::vector<double> upper;
+};
+
+struct Axis {
+  std::string quantity;
+  std::string unit;
+};
+
+/// Anything against anything: residual over speed, position, acceleration; friction curve; order spectrum (stems).
+struct ScatterPlot {
+  std::string title;
+  std::string caption;
+  Axis x;
+  Axis y;
+  std::vector<ScatterSeries> series;
+  bool logarithmic_y = false;  ///< values <= 0 leave gaps
+};
+
+struct BarRow {
+  std::string label;
+  std::vector<double> values;  ///< >= 0, one per series of the chart; NaN where there is none
+  std::string note;            ///< shown behind the label
+};
+
+struct BarSeries {
+  std::string name;
+  SeriesRole role = SeriesRole::measured;
+};
+
+/// Horizontal bars: error by regime, the ladder of errors, candidates before and after.
+struct BarChart {
+  std::string title;
+  std::string caption;
+  std::string unit;  ///< behind each value; "%" and "" are fine
+  std::vector<BarSeries> series;
+  std::vector<BarRow> rows;
+  std::optional<std::pair<std::string, double>> reference;  ///< a vertical line: name and value
+};
+
+/// Rows of text. A column whose every cell starts with a number is aligned right.
+struct Table {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> headings;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// Pairs of name and value, set compactly.
+struct Facts {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> items;
+};
+
+}  // namespace host

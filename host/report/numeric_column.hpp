@@ -1,0 +1,13 @@
+// Which columns of a table hold numbers and are therefore aligned right.
+#pragma once
+
+#include <cstddef>
+
+#include "host/report/content.hpp"
+
+namespace host {
+
+/// True when every cell of the column starts with a number, a sign before a number, or a dash for "no value".
+bool is_numeric_column(const Table& table, std::size_t column);
+
+}  // namespace host

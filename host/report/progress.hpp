@@ -1,0 +1,47 @@
+// A progress line for work that takes a while.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+namespace host {
+
+/// One line, rewritten in place, on a terminal only (never in a log or a pipe), and only once the work has taken longer
+/// than `patience`. All functions may be called from several threads. The line is wiped when the object dies.
+class Progress {
+ public:
+  /// `total`: number of steps that advance() will count, > 0.
+  explicit Progress(std::string what, std::size_t total, std::FILE* stream = stderr,
+                    std::chrono::milliseconds patience = std::chrono::seconds(2));
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// Counts finished steps; `detail` (may be empty) names what was just done.
+  void advance(std::size_t steps = 1, std::string_view detail = "");
+
+  /// More work has turned up.
+  void add_steps(std::size_t steps);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void draw(std::string_view detail, Clock::time_point now);
+
+  std::mutex mutex_;
+  std::string what_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  std::FILE* stream_;
+  std::chrono::milliseconds patience_;
+  bool shows_;
+  bool has_line_ = false;
+  Clock::time_point begun_ = Clock::now();
+  Clock::time_point drawn_{};
+};
+
+}  // namespace host

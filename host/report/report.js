@@ -1,0 +1,269 @@
+// Draws the plots of a report with dygraphs. The data stand in the element "plots"; frames "plot-N" wait for them.
+(function () {
+  "use strict";
+
+  const GAP = 0xffffff;
+  // Rows drawn inside the visible range: some for each pixel of a wide screen. The samples themselves stay at hand, and
+  // zooming in brings out every one of them.
+  const VISIBLE_STRETCHES = 1500;
+  const HIDDEN_STRETCHES = 200;
+  const VALUE_AXIS_WIDTH = 62; // pixels; the same in all panels of a stack, so that their time axes line up
+  const charts = [];
+
+  function unpack(packed) {
+    const bytes = atob(packed.base64);
+    const values = new Float64Array(bytes.length / 3);
+    for (let k = 0; k < values.length; k++) {
+      const code = (bytes.charCodeAt(3 * k) << 16) | (bytes.charCodeAt(3 * k + 1) << 8) | bytes.charCodeAt(3 * k + 2);
+      values[k] = code === GAP ? NaN : packed.lowest + code * packed.step;
+    }
+    return values;
+  }
+
+  // The first row whose x is not below the limit; x ascends.
+  function firstRowFrom(x, limit) {
+    let low = 0;
+    let high = x.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (x[middle] < limit) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  // Adds the rows of [from, to) that hold the extremes of each stretch, so that no spike is lost.
+  function pushExtremes(columns, from, to, stretches, rows) {
+    if (to - from <= 3 * stretches) {
+      for (let row = from; row < to; row++) rows.push(row);
+      return;
+    }
+    for (let stretch = 0; stretch < stretches; stretch++) {
+      const begin = from + Math.floor(((to - from) * stretch) / stretches);
+      const end = from + Math.floor(((to - from) * (stretch + 1)) / stretches);
+      const chosen = new Set([begin]);
+      for (const column of columns) {
+        let lowest = -1;
+        let highest = -1;
+        let gap = -1;
+        for (let row = begin; row < end; row++) {
+          if (isNaN(column[row])) {
+            if (gap < 0) gap = row;
+            continue;
+          }
+          if (lowest < 0 || column[row] < column[lowest]) lowest = row;
+          if (highest < 0 || column[row] > column[highest]) highest = row;
+        }
+        [lowest, highest, gap].filter((row) => row >= 0).forEach((row) => chosen.add(row));
+      }
+      rows.push(...[...chosen].sort((a, b) => a - b));
+    }
+  }
+
+  // Rows for dygraphs: fine inside the window, coarse outside, so that a reset of the zoom has something to show.
+  function drawnRows(x, columns, window) {
+    const from = window ? Math.max(0, firstRowFrom(x, window[0]) - 1) : 0;
+    const to = window ? Math.min(x.length, firstRowFrom(x, window[1]) + 1) : x.length;
+    const rows = [];
+    pushExtremes(columns, 0, from, HIDDEN_STRETCHES, rows);
+    pushExtremes(columns, from, to, VISIBLE_STRETCHES, rows);
+    pushExtremes(columns, to, x.length, HIDDEN_STRETCHES, rows);
+    return rows.map((row) => [x[row], ...columns.map((column) => column[row])]);
+  }
+
+  function formatted(value) {
+    if (value === null || value === undefined || !isFinite(value)) return "–";
+    return String(Number(value.toPrecision(5)));
+  }
+
+  function addElement(parent, tag, className, text) {
+    const element = document.createElement(tag);
+    if (className) element.className = className;
+    if (text !== undefined) element.textContent = text;
+    parent.appendChild(element);
+    return element;
+  }
+
+  // The quantity and its unit, then each series with its colour and its value at the cursor.
+  function legendOf(plot, panel, xUnit) {
+    return function (data) {
+      const content = document.createDocumentFragment();
+      addElement(content, "b", "", panel.label);
+      data.series.forEach(function (series, index) {
+        const item = addElement(content, "span");
+        addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : "")).style.background =
+          panel.series[index].colour;
+        addElement(item, "span", "", series.label);
+        const chosen = data.x !== undefined && series.y !== undefined && series.y !== null && !isNaN(series.y);
+        addElement(item, "span", "reading", chosen ? formatted(series.y) : "");
+      });
+      if (data.x !== undefined) addElement(content, "span", "at", "at " + formatted(data.x) + (xUnit ? " " + xUnit : ""));
+      return content;
+    };
+  }
+
+  function commonOptions(plot, panel, elements, isLowest, xUnit) {
+    return {
+      labels: [plot.xLabel, ...panel.series.map((series) => series.name)],
+      colors: panel.series.map((series) => series.colour),
+      labelsDiv: elements.legend,
+      legend: "always",
+      legendFormatter: legendOf(plot, panel, xUnit),
+      xlabel: isLowest ? plot.xLabel : null,
+      axes: {
+        x: { drawAxis: isLowest, axisLabelWidth: 70, valueFormatter: formatted, axisLabelFormatter: formatted },
+        y: { axisLabelWidth: VALUE_AXIS_WIDTH, valueFormatter: formatted, axisLabelFormatter: formatted },
+      },
+      axisLabelFontSize: 12,
+      xLabelHeight: 20,
+      gridLineColor: "#dfe4ea",
+      axisLineColor: "#9aa5b1",
+      highlightCircleSize: 3,
+      animatedZooms: false,
+    };
+  }
+
+  function panelElements(frame, label, className) {
+    const box = addElement(frame, "div", "panel");
+    const elements = { legend: addElement(box, "div", "legend"), canvas: addElement(box, "div", "canvas " + className) };
+    elements.canvas.setAttribute("role", "img");
+    elements.canvas.setAttribute("aria-label", label);
+    return elements;
+  }
+
+  // Behind the traces: the shaded spans, and a line at zero.
+  function background(spans) {
+    return function (context, area, chart) {
+      const zero = chart.toDomYCoord(0);
+      if (zero > area.y && zero < area.y + area.h) {
+        context.fillStyle = "#b8c1cc";
+        context.fillRect(area.x, Math.round(zero), area.w, 1);
+      }
+      context.fillStyle = "rgba(230, 159, 0, 0.18)";
+      for (const span of spans) {
+        const left = chart.toDomXCoord(span[0]);
+        const right = chart.toDomXCoord(span[1]);
+        context.fillRect(left, area.y, Math.max(1, right - left), area.h);
+      }
+    };
+  }
+
+  function drawPanel(frame, plot, panel, isLowest) {
+    const x = unpack(panel.x);
+    const columns = panel.series.map((series) => unpack(series.y));
+    const elements = panelElements(frame, panel.label + " over time", isLowest ? "lowest" : "");
+    let drawnWindow = null;
+    let timer = 0;
+    const options = commonOptions(plot, panel, elements, isLowest, "s");
+    options.underlayCallback = background(plot.shaded);
+    options.series = {};
+    panel.series.forEach((series) => (options.series[series.name] = { strokeWidth: series.wide ? 2.6 : 1.2 }));
+    options.drawCallback = function (chart, isFirst) {
+      if (isFirst) return;
+      const window = chart.isZoomed("x") ? chart.xAxisRange() : null;
+      if (String(window) === String(drawnWindow)) return;
+      clearTimeout(timer);
+      timer = setTimeout(function () {
+        drawnWindow = window;
+        chart.updateOptions({ file: drawnRows(x, columns, window) });
+      }, 30);
+    };
+    const chart = new Dygraph(elements.canvas, drawnRows(x, columns, null), options);
+    charts.push(chart);
+    return chart;
+  }
+
+  function drawTimePlot(frame, plot) {
+    const stacked = plot.panels.map((panel, index) => drawPanel(frame, plot, panel, index === plot.panels.length - 1));
+    if (stacked.length > 1) Dygraph.synchronize(stacked, { zoom: true, selection: true, range: false });
+  }
+
+  function drawStems(event) {
+    const context = event.drawingContext;
+    const zero = event.dygraph.getOption("logscale") ? event.plotArea.y + event.plotArea.h : event.dygraph.toDomYCoord(0);
+    context.strokeStyle = event.color;
+    context.lineWidth = 1.5;
+    for (const point of event.points) {
+      if (isNaN(point.canvasy)) continue;
+      context.beginPath();
+      context.moveTo(point.canvasx, zero);
+      context.lineTo(point.canvasx, point.canvasy);
+      context.stroke();
+    }
+  }
+
+  function drawErrorBars(event) {
+    const context = event.drawingContext;
+    const area = event.plotArea;
+    context.strokeStyle = event.color;
+    context.lineWidth = 1;
+    for (const point of event.points) {
+      if (isNaN(point.canvasy) || isNaN(point.y_top) || point.y_top === point.y_bottom) continue;
+      const top = area.y + area.h * point.y_bottom;
+      const bottom = area.y + area.h * point.y_top;
+      context.beginPath();
+      context.moveTo(point.canvasx, top);
+      context.lineTo(point.canvasx, bottom);
+      context.moveTo(point.canvasx - 3, top);
+      context.lineTo(point.canvasx + 3, top);
+      context.moveTo(point.canvasx - 3, bottom);
+      context.lineTo(point.canvasx + 3, bottom);
+      context.stroke();
+    }
+  }
+
+  function seriesOptions(series) {
+    const withLine = series.style === "line" || series.style === "line_and_points";
+    const withPoints = series.style !== "line";
+    const plotters = [Dygraph.Plotters.linePlotter];
+    if (series.style === "stems") plotters.unshift(drawStems);
+    if (series.lower) plotters.unshift(withLine ? Dygraph.Plotters.errorPlotter : drawErrorBars);
+    const many = series.x.length > 400;
+    return {
+      plotter: (event) => plotters.forEach((plotter) => plotter(event)),
+      drawPoints: withPoints,
+      pointSize: series.style === "stems" ? 2 : many ? 1 : 3,
+      strokeWidth: withLine ? 2 : 0,
+    };
+  }
+
+  // One row for each x of any series; null where a series has no point there, NaN where it has a gap.
+  function mergedRows(plot, withBars) {
+    const rows = new Map();
+    plot.series.forEach(function (series, index) {
+      series.x.forEach(function (x, k) {
+        // A second point at the same x needs a row of its own.
+        let row = (rows.get(x) || []).find((candidate) => candidate[index + 1] === null);
+        if (!row) {
+          row = [x, ...plot.series.map(() => null)];
+          rows.set(x, [...(rows.get(x) || []), row]);
+        }
+        const value = series.y[k] === null || (plot.logarithmic && series.y[k] <= 0) ? NaN : series.y[k];
+        row[index + 1] = !withBars ? value : series.lower ? [series.lower[k], value, series.upper[k]] : [value, value, value];
+      });
+    });
+    return [...rows.values()].flat().sort((a, b) => a[0] - b[0]);
+  }
+
+  function drawScatterPlot(frame, plot) {
+    const withBars = plot.series.some((series) => series.lower);
+    const elements = panelElements(frame, plot.label + " over " + plot.xLabel, "scatter");
+    const options = commonOptions(plot, plot, elements, true, plot.xUnit);
+    options.customBars = withBars;
+    options.connectSeparatedPoints = true;
+    options.logscale = plot.logarithmic;
+    if (!plot.logarithmic) options.underlayCallback = background([]);
+    options.series = {};
+    plot.series.forEach((series) => (options.series[series.name] = seriesOptions(series)));
+    options.xRangePad = 12;
+    options.yRangePad = plot.logarithmic ? null : 12;
+    charts.push(new Dygraph(elements.canvas, mergedRows(plot, withBars), options));
+  }
+
+  JSON.parse(document.getElementById("plots").textContent).forEach(function (plot, index) {
+    const frame = document.getElementById("plot-" + index);
+    if (plot.kind === "time") drawTimePlot(frame, plot);
+    else drawScatterPlot(frame, plot);
+  });
+  window.axisCharts = charts;
+})();

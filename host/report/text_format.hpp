@@ -1,0 +1,23 @@
+// Text and numbers on their way into HTML, JSON or a terminal.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace host {
+
+/// Safe inside HTML elements and quoted attributes.
+std::string escape_html(std::string_view text);
+
+/// JSON that is safe inside a <script> element: it holds no '<', so user text can end neither element nor comment.
+/// Text that is not UTF-8 is shown with replacement characters.
+std::string script_safe_json(const nlohmann::json& value);
+
+/// A number for people: `digits` significant digits, no exponent between 0.001 and 1 000 000; "–" when not finite.
+std::string format_value(double value, int digits = 3);
+
+/// `value` rounded to `digits` significant digits, so that it prints shortly.
+double rounded_to_digits(double value, int digits);
+
+}  // namespace host

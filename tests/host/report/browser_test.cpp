@@ -1,0 +1,182 @@
+// Opens a report in headless Chromium and uses it as a reader would: with the mouse.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/host/report/sample_report.hpp"
+
+namespace host {
+namespace {
+
+/// Runs after the report's own scripts: looks at the pixels, drags, looks at the ranges, and leaves what it saw in the
+/// page.
+constexpr const char* visitor_script = R"(
+<pre id="seen"></pre><script>
+(async function () {
+  const seen = { charts: axisCharts.length, title: document.title, fetched: performance.getEntriesByType("resource").length };
+  const pause = () => new Promise((resolve) => setTimeout(resolve, 200));
+  const near = (a, b) => Math.abs(a - b) < 40;
+  function pixelsOf(chart, colour) {
+    const rgb = [1, 3, 5].map((k) => parseInt(colour.substr(k, 2), 16));
+    let count = 0;
+    for (const canvas of chart.graphDiv.querySelectorAll("canvas")) {
+      const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+      copy.drawImage(canvas, 0, 0);
+      const data = copy.getImageData(0, 0, canvas.width, canvas.height).data;
+      for (let k = 0; k < data.length; k += 4)
+        if (data[k + 3] > 128 && near(data[k], rgb[0]) && near(data[k + 1], rgb[1]) && near(data[k + 2], rgb[2])) count++;
+    }
+    return count;
+  }
+  function mouse(chart, type, x, extra) {
+    const target = [...chart.graphDiv.querySelectorAll("canvas")].pop();
+    const box = target.getBoundingClientRect();
+    target.dispatchEvent(new MouseEvent(type, Object.assign({ bubbles: true, cancelable: true, view: window, button: 0,
+      clientX: box.left + x, clientY: box.top + 60 }, extra)));
+  }
+  const ranges = () => axisCharts.slice(0, 2).map((chart) => chart.xAxisRange());
+  seen.pixels = axisCharts.map((chart) => chart.getColors().map((colour) => pixelsOf(chart, colour)));
+  seen.rowsAtFirst = axisCharts[0].numRows();
+  seen.whole = ranges();
+  mouse(axisCharts[0], "mousedown", 300);
+  mouse(axisCharts[0], "mousemove", 320);
+  mouse(axisCharts[0], "mousemove", 340);
+  mouse(axisCharts[0], "mouseup", 340);
+  await pause();
+  seen.zoomed = ranges();
+  seen.expected = [300, 340].map((x) => {
+    const area = axisCharts[0].getArea();
+    return seen.whole[0][0] + ((x - area.x) / area.w) * (seen.whole[0][1] - seen.whole[0][0]);
+  });
+  const times = [];
+  for (let row = 0; row < axisCharts[0].numRows(); row++) times.push(axisCharts[0].getValue(row, 0));
+  seen.rowsInside = times.filter((t) => t >= seen.zoomed[0][0] && t <= seen.zoomed[0][1]).length;
+  mouse(axisCharts[1], "mousemove", 350);
+  await pause();
+  seen.cursor = axisCharts.slice(0, 2).map((chart) => chart.getSelection() >= 0);
+  seen.readings = document.querySelectorAll("#plot-0 .at").length;
+  const shift = { shiftKey: true };
+  mouse(axisCharts[1], "mousedown", 300, shift);
+  mouse(axisCharts[1], "mousemove", 320, shift);
+  mouse(axisCharts[1], "mousemove", 350, shift);
+  mouse(axisCharts[1], "mouseup", 350, shift);
+  await pause();
+  seen.panned = ranges();
+  mouse(axisCharts[1], "dblclick", 350);
+  await pause();
+  seen.reset = ranges();
+  document.getElementById("seen").textContent = encodeURIComponent(JSON.stringify(seen));
+})();
+</script></body>)";
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// Undoes encodeURIComponent, with which the page hands its findings over unharmed by HTML's own escapes.
+std::string decoded(const std::string& text) {
+  std::string plain;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '%') {
+      plain += static_cast<char>(std::stoi(text.substr(at + 1, 2), nullptr, 16));
+      at += 2;
+    } else {
+      plain += text[at];
+    }
+  }
+  return plain;
+}
+
+class Browser : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v chromium >/dev/null 2>&1") != 0) {
+      GTEST_SKIP() << "chromium is not installed: the report was not opened in a browser";
+    }
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("axis-browser-{}", ::getpid());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override {
+    if (!folder_.empty()) std::filesystem::remove_all(folder_);
+  }
+
+  /// The page as it stands after `visitor_script`; what the browser logged is in `log_`.
+  std::string visit(std::string html) {
+    html.replace(html.rfind("</body>"), 7, visitor_script);
+    std::ofstream(folder_ / "report.html", std::ios::binary) << html;
+    const std::string command = fmt::format(
+        "timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
+        "--disable-background-networking --disable-component-update --disable-sync --disable-dev-shm-usage "
+        "--window-size=1280,1000 --enable-logging=stderr --user-data-dir={0}/profile --virtual-time-budget=20000 "
+        "--dump-dom file://{0}/report.html >{0}/dom.html 2>{0}/log.txt </dev/null",
+        folder_.string());
+    EXPECT_EQ(std::system(command.c_str()), 0) << content_of(folder_ / "log.txt");
+    log_ = content_of(folder_ / "log.txt");
+    return content_of(folder_ / "dom.html");
+  }
+
+  static nlohmann::json seen_in(const std::string& page) {
+    const std::string mark = "<pre id=\"seen\">";
+    const std::size_t begin = page.rfind(mark);
+    const std::size_t end = page.find("</pre>", begin);
+    if (begin == std::string::npos || end == begin + mark.size()) return nullptr;
+    std::string text = page.substr(begin + mark.size(), end - begin - mark.size());
+    return nlohmann::json::parse(decoded(text));
+  }
+
+  std::filesystem::path folder_;
+  std::string log_;
+};
+
+TEST_F(Browser, DrawsZoomsPansAndSharesTheCursorWithoutConsoleMessages) {
+  constexpr std::size_t samples = 60'000;
+  const std::string page = visit(sample::report(samples).html());
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+  const nlohmann::json seen = seen_in(page);
+  ASSERT_TRUE(seen.is_object()) << "the page's scripts did not run to their end\n" << log_;
+
+  EXPECT_EQ(seen["charts"], 4);
+  EXPECT_EQ(seen["fetched"], 0);
+  EXPECT_THAT(seen["title"].get<std::string>(), testing::StartsWith("Drive </script><script>"))
+      << "user text stands in the title as text";
+  for (const nlohmann::json& chart : seen["pixels"]) {
+    for (const nlohmann::json& pixels : chart) EXPECT_GT(pixels.get<int>(), 30) << seen["pixels"];
+  }
+
+  // Drawn with fewer rows than there are samples; zooming in brings out every sample.
+  EXPECT_LT(seen["rowsAtFirst"].get<int>(), 10'000);
+  const double from_s = seen["zoomed"][0][0];
+  const double to_s = seen["zoomed"][0][1];
+  const double pixel_s = 60.0 / 1000.0;
+  EXPECT_NEAR(from_s, seen["expected"][0].get<double>(), 2.0 * pixel_s);
+  EXPECT_NEAR(to_s, seen["expected"][1].get<double>(), 2.0 * pixel_s);
+  EXPECT_EQ(seen["zoomed"][0], seen["zoomed"][1]) << "the stacked panels zoom together";
+  EXPECT_NEAR(seen["rowsInside"].get<double>(), (to_s - from_s) * 1000.0, 2.0);
+
+  EXPECT_EQ(seen["cursor"], nlohmann::json::array({true, true})) << "the cursor is shared";
+  EXPECT_EQ(seen["readings"], 2);
+
+  EXPECT_LT(seen["panned"][1][0].get<double>(), from_s) << "dragging to the right shows earlier samples";
+  EXPECT_NEAR(seen["panned"][1][1].get<double>() - seen["panned"][1][0].get<double>(), to_s - from_s, 1e-6);
+  EXPECT_EQ(seen["panned"][0], seen["panned"][1]);
+  EXPECT_EQ(seen["reset"], seen["whole"]);
+}
+
+TEST_F(Browser, AnEmptyReportIsStillAPage) {
+  const std::string page = visit(Report("Nothing yet").html());
+  EXPECT_NE(page.find("<h1>Nothing yet</h1>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace host

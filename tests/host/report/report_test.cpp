@@ -1,0 +1,109 @@
+#include "host/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "host/exit_codes.hpp"
+#include "tests/host/report/sample_report.hpp"
+
+namespace host {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// What stands between the markup and the scripts' sources.
+nlohmann::json plots_of(const std::string& html) {
+  const std::string mark = "id=\"plots\">";
+  const std::size_t begin = html.find(mark) + mark.size();
+  return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+TEST(Report, ShowsTheVerdictFirstAndTheBlocksInOrder) {
+  const std::string html = sample::report().html();
+  std::size_t last = 0;
+  for (const char* text : {"<h1>", "Cogging is missing.", "It repeats every 10 mm.", "axistool add", "train.csv",
+                           "Friction curve", "Order spectrum", "How much", "Ladder of errors", "Parameters"}) {
+    const std::size_t at = html.find(text, last);
+    ASSERT_NE(at, std::string::npos) << text;
+    last = at;
+  }
+}
+
+TEST(Report, NoTextOfTheUserBecomesMarkup) {
+  const std::string html = sample::report().html();
+  EXPECT_THAT(html, Not(HasSubstr("<script>document.title")));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;document.title=&#39;taken over&#39;"));
+}
+
+TEST(Report, NeedsNothingFromOutside) {
+  const std::string html = sample::report().html();
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(html, Not(HasSubstr("sourceMappingURL=")));
+  EXPECT_THAT(html, Not(HasSubstr("<script src")));
+  EXPECT_THAT(html, Not(HasSubstr("@import")));
+  EXPECT_THAT(html, HasSubstr("Dygraph.synchronize = synchronize"));
+}
+
+TEST(Report, PlotsCarryUnitsSamplesAndErrorBars) {
+  const nlohmann::json plots = plots_of(sample::report(1000).html());
+  ASSERT_EQ(plots.size(), 3U);
+  EXPECT_EQ(plots[0]["panels"][0]["label"], "speed [rad/s]");
+  EXPECT_EQ(plots[0]["panels"][0]["series"][1]["y"]["base64"].get<std::string>().size(), 4U * 1000U);
+  EXPECT_EQ(plots[1]["xLabel"], "speed [rad/s]");
+  EXPECT_EQ(plots[1]["series"][1]["lower"].size(), 10U);
+  EXPECT_EQ(plots[1]["series"][0]["y"][20], nullptr) << "a NaN is a gap";
+  EXPECT_EQ(plots[2]["logarithmic"], true);
+}
+
+TEST(Report, BarsAreScaledToTheLongestAndMissingOnesSaySo) {
+  const std::string html = sample::report().html();
+  EXPECT_THAT(html, HasSubstr("width:100.00%;background:#0072b2"));
+  EXPECT_THAT(html, HasSubstr("width:80.00%;background:#56b4e9"));
+  EXPECT_THAT(html, HasSubstr("<i class=\"reference\" style=\"left:10.00%\">"));
+  EXPECT_THAT(html, HasSubstr("title=\"validation\">–</span>"));
+}
+
+TEST(Report, NumbersInATableStandToTheRight) {
+  EXPECT_THAT(sample::report().html(), HasSubstr("<td class=\"number\">-1.5</td>"));
+}
+
+TEST(Report, StaysLightHoweverLongTheRecordsAre) {
+  Report report = sample::report(10);
+  for (int record = 0; record < 4; ++record) report.add(sample::time_plot(300'000));
+  const std::string html = report.html();
+  EXPECT_LT(html.size(), 3'000'000U);
+  const nlohmann::json panel = plots_of(html)[4]["panels"][0];
+  EXPECT_GT(panel["series"][0]["y"]["base64"].get<std::string>().size(), 4U * 5000U);
+}
+
+TEST(Report, RefusesSeriesThatDoNotFitTogether) {
+  Report report("test");
+  TimePlot traces = sample::time_plot(10);
+  traces.panels[0].traces[1].values.pop_back();
+  EXPECT_THROW(report.add(traces), std::invalid_argument);
+  ScatterPlot curve = sample::friction_curve();
+  curve.series[1].upper.pop_back();
+  EXPECT_THROW(report.add(curve), std::invalid_argument);
+}
+
+TEST(Report, IsWrittenWholeOrNotAtAll) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "axis-report-test";
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "report.html";
+  const Report report = sample::report();
+  report.write(path);
+  std::ifstream file(path, std::ios::binary);
+  const std::string written((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_EQ(written, report.html());
+  EXPECT_THROW(report.write(folder / "no such folder" / "report.html"), Failure);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace host
