@@ -30,7 +30,7 @@ test: ## Build and run all tests, again with sanitizers, and a short fuzz run of
 	$(NEED) build test
 	$(call configure,$(BUILD),-DAXIS_CHECKED_BUILD=$(abspath $(CHECKED)))
 	ninja -C $(BUILD) -j $(JOBS)
-	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON)
+	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug)
 	ninja -C $(CHECKED) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 

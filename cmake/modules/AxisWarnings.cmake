@@ -4,7 +4,8 @@ target_include_directories(axis_flags INTERFACE "${AXIS_ROOT}")
 target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
                                             -ffp-contract=off)
 if(AXIS_SANITIZE)
-  target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+                         -O1 -g1)
   target_link_options(axis_flags INTERFACE -fsanitize=address,undefined)
 endif()
 if(AXIS_FUZZ)
