@@ -28,6 +28,16 @@ constexpr double kUnitFactor = 1.5;
   throw Failure(ExitCode::bad_input, fmt::format("{}: {}", record.path, what));
 }
 
+std::string_view name_of(const Record& record, std::vector<double> Record::*channel) {
+  return name_in_file(record, channel);
+}
+
+/// "line 4, column x_mm": where a reader finds the channel, or its value in a row.
+std::string where(const Record& record, std::vector<double> Record::*channel, std::size_t rows_below = 0) {
+  if (record.names_line == 0) return fmt::format("column {}", name_of(record, channel));
+  return fmt::format("line {}, column {}", record.names_line + rows_below, name_of(record, channel));
+}
+
 bool is_constant(const std::vector<double>& values) {
   return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
 }
@@ -114,14 +124,10 @@ double departure_from_line(const std::vector<double>& x, double slope) {
   return largest;
 }
 
-std::string_view name_of(const Record& record, std::vector<double> Record::*channel) {
-  return column_name(channel, record.kind);
-}
-
 void fail_dead(const Record& record, std::vector<double> Record::*channel, const std::string& contradiction) {
-  fail(record, fmt::format("column {}: dead channel: constant at {} in all {} rows while {}; check the wiring and the "
+  fail(record, fmt::format("{}: dead channel: constant at {} in all {} rows while {}; check the wiring and the "
                            "channel's assignment, or leave the column out",
-                           name_of(record, channel), (record.*channel)[0], record.size(), contradiction));
+                           where(record, channel), (record.*channel)[0], record.size(), contradiction));
 }
 
 void check_position_and_speed_alive(const Record& record) {
@@ -195,9 +201,9 @@ void check_range(const Record& record, std::vector<double> Record::*channel, dou
   const std::vector<double>& values = record.*channel;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (values[k] < low || values[k] > high)
-      fail(record, fmt::format("row {} (t_s = {}), column {}: {} cannot be right (range {} … {}): {}; scale it with "
+      fail(record, fmt::format("{} (t_s = {}): {} cannot be right (range {} … {}): {}; scale it with "
                                "axistool import --map",
-                               k + 1, record.t_s[k], name_of(record, channel), values[k], low, high, suspicion));
+                               where(record, channel, k + 1), record.t_s[k], values[k], low, high, suspicion));
 }
 
 struct UnitMistake {
@@ -253,7 +259,7 @@ void check_speed_against_position(const Record& record, double lead) {
   if (!(xx > 0.0) || !(ss > 0.0) || std::abs(xs) < kClearlyRelated * std::sqrt(xx) * std::sqrt(ss)) return;
   const double factor = ss / xs;
   if (factor > 1.0 / kUnitFactor && factor < kUnitFactor) return;
-  const std::string pair = fmt::format("columns {} and {}", name_of(record, &Record::w), name_of(record, &Record::x));
+  const std::string pair = fmt::format("{}, and {}", where(record, &Record::w), name_of(record, &Record::x));
   if (factor < 0.0)
     fail(record, fmt::format("{}: the speed runs against the position (factor {:.4g}); turn the sign of one of them",
                              pair, factor));
@@ -280,12 +286,14 @@ void check_channels(const Record& record) {
 }
 
 void adapt_to(Record& record, const sim::DataSheet& sheet) {
-  if (record.kind != sheet.kind && !record.kind_is_presumed)
-    fail(record, sheet.kind == sim::DriveKind::linear
-                     ? "column w_rad_s: a shaft speed, but the model is of a linear drive; name the right model, or "
-                       "give the speed as v_m_s"
-                     : "column v_m_s: the speed of a linear drive, but the model is of a rotary one; name the right "
-                       "model, or give the shaft speed as w_rad_s");
+  if (record.kind != sheet.kind && !record.kind_is_presumed) {
+    const auto speed = record.has_speed() ? &Record::w : &Record::w_ref;
+    fail(record,
+         fmt::format("{}: the speed of a {} drive, but the model is of a {} one; name the right model, or give "
+                     "the speed as {}",
+                     where(record, speed), record.kind == sim::DriveKind::rotary ? "rotary" : "linear",
+                     sheet.kind == sim::DriveKind::rotary ? "rotary" : "linear", column_name(speed, sheet.kind)));
+  }
   if (sheet.kind == sim::DriveKind::linear && record.u_V.empty())
     fail(record,
          "missing column: u_V; a linear drive's model knows its force by the command in volts, and the record "
@@ -305,31 +313,30 @@ void check_units(const Record& record, const sim::DataSheet& sheet) {
   if (!(sheet.encoder_resolution > 0.0) || !position_moves(record)) return;
   const std::string_view unit = sheet.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (largest_step(record.x) < 0.5 * sheet.encoder_resolution)
-    fail(record,
-         fmt::format("column {}: a unit cannot be right: the position changes by {:.3g} {} a row at most, less "
-                     "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
-                     name_of(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
+    fail(record, fmt::format("{}: a unit cannot be right: the position changes by {:.3g} {} a row at most, less "
+                             "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
+                             where(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
   constexpr double kCoarse = 200.0;  // encoder steps: a unit that is 1000 times too small, and a slow start besides
   if (smallest_step(record.x) > kCoarse * sheet.encoder_resolution)
-    fail(record, fmt::format("column {}: a unit cannot be right: the position never changes by less than {:.3g} {}, "
+    fail(record, fmt::format("{}: a unit cannot be right: the position never changes by less than {:.3g} {}, "
                              "{:.0f} steps of the model's encoder ({:.3g} {}); the numbers look like a smaller unit",
-                             name_of(record, &Record::x), smallest_step(record.x), unit,
+                             where(record, &Record::x), smallest_step(record.x), unit,
                              smallest_step(record.x) / sheet.encoder_resolution, sheet.encoder_resolution, unit));
 }
 
 void require_rate(const Record& record, double lowest_Hz, std::string_view purpose) {
   const double rate_Hz = 1.0 / record.sample_period_s;
   if (rate_Hz < lowest_Hz)
-    fail(record, fmt::format("column t_s: sampled at {:.4g} Hz (every {:.4g} s), too slow to {}; record at {:.4g} Hz "
+    fail(record, fmt::format("{}: sampled at {:.4g} Hz (every {:.4g} s), too slow to {}; record at {:.4g} Hz "
                              "or faster",
-                             rate_Hz, record.sample_period_s, purpose, lowest_Hz));
+                             where(record, &Record::t_s), rate_Hz, record.sample_period_s, purpose, lowest_Hz));
 }
 
 void require_duration(const Record& record, double shortest_s, std::string_view purpose) {
   const double length_s = record.sample_period_s * static_cast<double>(record.size());
   if (length_s < shortest_s)
-    fail(record, fmt::format("column t_s: the record lasts {:.4g} s, too short to {}; record {:.4g} s or more",
-                             length_s, purpose, shortest_s));
+    fail(record, fmt::format("{}: the record lasts {:.4g} s, too short to {}; record {:.4g} s or more",
+                             where(record, &Record::t_s), length_s, purpose, shortest_s));
 }
 
 }  // namespace host

@@ -55,6 +55,12 @@ std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKin
   return {};
 }
 
+std::string_view name_in_file(const Record& record, std::vector<double> Record::*channel) {
+  for (const std::string& name : record.columns)
+    if (const KnownColumn* known = find_known_column(name); known != nullptr && known->channel == channel) return name;
+  return column_name(channel, record.kind);
+}
+
 std::string fault_of_columns(std::span<const std::string_view> names) {
   for (std::size_t k = 0; k < names.size(); ++k)
     for (std::size_t j = 0; j < k; ++j)
@@ -92,6 +98,7 @@ void fill_channels(std::vector<NamedColumn> columns, Record& record) {
   const ColumnUnit own = record.kind == sim::DriveKind::rotary ? ColumnUnit::mm : ColumnUnit::m;
   for (NamedColumn& column : columns) {
     const KnownColumn& known = *find_known_column(column.name);
+    record.columns.emplace_back(column.name);
     if (known.unit != ColumnUnit::as_is && known.unit != own)
       for (double& value : column.values) value = own == ColumnUnit::mm ? value * 1000.0 : value / 1000.0;
     record.*known.channel = std::move(column.values);

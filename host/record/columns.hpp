@@ -50,6 +50,9 @@ inline const KnownColumn* find_known_column(std::string_view name) {
 /// What a channel is called in files that hold the drive's own units (rotary: mm, rad/s; linear: m, m/s).
 std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKind kind);
 
+/// What the file that the record came from calls a channel; column_name() where it came from none.
+std::string_view name_in_file(const Record& record, std::vector<double> Record::*channel);
+
 /// What is wrong with a set of column names: one twice, two for the same quantity or of different kinds of drive, a
 /// required one missing. Empty when nothing is.
 std::string fault_of_columns(std::span<const std::string_view> names);

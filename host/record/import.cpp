@@ -33,6 +33,7 @@ class Importer {
  public:
   Importer(const Log& log, const ImportOptions& options) : log_(log), options_(options), mappings_(options.mappings) {
     record_.path = log.path;
+    if (!options.resample_period_s && log.first_line > 0) record_.names_line = log.first_line - 1;
     if (mappings_.empty()) keep_names();
   }
 

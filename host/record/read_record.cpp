@@ -57,11 +57,13 @@ class Parser {
     read_column_names();
     read_rows();
     fill();
-    const TimeAxis axis{record_.t_s, stamp_resolution_s_, first_row_line_};
+    const TimeAxis axis{record_.t_s, stamp_resolution_s_, record_.names_line + 1};
     record_.sample_period_s = check_time_axis(axis, header_period_s_, period_line_, record_.path);
     if (record_.size() < kFewestRows)
-      fail("holds {} rows, and {} are the fewest that anything can be learned from; record for longer", record_.size(),
-           kFewestRows);
+      fail_here(
+          "the record ends after {} rows, too short: {} are the fewest that anything can be learned from; record "
+          "for longer",
+          record_.size(), kFewestRows);
     check_channels(record_);
     return std::move(record_);
   }
@@ -111,7 +113,7 @@ class Parser {
   }
 
   void read_column_names() {
-    header_line_ = lines_.number();
+    record_.names_line = lines_.number();
     for (std::string_view rest = line_;;) {
       const std::size_t comma = rest.find(',');
       const std::string_view name = trim_blanks(rest.substr(0, comma));
@@ -138,7 +140,6 @@ class Parser {
       else
         column.fields.reserve(std::min(expected_rows, kReserveAtMost));
     }
-    first_row_line_ = lines_.number() + 1;
     while (!lines_.only_blanks_left() && lines_.next(line_)) read_row();
   }
 
@@ -156,7 +157,8 @@ class Parser {
 
   [[noreturn]] void fail_field_count() const {
     const std::size_t count = static_cast<std::size_t>(std::ranges::count(line_, ',')) + 1;
-    fail_here("wrong number of fields: {} where line {} names {} columns; {}", count, header_line_, columns_.size(),
+    fail_here("wrong number of fields: {} where line {} names {} columns; {}", count, record_.names_line,
+              columns_.size(),
               lines_.only_blanks_left() && count < columns_.size()
                   ? "the last line seems cut off: remove it"
                   : "correct the line (numbers take a decimal point, fields are separated by one comma)");
@@ -192,7 +194,8 @@ class Parser {
       else
         record_.extra.push_back(as_extra(column));
     }
-    if (const std::string fault = fault_of_copies(known); !fault.empty()) fail("line {}: {}", header_line_, fault);
+    if (const std::string fault = fault_of_copies(known); !fault.empty())
+      fail("line {}: {}", record_.names_line, fault);
     fill_channels(std::move(known), record_);
   }
 
@@ -204,7 +207,8 @@ class Parser {
       extra.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
       all_numbers = all_numbers && value && std::isfinite(*value);
     }
-    if (!all_numbers) extra.text.assign(column.fields.begin(), column.fields.end());
+    if (!all_numbers)
+      for (const std::string_view field : column.fields) extra.text.emplace_back(trim_blanks(field));
     return extra;
   }
 
@@ -215,8 +219,6 @@ class Parser {
   std::vector<Column> columns_;
   std::optional<double> header_period_s_;
   std::size_t period_line_ = 0;
-  std::size_t header_line_ = 0;
-  std::size_t first_row_line_ = 0;
   double stamp_resolution_s_ = std::numeric_limits<double>::infinity();
 };
 

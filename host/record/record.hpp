@@ -22,8 +22,10 @@ struct ExtraChannel {
 /// the command computed from it and applied from then on. Travel and speed are in the drive's own units: rotary: x in
 /// mm, w in rad/s; linear: x in m, w in m/s (files in mm and mm/s are scaled when they are read).
 struct Record {
-  std::string path;   ///< where it came from, for messages
-  std::string drive;  ///< `# drive:` of the header; may be empty
+  std::string path;            ///< where it came from, for messages
+  std::size_t names_line = 0;  ///< line of that file which holds the column names, row k stands k + 1 below; 0: none
+  std::vector<std::string> columns;  ///< names of the channels as that file gives them, with its units
+  std::string drive;                 ///< `# drive:` of the header; may be empty
   sim::DriveKind kind = sim::DriveKind::rotary;
   bool kind_is_presumed = false;              ///< only a position was recorded: mm may belong to either kind of drive
   double sample_period_s = 0.0;               ///< Ts: the header's where it gives one (t_s agrees), else from t_s

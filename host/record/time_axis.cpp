@@ -124,7 +124,7 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
   if (header_period_s) return *header_period_s;
   constexpr double kPerPicosecond = 1e12;  // finer digits are the rounding of the stamps, not the clock
   const double rounded = std::round(spacing.period_s * kPerPicosecond) / kPerPicosecond;
-  return rounded > 0.0 ? rounded : spacing.period_s;
+  return std::abs(rounded - spacing.period_s) < 0.01 * kPeriodTolerance * spacing.period_s ? rounded : spacing.period_s;
 }
 
 }  // namespace host

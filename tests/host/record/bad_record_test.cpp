@@ -164,15 +164,18 @@ TEST_F(BadRecord, Jitter) {
 }
 
 TEST_F(BadRecord, TooShort) {
-  EXPECT_THAT(message_of(good_text(19)), AllOf(HasSubstr("19 rows"), HasSubstr("longer")));
+  EXPECT_THAT(message_of(good_text(19)),
+              AllOf(HasSubstr("line 23"), HasSubstr("19 rows, too short"), HasSubstr("longer")));
   EXPECT_EQ(message_of(good_text(20)), "no failure");
 }
 
 TEST_F(BadRecord, TooShortOrTooSlowForWhatIsAsked) {
   EXPECT_THAT(message_of(good_text(), [](host::Record& r) { host::require_duration(r, 2.0, "tell friction apart"); }),
-              AllOf(HasSubstr("lasts 1 s"), HasSubstr("too short to tell friction apart"), HasSubstr("record 2 s")));
+              AllOf(HasSubstr("line 4, column t_s: the record lasts 1 s"),
+                    HasSubstr("too short to tell friction apart"), HasSubstr("record 2 s")));
   EXPECT_THAT(message_of(good_text(), [](host::Record& r) { host::require_rate(r, 4000.0, "see the current loop"); }),
-              AllOf(HasSubstr("1000 Hz"), HasSubstr("too slow to see the current loop"), HasSubstr("4000 Hz")));
+              AllOf(HasSubstr("line 4, column t_s: sampled at 1000 Hz"), HasSubstr("too slow to see the current loop"),
+                    HasSubstr("4000 Hz")));
 }
 
 TEST_F(BadRecord, DuplicatedChannel) {
@@ -197,7 +200,7 @@ std::string with_columns(const std::function<void(int, Row&)>& change, int count
 
 TEST_F(BadRecord, DeadChannel) {
   EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.w_rad_s = 0.0; })),
-              AllOf(HasSubstr("column w_rad_s"), HasSubstr("dead channel"), HasSubstr("x_mm shows motion"),
+              AllOf(HasSubstr("line 4, column w_rad_s"), HasSubstr("dead channel"), HasSubstr("x_mm shows motion"),
                     HasSubstr("leave the column out")));
   EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.w_rad_s = 4.2; })), HasSubstr("column w_rad_s: dead"));
   EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.x_mm = 7.5; })),
@@ -240,8 +243,9 @@ TEST_F(BadRecord, ConstantChannelsThatAreLegal) {
 }
 
 TEST_F(BadRecord, CommandInCountsOrMillivolts) {
-  EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.u_V = std::round(r.u_V * 3276.8); })),
-              AllOf(HasSubstr("column u_V"), HasSubstr("cannot be right"), HasSubstr("counts"), HasSubstr("--map")));
+  EXPECT_THAT(
+      message_of(with_columns([](int, Row& r) { r.u_V = std::round(r.u_V * 3276.8); })),
+      AllOf(HasSubstr("line 5, column u_V"), HasSubstr("cannot be right"), HasSubstr("counts"), HasSubstr("--map")));
 }
 
 TEST_F(BadRecord, SpeedOfALinearDriveInTheWrongUnit) {
@@ -250,8 +254,8 @@ TEST_F(BadRecord, SpeedOfALinearDriveInTheWrongUnit) {
   };
   EXPECT_EQ(message_of(linear(1.0)), "no failure");
   EXPECT_EQ(message_of(linear(1.1)), "no failure");
-  EXPECT_THAT(message_of(linear(0.001)), AllOf(HasSubstr("columns v_m_s and x_m"), HasSubstr("unit cannot be right"),
-                                               HasSubstr("mm"), HasSubstr("1000")));
+  EXPECT_THAT(message_of(linear(0.001)), AllOf(HasSubstr("line 4, column v_mm_s, and x_mm"),
+                                               HasSubstr("unit cannot be right"), HasSubstr("mm"), HasSubstr("1000")));
   EXPECT_THAT(message_of(linear(-1.0)), HasSubstr("runs against the position"));
 }
 
@@ -273,7 +277,7 @@ TEST_F(BadRecord, UnitsAgainstTheDataSheet) {
            rows_of(1000, [=](int, Row r) { return fmt::format("{},{},{}", r.t_s, r.u_V, r.x_mm * factor); });
   };
   EXPECT_EQ(message_of(position_only(1.0), check), "no failure");
-  EXPECT_THAT(message_of(position_only(0.001), check), AllOf(HasSubstr("column x_mm"), HasSubstr("encoder")));
+  EXPECT_THAT(message_of(position_only(0.001), check), AllOf(HasSubstr("line 4, column x_mm"), HasSubstr("encoder")));
   EXPECT_THAT(message_of(position_only(1000.0), check), AllOf(HasSubstr("column x_mm"), HasSubstr("smaller unit")));
 }
 
@@ -281,7 +285,7 @@ TEST_F(BadRecord, DriveOfTheOtherKind) {
   sim::DataSheet sheet;
   sheet.kind = sim::DriveKind::linear;
   EXPECT_THAT(message_of(good_text(), [&](host::Record& r) { host::adapt_to(r, sheet); }),
-              AllOf(HasSubstr("w_rad_s"), HasSubstr("linear drive"), HasSubstr("v_m_s")));
+              AllOf(HasSubstr("line 4, column w_rad_s"), HasSubstr("model is of a linear one"), HasSubstr("v_m_s")));
 }
 
 }  // namespace

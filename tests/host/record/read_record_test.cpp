@@ -84,6 +84,17 @@ TEST(ReadRecord, AcceptsWindowsLineEndsByteOrderMarkAndBlanks) {
   EXPECT_EQ(record.u_V[29], 29.0);
 }
 
+TEST(ReadRecord, TextIsKeptWithoutTheBlanksRoundIt) {
+  const host::Record record = host::parse_record(record_text("t_s,u_V,x_mm,mode", "1, jog \r\r"), "r.csv");
+  EXPECT_EQ(record.extra[0].text[3], "jog");
+}
+
+TEST(ReadRecord, PeriodsOfPicosecondsAreNotRoundedAway) {
+  std::string text = "# format: axis-record/1\nt_s,u_V,x_mm\n";
+  for (int k = 0; k < 30; ++k) text += fmt::format("{},{},0\n", k * 1.25e-12, k);
+  EXPECT_DOUBLE_EQ(host::parse_record(text, "r.csv").sample_period_s, 1.25e-12);
+}
+
 TEST(ReadRecord, StampsRoundedToTheirLastDigitAreEvenlySpaced) {
   // 30 kHz with stamps in microseconds: steps of 33 and 34 us.
   EXPECT_NEAR(host::parse_record(record_text("t_s,u_V,x_mm", "1", 1.0 / 30000.0), "r.csv").sample_period_s,

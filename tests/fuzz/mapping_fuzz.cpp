@@ -1,0 +1,18 @@
+// Any text behind --map: understood or refused, never a column that does not depend on its source.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "host/exit_codes.hpp"
+#include "host/record/import_mapping.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    for (const host::Mapping& mapping : host::parse_mappings({reinterpret_cast<const char*>(data), size}))
+      if (mapping.column.empty() || mapping.source.empty() || mapping.factor == 0.0 || !std::isfinite(mapping.shift))
+        std::abort();
+  } catch (const host::Failure&) {
+  }
+  return 0;
+}
