@@ -133,7 +133,7 @@ Response sinusoid_response(const PaperAxis& paper, bool zero_phase, double frequ
   EXPECT_EQ(axis.configure(p), ParameterError::none);
   axis.step();
   EXPECT_TRUE(axis.enable());
-  const double amplitude_mm = 1e-3;
+  const double amplitude_mm = 1e-4;
   const double omega = 2.0 * std::numbers::pi * frequency_Hz;
   const int period = static_cast<int>(std::lround(1.0 / (frequency_Hz * p.sample_period_s)));
   const int settling = 1000 / period * period;
