@@ -175,7 +175,7 @@ class MappingParser {
     const char quote = text_[at_];
     const std::size_t end = text_.find(quote, at_ + 1);
     if (end == std::string_view::npos || end == at_ + 1) fail("a name in quotes belongs here");
-    const std::string name(text_.substr(at_ + 1, end - at_ - 1));
+    std::string name(text_.substr(at_ + 1, end - at_ - 1));
     at_ = end + 1;
     return name;
   }
