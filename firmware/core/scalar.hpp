@@ -23,7 +23,7 @@ struct ScalarTraits<Real> {
   static constexpr std::int32_t truncate(Real value) { return static_cast<std::int32_t>(value); }
 
   static constexpr bool is_nan(Real value) { return !(value <= Real(0)) && !(value > Real(0)); }
-  static constexpr bool is_finite(Real value) { return !is_nan(value - value); }
+  static constexpr bool is_finite(Real value) { return !is_nan(value * Real(0)); }
 
   /// value * 2^-exponent, 0 <= exponent < 127.
   static constexpr Real scale_down(Real value, std::int32_t exponent) {
