@@ -13,6 +13,7 @@ int exit_status() { return static_cast<int>(ending); }
 void add_all_commands(CLI::App& app) {
   add_import(app);
   add_identify(app);
+  add_friction(app);
   add_design(app);
 }
 

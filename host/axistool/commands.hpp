@@ -13,6 +13,7 @@ void add_all_commands(CLI::App& app);
 
 void add_import(CLI::App& app);
 void add_identify(CLI::App& app);
+void add_friction(CLI::App& app);
 void add_design(CLI::App& app);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).

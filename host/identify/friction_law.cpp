@@ -14,22 +14,6 @@ double magnitude(const sim::EffectEntry& entry, const char* both, const char* pe
   return entry.has(per_direction) ? std::abs(entry.at(per_direction)) : 0.0;
 }
 
-sim::EffectEntry& entry_of(sim::DriveDescription& model, const char* kind) {
-  if (sim::EffectEntry* found = model.find(kind)) return *found;
-  model.effects.push_back({.kind = kind, .parameters = {}, .ci95 = {}, .from = {}});
-  return model.effects.back();
-}
-
-void set_pair(sim::EffectEntry& entry, const std::string& both, const std::string& prefix, double positive,
-              double negative) {
-  if (entry.has(both)) {
-    entry.parameters[both] = 0.5 * (positive + negative);
-  } else {
-    entry.parameters[prefix + "positive"] = positive;
-    entry.parameters[prefix + "negative"] = -negative;
-  }
-}
-
 }  // namespace
 
 double FrictionSideLaw::at(double v) const {
@@ -62,22 +46,9 @@ FrictionLaw friction_law(const sim::DriveDescription& model) {
   return law;
 }
 
-void set_friction_law(sim::DriveDescription& model, const FrictionLaw& law, bool with_stribeck) {
-  sim::EffectEntry& viscous = entry_of(model, "viscous");
-  viscous.parameters["B"] = law.viscous;
-  viscous.ci95.clear();
-  sim::EffectEntry& coulomb = entry_of(model, "coulomb");
-  set_pair(coulomb, "level", "", law.positive.coulomb, law.negative.coulomb);
-  coulomb.ci95.clear();
-  if (!with_stribeck) {
-    std::erase_if(model.effects, [](const sim::EffectEntry& entry) { return entry.kind == "stribeck"; });
-    return;
-  }
-  sim::EffectEntry& stribeck = entry_of(model, "stribeck");
-  set_pair(stribeck, "static", "static_", law.positive.static_level, law.negative.static_level);
-  set_pair(stribeck, "omega1", "omega1_", law.positive.omega1, law.negative.omega1);
-  set_pair(stribeck, "omega2", "omega2_", law.positive.omega2, law.negative.omega2);
-  stribeck.ci95.clear();
+bool is_symmetric(const sim::DriveDescription& model) {
+  const sim::EffectEntry* coulomb = model.find("coulomb");
+  return coulomb != nullptr && coulomb->has("level");
 }
 
 }  // namespace host

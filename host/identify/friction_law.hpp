@@ -27,9 +27,7 @@ struct FrictionLaw {
 /// From the effects `viscous`, `coulomb`, `stribeck` (per direction or one value for both).
 FrictionLaw friction_law(const sim::DriveDescription& model);
 
-/// Writes the law into the model's `viscous`, `coulomb` and `stribeck` entries, adding those that are missing and
-/// keeping the form (per direction or one value) of those that exist; intervals of rewritten values are dropped.
-/// `with_stribeck` false removes the entry `stribeck`.
-void set_friction_law(sim::DriveDescription& model, const FrictionLaw& law, bool with_stribeck);
+/// Whether the model claims one Coulomb level for both directions; a re-fit keeps that form.
+bool is_symmetric(const sim::DriveDescription& model);
 
 }  // namespace host

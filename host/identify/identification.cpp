@@ -117,7 +117,7 @@ Identification identify_drive(const std::vector<Record>& given, const sim::Drive
   Identification result;
   result.method = method;
   result.tachometer = calibrate_tachometer(given, drive.data);
-  result.tach_noise_variance = standstill_variance(given);
+  result.tach_noise_variance = standstill_variance(given, drive.data);
   std::vector<Record> records = given;
   const bool corrected = method == IdentificationMethod::sliding_ls && result.tachometer.has_value();
   if (corrected) apply_calibration(*result.tachometer, records);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/encoder_step.hpp"
 #include "host/identify/zero_phase_filter.hpp"
 
 namespace host {
@@ -18,24 +18,13 @@ constexpr double kPaperDeadband_rad_s = 0.5;  // p. 1499
 constexpr double kHighestCutoff_Hz = 100.0;
 constexpr double kLowestCutoff_Hz = 10.0;
 
-/// Step of the encoder in shaft units (rad or m): the data sheet's, or else the smallest step that the record shows.
-double encoder_step(const Record& record, const sim::DataSheet& data) {
-  if (data.encoder_resolution > 0.0) return data.encoder_resolution / data.lead;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k < record.size(); ++k) {
-    const double step = std::abs(record.x[k] - record.x[k - 1]);
-    if (step > 0.0) smallest = std::min(smallest, step);
-  }
-  return std::isfinite(smallest) ? smallest / data.lead : 0.0;
-}
-
 /// Variance of the acceleration that white sensor noise leaves below a cut-off: differentiated twice (position) or
 /// once.
 double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
   const double rate_Hz = 1.0 / record.sample_period_s;
   const double circle = 2.0 * std::numbers::pi;
   if (record.has_position()) {
-    const double step = encoder_step(record, data);
+    const double step = encoder_step(record, data) / data.lead;
     return step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4) * std::pow(cutoff_Hz, 5) / 5.0;
   }
   return data.tach_noise_variance.value_or(0.0) * (2.0 / rate_Hz) * circle * circle * std::pow(cutoff_Hz, 3) / 3.0;

@@ -2,20 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "host/identify/encoder_step.hpp"
 
 namespace host {
 
 namespace {
-
-double smallest_step(const Record& record) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k < record.size(); ++k) {
-    const double step = std::abs(record.x[k] - record.x[k - 1]);
-    if (step > 0.0) smallest = std::min(smallest, step);
-  }
-  return smallest;
-}
 
 bool has_both_sensors(const std::vector<Record>& records) {
   return std::ranges::all_of(records, [](const Record& r) { return r.has_position() && r.has_speed(); });
@@ -28,16 +20,15 @@ std::optional<TachometerCalibration> calibrate_tachometer(const std::vector<Reco
   constexpr double kWindow_s = 0.1;
   constexpr double kLeastSteps = 100.0;
   if (records.empty() || !has_both_sensors(records)) return std::nullopt;
-  double travelled = 0.0, step = std::numeric_limits<double>::infinity();
+  double travelled = 0.0, step = 0.0;
   std::size_t windows = 0;
   for (const Record& record : records) {
     const auto [low, high] = std::ranges::minmax(record.x);
     travelled = std::max(travelled, high - low);
-    step = std::min(step, smallest_step(record));
+    step = std::max(step, encoder_step(record, data));
     windows += static_cast<std::size_t>(static_cast<double>(record.size()) * record.sample_period_s / kWindow_s);
   }
-  if (data.encoder_resolution > 0.0) step = data.encoder_resolution;
-  if (!(travelled >= kLeastSteps * step)) return std::nullopt;
+  if (!(travelled > 0.0) || travelled < kLeastSteps * step) return std::nullopt;
 
   BlockedRegression<2> regression(rows_per_block(windows, kWindow_s));
   for (const Record& record : records) {
@@ -65,7 +56,7 @@ void apply_calibration(const TachometerCalibration& calibration, std::vector<Rec
   }
 }
 
-std::optional<double> standstill_variance(const std::vector<Record>& records) {
+std::optional<double> standstill_variance(const std::vector<Record>& records, const sim::DataSheet& data) {
   constexpr double kStretch_s = 0.2;
   constexpr std::size_t kFewest = 3;
   if (records.empty() || !has_both_sensors(records)) return std::nullopt;
@@ -73,7 +64,7 @@ std::optional<double> standstill_variance(const std::vector<Record>& records) {
   std::size_t stretches = 0;
   for (const Record& record : records) {
     const auto length = static_cast<std::size_t>(std::max(2.0, std::round(kStretch_s / record.sample_period_s)));
-    const double step = smallest_step(record);
+    const double step = encoder_step(record, data);
     for (std::size_t start = 0; start + length <= record.size(); start += length) {
       const auto [low, high] = std::minmax_element(record.x.begin() + static_cast<std::ptrdiff_t>(start),
                                                    record.x.begin() + static_cast<std::ptrdiff_t>(start + length));

@@ -26,6 +26,6 @@ void apply_calibration(const TachometerCalibration& calibration, std::vector<Rec
 /// Variance of the tachometer while the axis stands (46): stretches of 0.2 s in which the encoder does not move by more
 /// than one step, each about its own mean. Empty when there are fewer than three such stretches, or a sensor is
 /// missing.
-std::optional<double> standstill_variance(const std::vector<Record>& records);
+std::optional<double> standstill_variance(const std::vector<Record>& records, const sim::DataSheet& data);
 
 }  // namespace host

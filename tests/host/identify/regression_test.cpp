@@ -155,7 +155,7 @@ TEST_F(TachometerRecord, GainAndOffsetAreFoundAgainstTheEncoder) {
 }
 
 TEST_F(TachometerRecord, VarianceComesFromTheStandstillAlone) {
-  const auto variance = host::standstill_variance({record});
+  const auto variance = host::standstill_variance({record}, data);
   ASSERT_TRUE(variance);
   EXPECT_NEAR(*variance, 0.05, 0.0065);  // 2000 samples: deviation 0.05*sqrt(2/2000) = 0.0016, four of them
 }
@@ -167,7 +167,7 @@ TEST_F(TachometerRecord, NothingIsClaimedWithoutMotionOrWithoutEncoder) {
   host::Record blind = record;
   blind.x.clear();
   EXPECT_FALSE(host::calibrate_tachometer({blind}, data));
-  EXPECT_FALSE(host::standstill_variance({blind}));
+  EXPECT_FALSE(host::standstill_variance({blind}, data));
 }
 
 }  // namespace

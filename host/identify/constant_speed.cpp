@@ -1,0 +1,135 @@
+#include "host/identify/constant_speed.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+
+#include "host/identify/encoder_step.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kSmoothing_s = 0.1;
+
+/// Speed smoothed over 2*half samples about each sample, and how far sensor resolution or noise can move it.
+struct SmoothedSpeed {
+  std::vector<double> value;  ///< value[k] belongs to sample k + half
+  std::size_t half = 1;
+  double uncertainty = 0.0;
+};
+
+SmoothedSpeed smooth(const Record& record, const sim::DataSheet& data) {
+  SmoothedSpeed smoothed;
+  smoothed.half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kSmoothing_s / record.sample_period_s));
+  const std::size_t width = 2 * smoothed.half;
+  if (record.size() <= width) return smoothed;
+  const double span_s = record.sample_period_s * static_cast<double>(width);
+  if (record.has_position()) {
+    for (std::size_t k = 0; k + width < record.size(); ++k) {
+      smoothed.value.push_back((record.x[k + width] - record.x[k]) / (span_s * data.lead));
+    }
+    smoothed.uncertainty = encoder_step(record, data) / (span_s * data.lead);
+    return smoothed;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < width; ++k) sum += record.w[k];
+  for (std::size_t k = 0; k + width < record.size(); ++k) {
+    smoothed.value.push_back(sum / static_cast<double>(width));
+    sum += record.w[k + width] - record.w[k];
+  }
+  const double variance = data.tach_noise_variance.value_or(0.0);
+  smoothed.uncertainty = 3.0 * std::sqrt(variance / static_cast<double>(width));
+  return smoothed;
+}
+
+/// For each start: whether the speed stays within tolerance over the following `length` values (sliding extremes).
+std::vector<bool> steady_starts(const SmoothedSpeed& speed, std::size_t length, double tolerance) {
+  std::vector<bool> steady(speed.value.size() >= length ? speed.value.size() - length + 1 : 0);
+  std::deque<std::size_t> highs, lows;
+  const auto push = [&](std::deque<std::size_t>& queue, std::size_t k, auto beats) {
+    while (!queue.empty() && beats(speed.value[k], speed.value[queue.back()])) queue.pop_back();
+    queue.push_back(k);
+    while (queue.front() + length <= k) queue.pop_front();
+  };
+  for (std::size_t k = 0; k < speed.value.size(); ++k) {
+    push(highs, k, [](double a, double b) { return a >= b; });
+    push(lows, k, [](double a, double b) { return a <= b; });
+    if (k + 1 < length) continue;
+    const double high = speed.value[highs.front()], low = speed.value[lows.front()];
+    const double middle = 0.5 * std::abs(high + low);
+    const bool moves = middle > 2.0 * speed.uncertainty && high * low > 0.0;
+    steady[k + 1 - length] = moves && high - low <= 2.0 * (tolerance * middle + 1.5 * speed.uncertainty);
+  }
+  return steady;
+}
+
+/// Mean speed and acceleration of samples [begin, end) by a parabola through the position, or a line through the speed.
+void measure(const Record& record, const sim::DataSheet& data, ConstantSpeed& stretch) {
+  const bool position = record.has_position();
+  const std::vector<double>& signal = position ? record.x : record.w;
+  const double middle = 0.5 * static_cast<double>(stretch.begin + stretch.end - 1);
+  const double half_s = 0.5 * record.sample_period_s * static_cast<double>(stretch.end - stretch.begin);
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d projection = Eigen::Vector3d::Zero();
+  for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
+    const double t = (static_cast<double>(k) - middle) * record.sample_period_s / half_s;  // -1..1
+    const Eigen::Vector3d phi(1.0, t, position ? t * t : 0.0);
+    moment += phi * phi.transpose();
+    projection += phi * (signal[k] - signal[stretch.begin]);
+  }
+  if (!position) moment(2, 2) = 1.0;
+  const Eigen::Vector3d c = moment.ldlt().solve(projection);
+  if (position) {
+    stretch.speed = c(1) / half_s / data.lead;
+    stretch.acceleration = 2.0 * c(2) / (half_s * half_s) / data.lead;
+  } else {
+    stretch.speed = signal[stretch.begin] + c(0);
+    stretch.acceleration = c(1) / half_s;
+  }
+}
+
+/// Shortens a stretch to whole turns of the screw where at least one fits.
+void cut_to_whole_turns(const Record& record, const sim::DataSheet& data, ConstantSpeed& stretch) {
+  if (data.kind == sim::DriveKind::linear) return;
+  const double samples_per_turn = 2.0 * std::numbers::pi / (std::abs(stretch.speed) * record.sample_period_s);
+  const double turns = static_cast<double>(stretch.end - stretch.begin) / samples_per_turn;
+  stretch.turns = turns;
+  if (turns < 1.0) return;
+  stretch.turns = std::floor(turns);
+  stretch.end = stretch.begin + static_cast<std::size_t>(std::lround(stretch.turns * samples_per_turn));
+  measure(record, data, stretch);
+}
+
+}  // namespace
+
+std::vector<ConstantSpeed> find_constant_speeds(const Record& record, const sim::DataSheet& data,
+                                                const ConstantSpeedOptions& options) {
+  const SmoothedSpeed speed = smooth(record, data);
+  // A window of `length` smoothed values has looked at kSmoothing_s more of the record than it is long.
+  const double length_s = std::max(options.shortest_s - kSmoothing_s, 0.05);
+  const auto length = static_cast<std::size_t>(length_s / record.sample_period_s);
+  const std::vector<bool> steady = steady_starts(speed, std::max<std::size_t>(2, length), options.tolerance);
+
+  std::vector<ConstantSpeed> found;
+  const auto settle = static_cast<std::size_t>(options.settle_s / record.sample_period_s);
+  for (std::size_t k = 0; k < steady.size(); ++k) {
+    if (!steady[k]) continue;
+    const std::size_t first = k;
+    const bool forward = speed.value[k] > 0.0;
+    while (k + 1 < steady.size() && steady[k + 1] && (speed.value[k + 1] > 0.0) == forward) ++k;
+    ConstantSpeed stretch;
+    stretch.begin = first + speed.half;
+    stretch.end = std::min(k + length + speed.half, record.size());
+    stretch.begin += std::min(settle, (stretch.end - stretch.begin) / 2);
+    if (stretch.end - stretch.begin < 20) continue;
+    measure(record, data, stretch);
+    cut_to_whole_turns(record, data, stretch);
+    found.push_back(stretch);
+  }
+  return found;
+}
+
+}  // namespace host

@@ -1,0 +1,42 @@
+// The friction curve (19) through points of friction against speed.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "host/identify/friction_law.hpp"
+#include "host/identify/rigid_estimate.hpp"
+
+namespace host {
+
+/// One mean friction effort at one speed, both with their sign. Speeds rad/s or m/s, efforts Nm or N.
+struct CurvePoint {
+  double speed = 0.0;
+  double effort = 0.0;          ///< viscous part included
+  double standard_error = 0.0;  ///< of `effort`
+};
+
+/// A fitted curve. Levels are magnitudes; [0] forward, [1] backward.
+struct FrictionFit {
+  FrictionLaw law;
+  bool has_stribeck = false;  ///< false: the points show no static friction above Coulomb's, or were too few to tell
+  Estimate viscous;
+  std::array<Estimate, 2> coulomb{}, static_level{}, omega1{}, omega2{};  ///< intervals empty (value, value) if unknown
+  double rms = 0.0;                                                       ///< of the residuals, Nm or N
+};
+
+/// Section 3.2 of the paper, eqs. (53)-(62), from the points of the Kalman disturbance (viscous part of the observer's
+/// B included): slope of the fast points, their mean as Coulomb level, the slowest point as static level, omega1 and
+/// omega2 by a grid of 0 to 10 rad/s in steps of 0.1 (in proportion for other top speeds). "Fast" is above a quarter of
+/// the top speed, the grid uses points above a hundredth of it, as in the paper's set of eleven. Points of one speed
+/// and direction are averaged first. No intervals. Throws Failure(refused) with fewer than two fast speeds, or four
+/// speeds altogether, in a direction.
+FrictionFit fit_friction_as_paper(const std::vector<CurvePoint>& points, double observer_viscous);
+
+/// One weighted least-squares fit of B', and per direction T_coul, T_stat, omega1, omega2 (`symmetric`: one for both).
+/// Each point weighs by its standard error; intervals are Student's t, widened where the scatter exceeds those errors.
+/// The Stribeck part stays only if the points prefer it by the Bayesian information criterion.
+/// Throws Failure(refused) with fewer than two speeds in a direction.
+FrictionFit fit_friction(const std::vector<CurvePoint>& points, bool symmetric);
+
+}  // namespace host

@@ -1,0 +1,167 @@
+#include "host/identify/friction_identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/encoder_step.hpp"
+
+namespace host {
+
+namespace {
+
+/// The design's observer, with a variance for every sensor of the records: a drive whose data sheet does not give the
+/// encoder's resolution is observed at the smallest step that its record shows.
+AxisDesign observer_for(const std::vector<Record>& records, const sim::DriveDescription& model) {
+  sim::DriveDescription seen = model;
+  if (!std::ranges::all_of(records, &Record::has_speed)) seen.data.tach_noise_variance.reset();
+  DesignOptions options;
+  if (!(model.data.encoder_resolution > 0.0)) {
+    constexpr double kUnknown = 1e-6;  // mm or m: no position at all, the observer is not used then
+    double step = 0.0;
+    for (const Record& record : records) step = std::max(step, encoder_step(record, model.data));
+    options.position_variance = (step > 0.0 ? step * step : kUnknown * kUnknown) / 12.0;
+  }
+  return design_axis(seen, options);
+}
+
+std::vector<CurvePoint> by_control_signal(const std::vector<FrictionPoint>& points) {
+  std::vector<CurvePoint> curve;
+  for (const FrictionPoint& point : points) curve.push_back({point.speed, point.effort, point.standard_error});
+  return curve;
+}
+
+std::vector<CurvePoint> by_disturbance(const std::vector<FrictionPoint>& points) {
+  std::vector<CurvePoint> curve;
+  for (const FrictionPoint& point : points) {
+    if (point.observed_effort) curve.push_back({point.speed, *point.observed_effort, point.standard_error});
+  }
+  return curve;
+}
+
+std::string origin_of(const std::vector<Record>& records) {
+  std::string origin;
+  for (const Record& record : records) origin += (origin.empty() ? "" : ", ") + record.path;
+  return origin;
+}
+
+/// One direction's values as the model file has them: backward ones negative.
+void put(sim::EffectEntry& entry, const std::string& id, const Estimate& estimate, bool forward, bool has_interval) {
+  const double sign = forward ? 1.0 : -1.0;
+  entry.parameters[id] = sign * estimate.value;
+  if (!has_interval) return;
+  const double a = sign * estimate.ci95[0], b = sign * estimate.ci95[1];
+  entry.ci95[id] = {std::min(a, b), std::max(a, b)};
+}
+
+void replace_entry(sim::DriveDescription& model, sim::EffectEntry entry) {
+  if (sim::EffectEntry* found = model.find(entry.kind)) {
+    *found = std::move(entry);
+  } else {
+    model.effects.push_back(std::move(entry));
+  }
+}
+
+sim::DriveDescription model_with(const sim::DriveDescription& before, const FrictionFit& fit, bool symmetric,
+                                 bool has_interval, const std::string& from) {
+  sim::DriveDescription model = before;
+  sim::EffectEntry viscous{.kind = "viscous", .parameters = {}, .ci95 = {}, .from = from};
+  sim::EffectEntry coulomb{.kind = "coulomb", .parameters = {}, .ci95 = {}, .from = from};
+  sim::EffectEntry stribeck{.kind = "stribeck", .parameters = {}, .ci95 = {}, .from = from};
+  put(viscous, "B", fit.viscous, true, has_interval);
+  if (symmetric) {
+    put(coulomb, "level", fit.coulomb[0], true, has_interval);
+    put(stribeck, "static", fit.static_level[0], true, has_interval);
+    put(stribeck, "omega1", fit.omega1[0], true, has_interval);
+    put(stribeck, "omega2", fit.omega2[0], true, has_interval);
+  } else {
+    for (std::size_t d = 0; d < 2; ++d) {
+      const bool forward = d == 0;
+      const std::string direction = forward ? "positive" : "negative";
+      put(coulomb, direction, fit.coulomb[d], forward, has_interval);
+      put(stribeck, "static_" + direction, fit.static_level[d], forward, has_interval);
+      put(stribeck, "omega1_" + direction, fit.omega1[d], forward, has_interval);
+      put(stribeck, "omega2_" + direction, fit.omega2[d], forward, has_interval);
+    }
+  }
+  replace_entry(model, std::move(viscous));
+  replace_entry(model, std::move(coulomb));
+  if (fit.has_stribeck) {
+    replace_entry(model, std::move(stribeck));
+  } else {
+    std::erase_if(model.effects, [](const sim::EffectEntry& entry) { return entry.kind == "stribeck"; });
+  }
+  return model;
+}
+
+void cross_check(FrictionIdentification& result) {
+  constexpr double kGainOff = 0.002;
+  if (!result.tachometer) return;
+  const Estimate& gain = result.tachometer->gain;
+  if (std::abs(gain.value - 1.0) <= std::max(kGainOff, gain.half_width())) return;
+  std::string text = fmt::format("the tachometer reads {:+.2f} % ± {:.2f} % against the encoder",
+                                 100.0 * (gain.value - 1.0), 100.0 * gain.half_width());
+  if (result.viscous_by_disturbance) {
+    text +=
+        fmt::format("; by the Kalman disturbance B would come out as {:.4g}, by the mean control signal it is {:.4g}",
+                    result.viscous_by_disturbance->value, result.fit.viscous.value);
+  }
+  text +=
+      result.method == FrictionMethod::joint
+          ? ". The curve rests on the control signal and the encoder and is not affected; re-scale the tachometer "
+            "before it is used for control"
+          : ". The paper's procedure takes the disturbance as it is: re-scale the tachometer, or use --method joint";
+  result.warnings.push_back(text);
+}
+
+void warn_of_other_effects(FrictionIdentification& result) {
+  for (const char* kind :
+       {"coulomb_asymmetry", "viscous_asymmetry", "nonlinear_viscous", "constant_torque", "dac_offset"}) {
+    if (result.model.find(kind) == nullptr) continue;
+    result.warnings.push_back(
+        fmt::format("the model also has {}, which the points of friction contain: what it describes "
+                    "is now in the curve as well. Remove it, or fit all together with axistool "
+                    "improve",
+                    kind));
+  }
+}
+
+}  // namespace
+
+std::string_view method_name(FrictionMethod method) { return method == FrictionMethod::joint ? "joint" : "paper"; }
+
+FrictionIdentification identify_friction(const std::vector<Record>& records, const sim::DriveDescription& model,
+                                         FrictionMethod method, const ConstantSpeedOptions& options) {
+  FrictionIdentification result;
+  result.method = method;
+  const AxisDesign design = observer_for(records, model);
+  result.observer_viscous = design.axis.viscous;
+  result.tachometer = calibrate_tachometer(records, model.data);
+  result.points = friction_points(records, model.data, design, options);
+  const std::vector<CurvePoint> observed = by_disturbance(result.points);
+  const bool symmetric = method == FrictionMethod::joint && is_symmetric(model);
+  if (method == FrictionMethod::paper) {
+    if (observed.size() < result.points.size()) {
+      throw Failure(ExitCode::bad_input, "the paper's procedure needs a position (x_mm or x_m) in every record");
+    }
+    result.fit = fit_friction_as_paper(observed, design.axis.viscous);
+  } else {
+    result.fit = fit_friction(by_control_signal(result.points), symmetric);
+    if (observed.size() == result.points.size()) {
+      result.viscous_by_disturbance = fit_friction(observed, symmetric).viscous;
+    }
+    if (!result.fit.has_stribeck) {
+      result.warnings.push_back(
+          "the points show no static friction above the Coulomb level, so the model has no stribeck effect; jogs at "
+          "speeds far below 1 mm/s would show it if there is any");
+    }
+  }
+  result.model = model_with(model, result.fit, symmetric, method == FrictionMethod::joint, origin_of(records));
+  cross_check(result);
+  warn_of_other_effects(result);
+  return result;
+}
+
+}  // namespace host

@@ -1,0 +1,40 @@
+// The jogging procedure: friction at constant speeds, the curve through it, and a model that holds it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/identify/friction_fit.hpp"
+#include "host/identify/friction_points.hpp"
+#include "host/identify/tachometer.hpp"
+
+namespace host {
+
+enum class FrictionMethod {
+  joint,  ///< one fit of everything to the mean control signal, which a tachometer error cannot reach
+  paper,  ///< section 3.2 as printed, from the Kalman disturbance
+};
+
+std::string_view method_name(FrictionMethod method);  ///< "joint", "paper"
+
+struct FrictionIdentification {
+  FrictionMethod method{};
+  sim::DriveDescription model;  ///< as given, with viscous, coulomb and stribeck from the fit
+  FrictionFit fit;
+  std::vector<FrictionPoint> points;
+  double observer_viscous = 0.0;                    ///< B of the observer's design
+  std::optional<Estimate> viscous_by_disturbance;   ///< what the joint fit makes of the Kalman disturbance instead
+  std::optional<TachometerCalibration> tachometer;  ///< against the encoder
+  std::vector<std::string> warnings;
+};
+
+/// Identifies the friction curve from jogs at constant speeds, in one or several records, found automatically. `model`
+/// gives inertia and viscous friction for the observer, which is designed with the default options; a model with one
+/// Coulomb level for both directions keeps that form. Records need a position for the Kalman disturbance.
+/// Throws Failure(refused) where there are too few constant speeds, Failure(bad_input) for an unusable model.
+FrictionIdentification identify_friction(const std::vector<Record>& records, const sim::DriveDescription& model,
+                                         FrictionMethod method, const ConstantSpeedOptions& options = {});
+
+}  // namespace host

@@ -1,0 +1,13 @@
+// A friction curve as other programs read it: `axis-friction/1`.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "host/identify/friction_identification.hpp"
+
+namespace host {
+
+/// Parameters with intervals, the points, and the curve at 61 speeds each way, spaced by ratio.
+nlohmann::json friction_json(const FrictionIdentification& identification);
+
+}  // namespace host

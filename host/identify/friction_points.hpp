@@ -1,0 +1,34 @@
+// Friction at constant speeds, read twice: from the mean control signal and from the Kalman filter's disturbance.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "host/identify/axis_design.hpp"
+#include "host/identify/constant_speed.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+/// Disturbance estimate d (V at the control signal) of a whole record by eq. (43), from the first sample at rest.
+/// The record needs a position.
+std::vector<double> observe_disturbance(const Record& record, const AxisDesign& design, const sim::DataSheet& data);
+
+/// Friction of one stretch of constant speed, viscous part included, with its sign.
+struct FrictionPoint {
+  double speed = 0.0;           ///< rad/s or m/s
+  double effort = 0.0;          ///< Nm or N: mean control effort less what is left of J dw/dt
+  double standard_error = 0.0;  ///< of `effort`, from batches of the stretch
+  /// From the disturbance: Ka Kt d + B w, with the B of the observer's design; empty where there is no position.
+  std::optional<double> observed_effort;
+  double duration_s = 0.0;  ///< averaged over
+  double turns = 0.0;       ///< of the screw
+  std::size_t record = 0;   ///< which of the records
+  double start_s = 0.0;     ///< where in it
+};
+
+/// All stretches of all records. The design gives J and B; a record without a tachometer needs a design without one.
+std::vector<FrictionPoint> friction_points(const std::vector<Record>& records, const sim::DataSheet& data,
+                                           const AxisDesign& design, const ConstantSpeedOptions& options = {});
+
+}  // namespace host
