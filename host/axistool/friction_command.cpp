@@ -27,10 +27,17 @@ void print_row(const std::string& name, const char* unit, const host::Estimate& 
 
 void print_points(const host::FrictionIdentification& found, const char* speed, const char* effort) {
   fmt::print("  {:>10} {:>10} {:>8} {:>12} {:>10} {:>7}\n", speed, effort, "±", "disturbance", "curve", "s");
+  bool jitters = false;
   for (const host::FrictionPoint& point : found.points) {
     const std::string observed = point.observed_effort ? fmt::format("{:.4f}", *point.observed_effort) : "-";
-    fmt::print("  {:>10.4g} {:>10.4f} {:>8.4f} {:>12} {:>10.4f} {:>7.2f}\n", point.speed, point.effort,
-               1.96 * point.standard_error, observed, found.fit.law.effort(point.speed), point.duration_s);
+    fmt::print("  {:>10.4g} {:>10.4f} {:>8.4f} {:>12} {:>10.4f} {:>7.2f}{}\n", point.speed, point.effort,
+               1.96 * point.standard_error, observed, found.fit.law.effort(point.speed), point.duration_s,
+               point.is_steady() ? "" : " *");
+    jitters = jitters || !point.is_steady();
+  }
+  if (jitters && found.method == host::FrictionMethod::joint) {
+    fmt::print(
+        "  * not used: noise in the loop drives the speed through zero, so that the mean friction is too small\n");
   }
 }
 

@@ -1,10 +1,8 @@
 #include "host/identify/constant_speed.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numbers>
 
 #include "host/identify/encoder_step.hpp"
 
@@ -66,41 +64,14 @@ std::vector<bool> steady_starts(const SmoothedSpeed& speed, std::size_t length, 
   return steady;
 }
 
-/// Mean speed and acceleration of samples [begin, end) by a parabola through the position, or a line through the speed.
-void measure(const Record& record, const sim::DataSheet& data, ConstantSpeed& stretch) {
-  const bool position = record.has_position();
-  const std::vector<double>& signal = position ? record.x : record.w;
-  const double middle = 0.5 * static_cast<double>(stretch.begin + stretch.end - 1);
-  const double half_s = 0.5 * record.sample_period_s * static_cast<double>(stretch.end - stretch.begin);
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d projection = Eigen::Vector3d::Zero();
-  for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
-    const double t = (static_cast<double>(k) - middle) * record.sample_period_s / half_s;  // -1..1
-    const Eigen::Vector3d phi(1.0, t, position ? t * t : 0.0);
-    moment += phi * phi.transpose();
-    projection += phi * (signal[k] - signal[stretch.begin]);
+double mean_speed(const Record& record, const sim::DataSheet& data, std::size_t begin, std::size_t end) {
+  if (record.has_position()) {
+    const double duration_s = record.sample_period_s * static_cast<double>(end - 1 - begin);
+    return (record.x[end - 1] - record.x[begin]) / (duration_s * data.lead);
   }
-  if (!position) moment(2, 2) = 1.0;
-  const Eigen::Vector3d c = moment.ldlt().solve(projection);
-  if (position) {
-    stretch.speed = c(1) / half_s / data.lead;
-    stretch.acceleration = 2.0 * c(2) / (half_s * half_s) / data.lead;
-  } else {
-    stretch.speed = signal[stretch.begin] + c(0);
-    stretch.acceleration = c(1) / half_s;
-  }
-}
-
-/// Shortens a stretch to whole turns of the screw where at least one fits.
-void cut_to_whole_turns(const Record& record, const sim::DataSheet& data, ConstantSpeed& stretch) {
-  if (data.kind == sim::DriveKind::linear) return;
-  const double samples_per_turn = 2.0 * std::numbers::pi / (std::abs(stretch.speed) * record.sample_period_s);
-  const double turns = static_cast<double>(stretch.end - stretch.begin) / samples_per_turn;
-  stretch.turns = turns;
-  if (turns < 1.0) return;
-  stretch.turns = std::floor(turns);
-  stretch.end = stretch.begin + static_cast<std::size_t>(std::lround(stretch.turns * samples_per_turn));
-  measure(record, data, stretch);
+  double sum = 0.0;
+  for (std::size_t k = begin; k < end; ++k) sum += record.w[k];
+  return sum / static_cast<double>(end - begin);
 }
 
 }  // namespace
@@ -125,8 +96,7 @@ std::vector<ConstantSpeed> find_constant_speeds(const Record& record, const sim:
     stretch.end = std::min(k + length + speed.half, record.size());
     stretch.begin += std::min(settle, (stretch.end - stretch.begin) / 2);
     if (stretch.end - stretch.begin < 20) continue;
-    measure(record, data, stretch);
-    cut_to_whole_turns(record, data, stretch);
+    stretch.speed = mean_speed(record, data, stretch.begin, stretch.end);
     found.push_back(stretch);
   }
   return found;

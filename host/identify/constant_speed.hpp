@@ -12,9 +12,7 @@ namespace host {
 struct ConstantSpeed {
   std::size_t begin = 0;
   std::size_t end = 0;
-  double speed = 0.0;         ///< mean, rad/s or m/s, with its sign
-  double acceleration = 0.0;  ///< mean, what is left of it
-  double turns = 0.0;         ///< of the screw; whole where at least one fits, 0 for a linear drive
+  double speed = 0.0;  ///< mean, rad/s or m/s, with its sign
 };
 
 struct ConstantSpeedOptions {

@@ -29,14 +29,17 @@ AxisDesign observer_for(const std::vector<Record>& records, const sim::DriveDesc
 
 std::vector<CurvePoint> by_control_signal(const std::vector<FrictionPoint>& points) {
   std::vector<CurvePoint> curve;
-  for (const FrictionPoint& point : points) curve.push_back({point.speed, point.effort, point.standard_error});
+  for (const FrictionPoint& point : points) {
+    if (point.is_steady()) curve.push_back({point.speed, point.effort, point.standard_error});
+  }
   return curve;
 }
 
-std::vector<CurvePoint> by_disturbance(const std::vector<FrictionPoint>& points) {
+std::vector<CurvePoint> by_disturbance(const std::vector<FrictionPoint>& points, bool steady_only) {
   std::vector<CurvePoint> curve;
   for (const FrictionPoint& point : points) {
-    if (point.observed_effort) curve.push_back({point.speed, *point.observed_effort, point.standard_error});
+    if (point.is_steady() || !steady_only)
+      curve.push_back({point.speed, point.observed_effort.value_or(0.0), point.standard_error});
   }
   return curve;
 }
@@ -140,18 +143,16 @@ FrictionIdentification identify_friction(const std::vector<Record>& records, con
   result.observer_viscous = design.axis.viscous;
   result.tachometer = calibrate_tachometer(records, model.data);
   result.points = friction_points(records, model.data, design, options);
-  const std::vector<CurvePoint> observed = by_disturbance(result.points);
+  const bool observed = std::ranges::all_of(records, &Record::has_position);
   const bool symmetric = method == FrictionMethod::joint && is_symmetric(model);
   if (method == FrictionMethod::paper) {
-    if (observed.size() < result.points.size()) {
+    if (!observed) {
       throw Failure(ExitCode::bad_input, "the paper's procedure needs a position (x_mm or x_m) in every record");
     }
-    result.fit = fit_friction_as_paper(observed, design.axis.viscous);
+    result.fit = fit_friction_as_paper(by_disturbance(result.points, false), design.axis.viscous);
   } else {
     result.fit = fit_friction(by_control_signal(result.points), symmetric);
-    if (observed.size() == result.points.size()) {
-      result.viscous_by_disturbance = fit_friction(observed, symmetric).viscous;
-    }
+    if (observed) result.viscous_by_disturbance = fit_friction(by_disturbance(result.points, true), symmetric).viscous;
     if (!result.fit.has_stribeck) {
       result.warnings.push_back(
           "the points show no static friction above the Coulomb level, so the model has no stribeck effect; jogs at "

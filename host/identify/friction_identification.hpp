@@ -13,7 +13,8 @@
 namespace host {
 
 enum class FrictionMethod {
-  joint,  ///< one fit of everything to the mean control signal, which a tachometer error cannot reach
+  joint,  ///< one fit of everything to the mean control signal, which a tachometer error cannot reach; steady points
+          ///< only
   paper,  ///< section 3.2 as printed, from the Kalman disturbance
 };
 

@@ -62,6 +62,7 @@ nlohmann::json friction_json(const FrictionIdentification& found) {
                             {"direction", point.speed > 0.0 ? "positive" : "negative"},
                             {"start_s", point.start_s},
                             {"duration_s", point.duration_s},
+                            {"steady", point.is_steady()},
                             {"record", point.record}};
     if (point.observed_effort) entry["by_disturbance"] = *point.observed_effort;
     if (rotary) entry["turns"] = point.turns;

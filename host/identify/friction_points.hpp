@@ -18,13 +18,19 @@ std::vector<double> observe_disturbance(const Record& record, const AxisDesign& 
 struct FrictionPoint {
   double speed = 0.0;           ///< rad/s or m/s
   double effort = 0.0;          ///< Nm or N: mean control effort less what is left of J dw/dt
-  double standard_error = 0.0;  ///< of `effort`, from batches of the stretch
+  double standard_error = 0.0;  ///< of `effort`, from the scatter of its parts
   /// From the disturbance: Ka Kt d + B w, with the B of the observer's design; empty where there is no position.
   std::optional<double> observed_effort;
   double duration_s = 0.0;  ///< averaged over
-  double turns = 0.0;       ///< of the screw
-  std::size_t record = 0;   ///< which of the records
-  double start_s = 0.0;     ///< where in it
+  double turns = 0.0;       ///< of the screw; whole where at least one fits, 0 for a linear drive
+  double jitter =
+      0.0;  ///< standard deviation of the speed above 10 Hz that the control signal itself causes, rad/s or m/s
+  std::size_t record = 0;  ///< which of the records
+  double start_s = 0.0;    ///< where in it
+
+  /// Whether the axis really slides all the time. Where the speed jitters through zero, friction changes its sign
+  /// within the stretch and its mean is too small: the lowest jog speeds of a drive with a noisy tachometer.
+  bool is_steady() const;
 };
 
 /// All stretches of all records. The design gives J and B; a record without a tachometer needs a design without one.

@@ -9,12 +9,11 @@
 #include "host/identify/excitation.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/paper_drives.hpp"
-#include "tests/host/identify/plant_record.hpp"
+#include "host/identify/simulated_experiment.hpp"
 
 namespace {
 
 using host::IdentificationMethod;
-using identify_test::open_loop_record;
 using testing::HasSubstr;
 
 // Table 1, typed again here so that a slip in the drive's description cannot cancel out.
@@ -31,7 +30,7 @@ sim::DriveDescription data_sheet_of(const char* axis) {
 }
 
 host::Record steps(const char* axis, double Ku) {
-  return open_loop_record(*host::paper_drive(axis), host::doublet_series(Ku * host::kStepUnit_V, 0.001));
+  return host::record_open_loop(*host::paper_drive(axis), host::doublet_series(Ku * host::kStepUnit_V, 0.001), 1);
 }
 
 class StepIdentification : public testing::TestWithParam<Truth> {};
