@@ -14,8 +14,10 @@ namespace host {
 
 namespace {
 
-/// Velocity constants are looked for from this part of the slowest speed up to the top speed.
+/// Velocity constants are looked for from this part of the slowest speed up to this part of the top speed: the fast
+/// points (the paper's: above a quarter of the top speed) then belong to Coulomb and viscous friction alone.
 constexpr double kLeastOmegaShare = 0.3;
+constexpr double kMostOmegaShare = 0.25;
 
 /// Parameters of one direction as the solver sees them. Velocity constants as logarithms: they are positive, span
 /// decades, and what the points tell of them is relative.
@@ -102,7 +104,7 @@ Candidate solve_from(const std::vector<CurvePoint>& points, const std::vector<do
     for (const auto omega : {kLogOmega1, kLogOmega2}) {
       problem.SetParameterLowerBound(start.data(), static_cast<int>(at + omega),
                                      std::log(kLeastOmegaShare * range.slowest));
-      problem.SetParameterUpperBound(start.data(), static_cast<int>(at + omega), std::log(range.top));
+      problem.SetParameterUpperBound(start.data(), static_cast<int>(at + omega), std::log(kMostOmegaShare * range.top));
     }
   }
   ceres::Solver::Options options;
@@ -138,7 +140,7 @@ Candidate solve(const std::vector<CurvePoint>& points, const Layout& layout) {
   const std::vector<double> weights = weights_of(points, range.level);
   Candidate best;
   constexpr double kSpread[] = {0.15, 0.35, 0.55, 0.75};
-  const double span = std::log(range.top / range.slowest);
+  const double span = std::log(kMostOmegaShare * range.top / range.slowest);
   for (const double first : kSpread) {
     for (const double second : kSpread) {
       Parameters start = Parameters::Zero(layout.size());
@@ -185,9 +187,9 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
     // What the points do not determine has the range of the search as its interval.
     const double lowest = kLeastOmegaShare * range.slowest;
     const double value = std::exp(best.parameters(k)), half = half_of(unit(k));
-    const double reach = std::log(range.top / lowest);
+    const double highest = kMostOmegaShare * range.top, reach = std::log(highest / lowest);
     const double factor = std::exp(std::min(half, reach));
-    return Estimate{value, {std::max(value / factor, lowest), std::min(value * factor, range.top)}};
+    return Estimate{value, {std::max(value / factor, lowest), std::min(value * factor, highest)}};
   };
 
   FrictionFit fit;
@@ -213,21 +215,41 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
   return fit;
 }
 
+/// Speeds of one direction that differ by a tenth or more.
+std::size_t distinct_speeds(const std::vector<CurvePoint>& points, bool forward) {
+  std::set<double> logarithms;
+  for (const CurvePoint& point : points) {
+    if ((point.speed > 0.0) == forward) logarithms.insert(std::log(std::abs(point.speed)));
+  }
+  std::size_t count = 0;
+  double last = -HUGE_VAL;
+  for (const double logarithm : logarithms) {
+    if (logarithm - last < 0.1) continue;
+    last = logarithm;
+    ++count;
+  }
+  return count;
+}
+
 void require_speeds(const std::vector<CurvePoint>& points) {
   for (const bool forward : {true, false}) {
-    std::set<int> speeds;  // distinct within 10 %
-    for (const CurvePoint& point : points) {
-      if ((point.speed > 0.0) == forward)
-        speeds.insert(static_cast<int>(std::lround(std::log(std::abs(point.speed)) / 0.1)));
-    }
-    if (speeds.size() >= 2) continue;
+    const std::size_t speeds = distinct_speeds(points, forward);
+    if (speeds >= 2) continue;
     throw Failure(
         ExitCode::refused,
         fmt::format("only {} constant speed{} {} found; a friction curve needs at least two in each direction, "
                     "held for 0.3 s or more. Jog at several speeds both ways, for example 0.1, 0.3, 0.5, 1, 3, "
                     "5, 10, 25, 50, 75, 100 mm/s",
-                    speeds.size(), speeds.size() == 1 ? "" : "s", forward ? "forward" : "backward"));
+                    speeds, speeds == 1 ? "" : "s", forward ? "forward" : "backward"));
   }
+}
+
+/// Four values a direction and the common slope: below five speeds a direction the Stribeck part is anything.
+bool can_tell_stribeck(const std::vector<CurvePoint>& points) {
+  constexpr std::size_t kFewest = 5;
+  const Range range = range_of(points);
+  return distinct_speeds(points, true) >= kFewest && distinct_speeds(points, false) >= kFewest &&
+         kMostOmegaShare * range.top > range.slowest;
 }
 
 }  // namespace
@@ -235,8 +257,8 @@ void require_speeds(const std::vector<CurvePoint>& points) {
 FrictionFit fit_friction(const std::vector<CurvePoint>& points, bool symmetric) {
   require_speeds(points);
   const Candidate plain = solve(points, {.symmetric = symmetric, .stribeck = false});
+  if (!can_tell_stribeck(points)) return describe(plain, points);
   const Layout full{.symmetric = symmetric, .stribeck = true};
-  if (static_cast<Eigen::Index>(points.size()) <= full.size() + 1) return describe(plain, points);
   const Candidate stribeck = solve(points, full);
   const bool preferred = information_criterion(stribeck, points.size()) < information_criterion(plain, points.size());
   return describe(preferred ? stribeck : plain, points);

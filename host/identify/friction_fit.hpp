@@ -35,7 +35,8 @@ FrictionFit fit_friction_as_paper(const std::vector<CurvePoint>& points, double 
 
 /// One weighted least-squares fit of B', and per direction T_coul, T_stat, omega1, omega2 (`symmetric`: one for both).
 /// Each point weighs by its standard error; intervals are Student's t, widened where the scatter exceeds those errors.
-/// The Stribeck part stays only if the points prefer it by the Bayesian information criterion.
+/// The Stribeck part needs five speeds in each direction, and stays only if the points prefer it by the Bayesian
+/// information criterion.
 /// Throws Failure(refused) with fewer than two speeds in a direction.
 FrictionFit fit_friction(const std::vector<CurvePoint>& points, bool symmetric);
 

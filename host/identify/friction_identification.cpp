@@ -155,8 +155,9 @@ FrictionIdentification identify_friction(const std::vector<Record>& records, con
     if (observed) result.viscous_by_disturbance = fit_friction(by_disturbance(result.points, true), symmetric).viscous;
     if (!result.fit.has_stribeck) {
       result.warnings.push_back(
-          "the points show no static friction above the Coulomb level, so the model has no stribeck effect; jogs at "
-          "speeds far below 1 mm/s would show it if there is any");
+          "the points show no static friction above the Coulomb level, so the model has no stribeck effect; five or "
+          "more "
+          "speeds each way, some of them far below 1 mm/s, would show it if there is any");
     }
   }
   result.model = model_with(model, result.fit, symmetric, method == FrictionMethod::joint, origin_of(records));
