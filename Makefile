@@ -27,12 +27,23 @@ demo: ## Identify a real record, control both axes in simulation, show the resul
 
 .PHONY: test
 test: ## Build and run all tests, again with sanitizers, and a short fuzz run of everything that reads files
-	$(NEED) build test
+	$(NEED) build test firmware
+	$(FIRMWARE)
+	ninja -C $(BUILD)/firmware -j $(JOBS)
 	$(call configure,$(BUILD),-DAXIS_CHECKED_BUILD=$(abspath $(CHECKED)))
 	ninja -C $(BUILD) -j $(JOBS)
 	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug)
 	ninja -C $(CHECKED) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+FIRMWARE = cmake -S cmake -B $(BUILD)/firmware -G Ninja --log-level=WARNING \
+           -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/toolchains/arm-none-eabi.cmake
+
+.PHONY: firmware
+firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images), with size and stack report
+	$(NEED) firmware
+	$(FIRMWARE)
+	ninja -C $(BUILD)/firmware -j $(JOBS)
 
 .PHONY: bench
 bench: ## Measure speed: plant and predictor against real time, identification, diagnosis (FILTER=regex)

@@ -40,9 +40,16 @@ struct ScalarTraits<Real> {
     return static_cast<Real>(high) * kHighUnit + static_cast<Real>(low) * kLowUnit;
   }
 
-  /// Counts as an increment, toward zero. |counts| < 2^15.
+  /// Counts as an increment, toward zero. |counts| < 2^15. In three pieces, each exact: a conversion to 64 bits is a
+  /// library call on a 32-bit processor, and one that computes in double precision.
   static constexpr std::int64_t to_increment(Real counts) {
-    return static_cast<std::int64_t>(counts * Real(std::int64_t{1} << kFractionBits));
+    constexpr Real kPiece = Real(65536);
+    const Real scaled = counts * kPiece;
+    const std::int32_t high = truncate(scaled);
+    const Real rest = (scaled - static_cast<Real>(high)) * kPiece;
+    const std::int32_t middle = truncate(rest);
+    const std::int32_t low = truncate((rest - static_cast<Real>(middle)) * kPiece);
+    return (std::int64_t{high} * 65536 + middle) * 65536 + low;
   }
 };
 

@@ -1,0 +1,33 @@
+// Decides whether the watchdog may be fed: only when all that must run has run.
+#pragma once
+
+#include <cstdint>
+
+namespace firmware {
+
+/// The control interrupt and the supervisor each report; the background loop asks. A single writer for each counter, so
+/// nothing needs a lock.
+class Liveness {
+ public:
+  void control_ran() { control_periods_ = control_periods_ + 1; }
+  void supervisor_ran() { supervisor_rounds_ = supervisor_rounds_ + 1; }
+
+  /// True when both have run since the last time it was true.
+  bool may_feed() {
+    if (control_periods_ == fed_at_period_ || supervisor_rounds_ == fed_at_round_) return false;
+    fed_at_period_ = control_periods_;
+    fed_at_round_ = supervisor_rounds_;
+    return true;
+  }
+
+  std::uint32_t control_periods() const { return control_periods_; }
+  std::uint32_t supervisor_rounds() const { return supervisor_rounds_; }
+
+ private:
+  volatile std::uint32_t control_periods_ = 0;    // written in the interrupt, read in the background
+  volatile std::uint32_t supervisor_rounds_ = 0;  // written in the background, read in the interrupt
+  std::uint32_t fed_at_period_ = 0;
+  std::uint32_t fed_at_round_ = 0;
+};
+
+}  // namespace firmware

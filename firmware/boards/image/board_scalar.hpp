@@ -1,0 +1,16 @@
+// The number type that this image's control core computes in.
+#pragma once
+
+#ifdef AXIS_SCALAR_FIXED
+#include "firmware/core/fixed_point.hpp"
+#endif
+
+namespace firmware::boards {
+
+#ifdef AXIS_SCALAR_FIXED
+using BoardScalar = FixedPoint;
+#else
+using BoardScalar = float;
+#endif
+
+}  // namespace firmware::boards

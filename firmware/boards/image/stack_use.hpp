@@ -1,0 +1,12 @@
+// How much stack a run has used, by the paint that start-up left.
+#pragma once
+
+#include <cstdint>
+
+namespace firmware::boards {
+
+/// Bytes below the top of the stack that have ever been written.
+std::uint32_t stack_used_bytes();
+std::uint32_t stack_size_bytes();
+
+}  // namespace firmware::boards

@@ -1,0 +1,13 @@
+// The header of the running image, and whether flash holds it whole.
+#pragma once
+
+#include "firmware/app/image_header.hpp"
+
+namespace firmware::boards {
+
+const ImageHeader& this_image();
+
+/// Reads all of the image: some 16 ms at 168 MHz.
+ImageState verify_this_image();
+
+}  // namespace firmware::boards

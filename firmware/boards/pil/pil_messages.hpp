@@ -1,0 +1,64 @@
+// What the plant's computer and the board exchange in processor-in-the-loop runs: 32-bit little-endian words.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace firmware::boards {
+
+inline constexpr std::size_t kPilAxes = 2;
+
+enum class PilCommand : std::uint32_t {
+  none = 0,
+  enable = 1,
+  disable = 2,
+  jog = 3,   ///< operand_low: the bits of a velocity in the board's scalar
+  move = 4,  ///< operand: target, encoder counts
+  stop = 5,
+};
+
+struct PilAxisRequest {
+  std::uint32_t encoder_counts = 0;
+  std::int32_t tachometer_code = 0;
+  std::uint32_t tachometer_valid = 0;
+  PilCommand command = PilCommand::none;
+  std::uint32_t operand_low = 0;
+  std::uint32_t operand_high = 0;
+};
+
+/// One control period's readings and commands. The last request of a run has the number kPilEnd and gets no reply.
+struct PilRequest {
+  std::uint32_t number = 0;
+  std::array<PilAxisRequest, kPilAxes> axis{};
+};
+inline constexpr std::uint32_t kPilEnd = 0xFFFFFFFF;
+
+/// Everything an axis puts out, remembers or reports, as bits.
+struct PilAxisReply {
+  std::int32_t dac_code = 0;
+  std::uint32_t dac_writes = 0;
+  std::uint32_t enable_line = 0;
+  std::uint32_t flags = 0;  ///< bit 0 command refused, 1 saturated, 2 enabled, 3 at rest; bits 8 to 15 AxisFault
+  std::array<std::uint32_t, 2> encoder_counts{}, anchor_counts{}, reference_counts{}, reference_fraction{};
+  std::uint32_t tachometer_velocity = 0;
+  std::uint32_t offset = 0, velocity = 0, disturbance = 0;
+  std::uint32_t reference_velocity = 0, position_error = 0, friction_V = 0, control_V = 0;
+
+  bool operator==(const PilAxisReply&) const = default;
+};
+
+struct PilReply {
+  std::uint32_t number = 0;
+  std::array<PilAxisReply, kPilAxes> axis{};
+
+  bool operator==(const PilReply&) const = default;
+};
+
+static_assert(sizeof(PilRequest) == 52 && sizeof(PilReply) == 164, "the same layout on both computers");
+
+/// Answer to the parameters: one ParameterError an axis.
+struct PilConfigured {
+  std::array<std::uint32_t, kPilAxes> error{};
+};
+
+}  // namespace firmware::boards

@@ -1,0 +1,107 @@
+// The two axes of a processor-in-the-loop run. The board and the computer that checks it instantiate this same class.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "firmware/boards/pil/pil_messages.hpp"
+#include "firmware/boards/pil/value_axis.hpp"
+#include "firmware/core/axis.hpp"
+
+namespace firmware::boards {
+
+template <typename Scalar>
+class PilStation {
+ public:
+  /// Parameters travel as the bytes of this array, so their layout is part of the interface.
+  using Parameters = std::array<AxisParameters<Scalar>, kPilAxes>;
+  static_assert(std::is_trivially_copyable_v<Parameters>);
+
+  constexpr PilConfigured configure(const Parameters& parameters) {
+    PilConfigured result;
+    for (std::size_t i = 0; i < kPilAxes; ++i)
+      result.error[i] = static_cast<std::uint32_t>(axis_[i].configure(parameters[i]));
+    return result;
+  }
+
+  constexpr PilReply step(const PilRequest& request) {
+    PilReply reply;
+    reply.number = request.number;
+    for (std::size_t i = 0; i < kPilAxes; ++i) {
+      read_in(request.axis[i], io_[i]);
+      const bool accepted = obey(request.axis[i], axis_[i]);
+      axis_[i].step();
+      reply.axis[i] = write_out(axis_[i], io_[i], accepted);
+    }
+    return reply;
+  }
+
+  const Axis<Scalar, ValueAxis>& axis(std::size_t index) const { return axis_[index]; }
+
+ private:
+  using BoardAxis = Axis<Scalar, ValueAxis>;
+
+  static constexpr void read_in(const PilAxisRequest& request, ValueAxis& io) {
+    io.encoder().reading = {request.encoder_counts, true};
+    io.tachometer().reading = {request.tachometer_code, request.tachometer_valid != 0};
+  }
+
+  static constexpr bool obey(const PilAxisRequest& request, BoardAxis& axis) {
+    switch (request.command) {
+      case PilCommand::none:
+        return true;
+      case PilCommand::enable:
+        return axis.enable();
+      case PilCommand::disable:
+        axis.disable();
+        return true;
+      case PilCommand::jog:
+        return axis.jog(std::bit_cast<Scalar>(request.operand_low));
+      case PilCommand::move: {
+        const auto target = static_cast<std::int64_t>(std::uint64_t{request.operand_high} << 32 | request.operand_low);
+        const MovePlanResult planned = axis.plan_move_to(CountPosition::at(target));
+        return planned.error == MovePlanError::none && axis.start(planned.plan);
+      }
+      case PilCommand::stop:
+        axis.stop();
+        return true;
+    }
+    return false;
+  }
+
+  static constexpr std::array<std::uint32_t, 2> halves(std::int64_t value) {
+    const auto bits = static_cast<std::uint64_t>(value);
+    return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+  }
+
+  static constexpr std::uint32_t bits(Scalar value) { return std::bit_cast<std::uint32_t>(value); }
+
+  static constexpr PilAxisReply write_out(const BoardAxis& axis, ValueAxis& io, bool accepted) {
+    const AxisTelemetry<Scalar>& seen = axis.telemetry();
+    PilAxisReply reply;
+    reply.dac_code = io.dac().code;
+    reply.dac_writes = io.dac().writes;
+    reply.enable_line = io.drive_enable().on ? 1 : 0;
+    reply.flags = (accepted ? 0u : 1u) | (seen.saturated ? 2u : 0u) | (seen.enabled ? 4u : 0u) |
+                  (axis.is_at_rest() ? 8u : 0u) | static_cast<std::uint32_t>(seen.fault) << 8;
+    reply.encoder_counts = halves(seen.encoder_counts);
+    reply.anchor_counts = halves(seen.estimate.anchor_counts);
+    reply.reference_counts = halves(seen.reference.counts);
+    reply.reference_fraction = halves(seen.reference.fraction);
+    reply.tachometer_velocity = bits(seen.tachometer_velocity);
+    reply.offset = bits(seen.estimate.offset);
+    reply.velocity = bits(seen.estimate.velocity);
+    reply.disturbance = bits(seen.estimate.disturbance);
+    reply.reference_velocity = bits(seen.reference_velocity);
+    reply.position_error = bits(seen.position_error);
+    reply.friction_V = bits(seen.friction_V);
+    reply.control_V = bits(seen.control_V);
+    return reply;
+  }
+
+  std::array<ValueAxis, kPilAxes> io_{};
+  std::array<BoardAxis, kPilAxes> axis_{BoardAxis(io_[0]), BoardAxis(io_[1])};
+};
+
+}  // namespace firmware::boards

@@ -1,0 +1,48 @@
+// The hardware interface of one axis as plain values: somebody else brings readings and takes the converter's words.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/axis_hal.hpp"
+
+namespace firmware::boards {
+
+class ValueAxis {
+ public:
+  struct Encoder {
+    hal::EncoderReading reading;
+    hal::EncoderReading read() { return reading; }
+  };
+  struct Tachometer {
+    hal::TachometerReading reading;
+    hal::TachometerReading read() { return reading; }
+  };
+  struct Dac {
+    std::int32_t code = 0;
+    std::uint32_t writes = 0;
+    bool write(std::int32_t value) {
+      code = value;
+      ++writes;
+      return true;
+    }
+  };
+  struct Enable {
+    bool on = false;
+    void set(bool value) { on = value; }
+    bool is_faulted() { return false; }
+  };
+
+  Encoder& encoder() { return encoder_; }
+  Tachometer& tachometer() { return tachometer_; }
+  Dac& dac() { return dac_; }
+  Enable& drive_enable() { return enable_; }
+
+ private:
+  Encoder encoder_;
+  Tachometer tachometer_;
+  Dac dac_;
+  Enable enable_;
+};
+static_assert(hal::AxisHal<ValueAxis>);
+
+}  // namespace firmware::boards

@@ -1,0 +1,191 @@
+// The board as QEMU's netduinoplus2 has it: the chip's core, FPU, MPU, interrupts, SysTick and USART1, and no
+// periphery. `arg=` of -semihosting-config chooses what the image does; without it, it serves the serial port.
+#include <cstring>
+
+#include "firmware/app/liveness.hpp"
+#include "firmware/boards/image/board_scalar.hpp"
+#include "firmware/boards/image/boot_report.hpp"
+#include "firmware/boards/image/fault_handler.hpp"
+#include "firmware/boards/image/stack_use.hpp"
+#include "firmware/boards/pil/frame.hpp"
+#include "firmware/boards/pil/pil_station.hpp"
+#include "firmware/boards/qemu-f405/provoke.hpp"
+#include "hal/qemu/semihosting.hpp"
+#include "hal/stm32f4/usart_port.hpp"
+
+namespace firmware::boards {
+
+namespace {
+
+using hal::qemu::HostFile;
+using Station = PilStation<BoardScalar>;
+
+[[gnu::section(".ccm")]] constinit Station station;
+constinit Liveness liveness;
+hal::stm32f4::UsartPort serial(hal::stm32f4::usart1());
+
+/// Where the control interrupt's readings come from and its words go to.
+enum class Loop : std::uint8_t { none, standing, files };
+Loop loop = Loop::none;
+HostFile requests;
+HostFile replies;
+bool run_ended = false;
+
+template <typename T>
+std::span<std::byte> bytes_of(T& object) {
+  return std::as_writable_bytes(std::span(&object, 1));
+}
+
+void remember(const PilReply& reply) {
+  LastState& last = survival_record().running;
+  last.control_periods = liveness.control_periods();
+  last.supervisor_rounds = liveness.supervisor_rounds();
+  for (std::size_t i = 0; i < kPilAxes; ++i) {
+    const auto& telemetry = station.axis(i).telemetry();
+    last.axis[i].encoder_counts = telemetry.encoder_counts;
+    last.axis[i].dac_code = reply.axis[i].dac_code;
+    last.axis[i].enabled = telemetry.enabled ? 1 : 0;
+    last.axis[i].fault = static_cast<std::uint32_t>(telemetry.fault);
+  }
+}
+
+PilReply control_period(const PilRequest& request) {
+  const PilReply reply = station.step(request);
+  liveness.control_ran();
+  remember(reply);
+  return reply;
+}
+
+void file_period() {
+  PilRequest request;
+  if (!requests.read(bytes_of(request)) || request.number == kPilEnd) {
+    run_ended = true;
+    return;
+  }
+  const PilReply reply = control_period(request);
+  if (!replies.write(std::as_bytes(std::span(&reply, 1)))) run_ended = true;
+}
+
+/// Period in processor clocks. QEMU gives the chip its 168 MHz.
+void start_control_interrupt(std::uint32_t clocks) {
+  using hal::cortex_m::SysTick;
+  hal::cortex_m::set_exception_priority(hal::cortex_m::kSysTickException, 2);
+  SysTick& tick = hal::cortex_m::sys_tick();
+  tick.RVR = clocks - 1;
+  tick.CVR = 0;
+  tick.CSR = SysTick::kEnable | SysTick::kInterrupt | SysTick::kProcessorClock;
+}
+
+constexpr std::uint32_t kClock_Hz = 168'000'000;
+constexpr std::uint32_t kControlRate_Hz = 1000;
+
+/// The control interrupt reads and writes the two FIFOs; the emulated processor waits in them, its time stands still.
+void run_over_files() {
+  constexpr const char* kRequests = "pil-requests";
+  constexpr const char* kReplies = "pil-replies";
+  if (!requests.open(kRequests, std::strlen(kRequests), HostFile::Mode::read_binary) ||
+      !replies.open(kReplies, std::strlen(kReplies), HostFile::Mode::write_binary)) {
+    hal::qemu::print("pil: cannot open pil-requests and pil-replies in the emulator's folder\n");
+    hal::qemu::exit_emulator(1);
+  }
+  Station::Parameters parameters;
+  if (!requests.read(bytes_of(parameters))) hal::qemu::exit_emulator(1);
+  const PilConfigured configured = station.configure(parameters);
+  if (!replies.write(std::as_bytes(std::span(&configured, 1)))) hal::qemu::exit_emulator(1);
+  loop = Loop::files;
+  start_control_interrupt(kClock_Hz / kControlRate_Hz);
+  while (!*const_cast<volatile bool*>(&run_ended)) liveness.supervisor_ran();
+  hal::qemu::exit_emulator(0);
+}
+
+/// The same over the serial port, with frames; a hello frame tells the other end that the receiver is on.
+void run_over_serial() {
+  FrameReceiver<sizeof(Station::Parameters)> receiver;
+  const auto send = [](std::byte byte) { serial.send(byte); };
+  const auto next = [&receiver] {
+    std::byte byte{};
+    for (;;)
+      if (serial.receive(byte) && receiver.take(byte)) return receiver.payload();
+  };
+  send_frame({}, send);
+  for (;;) {
+    const std::span<const std::byte> payload = next();
+    if (payload.size() == sizeof(Station::Parameters)) {
+      Station::Parameters parameters;
+      std::memcpy(static_cast<void*>(&parameters), payload.data(), sizeof parameters);
+      const PilConfigured configured = station.configure(parameters);
+      send_frame(std::as_bytes(std::span(&configured, 1)), send);
+    } else if (payload.size() == sizeof(PilRequest)) {
+      PilRequest request;
+      std::memcpy(&request, payload.data(), sizeof request);
+      if (request.number == kPilEnd) hal::qemu::exit_emulator(receiver.rejected() == 0 ? 0 : 2);
+      const PilReply reply = control_period(request);
+      send_frame(std::as_bytes(std::span(&reply, 1)), send);
+    }
+  }
+}
+
+/// Control interrupts with axes that stand still; letters on the serial port provoke faults.
+[[noreturn]] void serve() {
+  TextWriter out(serial);
+  loop = Loop::standing;
+  start_control_interrupt(kClock_Hz / kControlRate_Hz);
+  out << "ready\n";
+  for (;;) {
+    liveness.supervisor_ran();
+    std::byte letter{};
+    if (!serial.receive(letter)) continue;
+    switch (static_cast<char>(letter)) {
+      case 'b':
+        provoke_bus_fault();
+        break;
+      case 'd':
+        provoke_division_by_zero();
+        break;
+      case 's':
+        provoke_stack_overflow();
+        break;
+      case 'i':
+        provoke_unexpected_interrupt();
+        break;
+      case 'r':
+        reset_processor();
+      case 'u':
+        out << "stack: used " << stack_used_bytes() << " of " << stack_size_bytes() << " bytes, control periods "
+            << liveness.control_periods() << "\n";
+        break;
+      case 'q':
+        hal::qemu::exit_emulator(0);
+      default:
+        out << "b d s i provoke faults, r resets, u tells stack use, q ends\n";
+    }
+  }
+}
+
+}  // namespace
+
+/// There is no converter and no enable line here; what the last words were is in the record.
+void make_outputs_safe() noexcept {}
+
+}  // namespace firmware::boards
+
+extern "C" void control_interrupt() {
+  using namespace firmware::boards;
+  if (run_ended) return;
+  if (loop == Loop::files) file_period();
+  if (loop == Loop::standing) control_period(PilRequest{});
+}
+
+extern "C" [[noreturn]] void run_board() {
+  using namespace firmware::boards;
+  const LastRun last_run = take_over_survival_record(ResetCause::unknown);
+  arm_fault_detection();
+  constexpr std::uint32_t kResetClock_Hz = 16'000'000;  // the RC oscillator; QEMU sends at once anyway
+  serial.start(kResetClock_Hz, 115200);
+  std::array<char, 64> wanted{};
+  hal::qemu::command_line(wanted);
+  if (std::strcmp(wanted.data(), "pil-files") == 0) run_over_files();
+  if (std::strcmp(wanted.data(), "pil-serial") == 0) run_over_serial();
+  report_boot(serial, last_run, verify_this_image());
+  serve();
+}
