@@ -119,6 +119,18 @@ void cross_check(FrictionIdentification& result) {
   result.warnings.push_back(text);
 }
 
+/// A model that claims equal directions keeps that form; where the points deny it, the user has to know.
+void warn_of_unequal_directions(FrictionIdentification& result) {
+  constexpr double kClearlyWorse = 2.0;
+  const FrictionFit free = fit_friction(by_control_signal(result.points), false);
+  if (result.fit.rms < kClearlyWorse * free.rms) return;
+  result.warnings.push_back(
+      fmt::format("the model has one friction level for both directions, but the directions differ (residual {:.3g} "
+                  "against {:.3g} with a level each): a constant torque, an offset of the converter, or friction that "
+                  "differs by direction. Give positive and negative levels, or ask axistool diagnose",
+                  result.fit.rms, free.rms));
+}
+
 void warn_of_other_effects(FrictionIdentification& result) {
   for (const char* kind :
        {"coulomb_asymmetry", "viscous_asymmetry", "nonlinear_viscous", "constant_torque", "dac_offset"}) {
@@ -162,6 +174,7 @@ FrictionIdentification identify_friction(const std::vector<Record>& records, con
   }
   result.model = model_with(model, result.fit, symmetric, method == FrictionMethod::joint, origin_of(records));
   cross_check(result);
+  if (symmetric) warn_of_unequal_directions(result);
   warn_of_other_effects(result);
   return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <vector>
 
 namespace host {
@@ -43,6 +44,28 @@ class BlockedRegression {
     projection_.noalias() += phi * y;
     ++rows_;
     if (++rows_in_block_ == rows_per_block_) end_block();
+  }
+
+  /// The same for rows [begin, end), fast: `row_of(k, phi)` fills phi and returns y. The sums of a block stay in
+  /// registers.
+  template <typename RowOf>
+  void add_rows(std::size_t begin, std::size_t end, const RowOf& row_of) {
+    while (begin < end) {
+      const std::size_t stop = std::min(end, begin + rows_per_block_ - rows_in_block_);
+      Eigen::Matrix<double, P, P> moment = Eigen::Matrix<double, P, P>::Zero();
+      Row projection = Row::Zero(), phi;
+      for (std::size_t k = begin; k < stop; ++k) {
+        const double y = row_of(k, phi);
+        moment.noalias() += phi * phi.transpose();
+        projection.noalias() += phi * y;
+      }
+      moment_ += moment;
+      projection_ += projection;
+      rows_ += stop - begin;
+      rows_in_block_ += stop - begin;
+      if (rows_in_block_ == rows_per_block_) end_block();
+      begin = stop;
+    }
   }
 
   /// Call between records: rows on both sides are not consecutive.

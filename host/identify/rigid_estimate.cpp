@@ -67,20 +67,23 @@ std::size_t total_samples(const std::vector<Record>& records) {
 template <int P>
 Regression discrete_regression(const std::vector<Record>& records, const sim::DataSheet& data, double deadband) {
   BlockedRegression<P> regression(rows_per_block(total_samples(records), records.front().sample_period_s));
-  typename BlockedRegression<P>::Row phi;
   for (const Record& record : records) {
-    const std::vector<double> effort = record.u_V.empty() ? motor_effort(record, data) : std::vector<double>{};
-    for (std::size_t k = 1; k < record.size(); ++k) {
-      const double before = record.w[k - 1];
+    const bool volts = !record.u_V.empty();
+    const std::vector<double> effort = volts ? std::vector<double>{} : motor_effort(record, data);
+    const double* const command = volts ? record.u_V.data() : effort.data();
+    const double* const speed = record.w.data();
+    const double limit = volts ? data.dac_limit_V : HUGE_VAL;
+    const double scale = volts ? 1.0 : 1.0 / data.effort_per_volt();
+    regression.add_rows(1, record.size(), [=](std::size_t k, typename BlockedRegression<P>::Row& phi) {
+      const double before = speed[k - 1];
       phi(0) = before;
-      phi(1) = effort.empty() ? std::clamp(record.u_V[k - 1], -data.dac_limit_V, data.dac_limit_V)
-                              : effort[k - 1] / data.effort_per_volt();
+      phi(1) = scale * std::clamp(command[k - 1], -limit, limit);
       if constexpr (P == 4) {
         phi(2) = before > deadband ? -1.0 : 0.0;
         phi(3) = before < -deadband ? -1.0 : 0.0;
       }
-      regression.add(phi, record.w[k]);
-    }
+      return speed[k];
+    });
     regression.end_block();
   }
   return regression.solve();

@@ -148,6 +148,13 @@ TEST(JoggingForms, OneLevelForBothDirectionsStaysOneLevel) {
   EXPECT_TRUE(found.model.find("stribeck")->has("static"));
 }
 
+TEST(JoggingForms, OneLevelIsDoubtedWhereTheDirectionsDiffer) {
+  sim::DriveDescription model = believed(kAxes[0]);
+  model.find("coulomb")->parameters = {{"level", 2.0}};
+  const auto found = host::identify_friction({jog(kAxes[0])}, model, FrictionMethod::joint);
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("the directions differ")));
+}
+
 TEST(JoggingForms, PlainCoulombFrictionGetsNoStribeckEffect) {
   sim::DriveDescription machine = *host::paper_drive("y");
   std::erase_if(machine.effects, [](const sim::EffectEntry& entry) { return entry.kind == "stribeck"; });
