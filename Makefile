@@ -45,6 +45,13 @@ firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images
 	$(FIRMWARE)
 	ninja -C $(BUILD)/firmware -j $(JOBS)
 
+.PHONY: pil
+pil: firmware ## Processor in the loop: the image under QEMU against the host build, bit for bit (IMAGE=name for one)
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axis_pil
+	$(BUILD)/bin/axis_pil $(IMAGE)
+
 .PHONY: bench
 bench: ## Measure speed: plant and predictor against real time, identification, diagnosis (FILTER=regex)
 	$(NEED) build bench

@@ -1,5 +1,6 @@
 // The board as QEMU's netduinoplus2 has it: the chip's core, FPU, MPU, interrupts, SysTick and USART1, and no
 // periphery. `arg=` of -semihosting-config chooses what the image does; without it, it serves the serial port.
+#include <atomic>
 #include <cstring>
 
 #include "firmware/app/liveness.hpp"
@@ -26,10 +27,10 @@ hal::stm32f4::UsartPort serial(hal::stm32f4::usart1());
 
 /// Where the control interrupt's readings come from and its words go to.
 enum class Loop : std::uint8_t { none, standing, files };
-Loop loop = Loop::none;
+std::atomic<Loop> loop = Loop::none;  // its store also publishes what the control interrupt needs
 HostFile requests;
 HostFile replies;
-bool run_ended = false;
+std::atomic<bool> run_ended = false;
 
 template <typename T>
 std::span<std::byte> bytes_of(T& object) {
@@ -94,7 +95,7 @@ void run_over_files() {
   if (!replies.write(std::as_bytes(std::span(&configured, 1)))) hal::qemu::exit_emulator(1);
   loop = Loop::files;
   start_control_interrupt(kClock_Hz / kControlRate_Hz);
-  while (!*const_cast<volatile bool*>(&run_ended)) liveness.supervisor_ran();
+  while (!run_ended) liveness.supervisor_ran();
   hal::qemu::exit_emulator(0);
 }
 
@@ -104,8 +105,11 @@ void run_over_serial() {
   const auto send = [](std::byte byte) { serial.send(byte); };
   const auto next = [&receiver] {
     std::byte byte{};
-    for (;;)
+    for (;;) {
       if (serial.receive(byte) && receiver.take(byte)) return receiver.payload();
+      // Asking the emulated port without a pause keeps the emulator from filling it.
+      for (volatile int pause = 0; pause < 200;) pause = pause + 1;
+    }
   };
   send_frame({}, send);
   for (;;) {

@@ -1,0 +1,101 @@
+#include "tests/target/pil/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <stdexcept>
+
+#include "tests/firmware/friction_drive.hpp"
+
+namespace target_test {
+
+namespace {
+
+using firmware::boards::PilCommand;
+
+}  // namespace
+
+const std::vector<Order>& orders() {
+  static const std::vector<Order> all{
+      {5, 0, PilCommand::enable, 0},         {5, 1, PilCommand::enable, 0},
+      {100, 0, PilCommand::move, 40'000},    {150, 1, PilCommand::move, -25'000},
+      {1'400, 0, PilCommand::move, 39'990},  {1'500, 1, PilCommand::move, -24'999},
+      {1'900, 0, PilCommand::jog, 250},      {2'000, 1, PilCommand::jog, -250},
+      {2'600, 0, PilCommand::jog, -120},     {2'700, 1, PilCommand::jog, 0.05},
+      {3'600, 0, PilCommand::stop, 0},       {3'900, 1, PilCommand::jog, 3},
+      {4'200, 0, PilCommand::move, -60'000}, {4'400, 1, PilCommand::stop, 0},
+      {4'500, 0, PilCommand::stop, 0},  // cuts the move short
+      {4'800, 1, PilCommand::move, 10'000},  {5'200, 0, PilCommand::jog, 0.5},
+      {6'500, 1, PilCommand::disable, 0},    {6'700, 1, PilCommand::enable, 0},
+      {6'800, 1, PilCommand::jog, 200},      {6'900, 0, PilCommand::jog, -0.5},
+      {7'000, 1, PilCommand::disable, 0},  // in motion: the table coasts
+      {7'600, 1, PilCommand::enable, 0},     {7'700, 1, PilCommand::move, 0},
+      {7'900, 0, PilCommand::stop, 0},       {8'200, 0, PilCommand::move, 0},
+      {9'700, 0, PilCommand::move, 1},       {9'700, 1, PilCommand::stop, 0},
+  };
+  return all;
+}
+
+Plants::Plants() {
+  const std::array<const firmware_test::PaperAxis*, 2> axes{&firmware_test::kPaperX, &firmware_test::kPaperY};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    plant_[i] = std::make_unique<sim::Plant>(firmware_test::friction_drive(*axes[i]), 20'010 + i);
+    connector_[i] = std::make_unique<hal::pc::SimulatedAxis>(*plant_[i]);
+  }
+}
+
+firmware::boards::PilRequest Plants::read(std::uint32_t period) {
+  firmware::boards::PilRequest request;
+  request.number = period;
+  for (std::size_t i = 0; i < connector_.size(); ++i) {
+    const hal::TachometerReading tachometer = connector_[i]->tachometer().read();
+    request.axis[i].encoder_counts = connector_[i]->encoder().read().counts;
+    request.axis[i].tachometer_code = tachometer.code;
+    request.axis[i].tachometer_valid = tachometer.valid ? 1 : 0;
+  }
+  return request;
+}
+
+void Plants::apply(const firmware::boards::PilReply& reply) {
+  for (std::size_t i = 0; i < connector_.size(); ++i) {
+    connector_[i]->drive_enable().set(reply.axis[i].enable_line != 0);
+    connector_[i]->dac().write(reply.axis[i].dac_code);
+    plant_[i]->advance(firmware_test::kSamplePeriod_s);
+  }
+}
+
+template <typename Scalar>
+Replies run_on_host(std::uint32_t periods) {
+  auto station = std::make_unique<firmware::boards::PilStation<Scalar>>();
+  for (const std::uint32_t error : station->configure(BoardUnits<Scalar>::parameters()).error)
+    if (error != 0) throw std::runtime_error(fmt::format("the host build refuses the parameters: error {}", error));
+  return run<Scalar>(periods,
+                     [&station](const firmware::boards::PilRequest& request) { return station->step(request); });
+}
+
+template Replies run_on_host<float>(std::uint32_t);
+
+std::uint64_t hash(const Replies& replies) {
+  std::uint64_t value = 0xCBF29CE484222325;
+  for (const std::byte byte : std::as_bytes(std::span(replies))) {
+    value ^= static_cast<std::uint64_t>(byte);
+    value *= 0x100000001B3;
+  }
+  return value;
+}
+
+std::string first_difference(const Replies& expected, const Replies& seen) {
+  if (expected.size() != seen.size()) return fmt::format("{} replies instead of {}", seen.size(), expected.size());
+  for (std::size_t period = 0; period < expected.size(); ++period) {
+    if (expected[period] == seen[period]) continue;
+    constexpr std::size_t kWords = sizeof(firmware::boards::PilReply) / 4;
+    const auto want = std::bit_cast<std::array<std::uint32_t, kWords>>(expected[period]);
+    const auto have = std::bit_cast<std::array<std::uint32_t, kWords>>(seen[period]);
+    for (std::size_t word = 0; word < kWords; ++word)
+      if (want[word] != have[word])
+        return fmt::format("period {}: word {} is {:#010x} instead of {:#010x}", period, word, have[word], want[word]);
+  }
+  return {};
+}
+
+}  // namespace target_test

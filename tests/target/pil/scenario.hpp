@@ -1,0 +1,114 @@
+// The motion of a processor-in-the-loop run: the paper's two drives, simulated on this computer, and what they are
+// told.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "firmware/boards/pil/pil_station.hpp"
+#include "hal/pc/simulated_axis.hpp"
+#include "tests/firmware/paper_axes.hpp"
+
+namespace target_test {
+
+inline constexpr std::uint32_t kPeriods = 10'000;  // 10 s at 1 kHz
+
+/// Parameters of both axes in the units that the scalar computes in, and a velocity in them.
+template <typename Scalar>
+struct BoardUnits {
+  static typename firmware::boards::PilStation<Scalar>::Parameters parameters();
+  static Scalar velocity(double mm_per_s);
+};
+
+/// Between them, the two axes use every part of the control law.
+template <typename Scalar>
+firmware::AxisParameters<Scalar> with_all_parts(firmware::AxisParameters<Scalar> parameters, std::size_t axis) {
+  parameters.friction_feedforward_on = true;
+  parameters.zero_phase_feedforward_on = axis == 0;
+  parameters.disturbance_cancellation_on = axis == 1;
+  return parameters;
+}
+
+template <>
+struct BoardUnits<float> {
+  static firmware::boards::PilStation<float>::Parameters parameters() {
+    return {with_all_parts(firmware_test::parameters_of<float>(firmware_test::kPaperX), 0),
+            with_all_parts(firmware_test::parameters_of<float>(firmware_test::kPaperY), 1)};
+  }
+  static float velocity(double mm_per_s) { return static_cast<float>(mm_per_s); }
+};
+
+/// One command at one period.
+struct Order {
+  std::uint32_t period;
+  std::size_t axis;
+  firmware::boards::PilCommand command;
+  double argument;  ///< jog: mm/s; move: encoder counts
+};
+
+/// Moves long and short, cut moves, jogs up to the velocity limit, reversals, disabling in motion: 10 s on both axes.
+const std::vector<Order>& orders();
+
+/// Two simulated drives behind the simulated board's connectors.
+class Plants {
+ public:
+  Plants();
+
+  /// The readings of this period, to be completed with commands.
+  firmware::boards::PilRequest read(std::uint32_t period);
+  /// Puts out the words, and lets one period pass.
+  void apply(const firmware::boards::PilReply& reply);
+
+ private:
+  std::array<std::unique_ptr<sim::Plant>, 2> plant_;
+  std::array<std::unique_ptr<hal::pc::SimulatedAxis>, 2> connector_;
+};
+
+template <typename Scalar>
+void add_orders(firmware::boards::PilRequest& request) {
+  using firmware::boards::PilCommand;
+  for (const Order& order : orders()) {
+    if (order.period != request.number) continue;
+    firmware::boards::PilAxisRequest& axis = request.axis[order.axis];
+    axis.command = order.command;
+    if (order.command == PilCommand::jog)
+      axis.operand_low = std::bit_cast<std::uint32_t>(BoardUnits<Scalar>::velocity(order.argument));
+    if (order.command == PilCommand::move) {
+      const auto target = static_cast<std::uint64_t>(static_cast<std::int64_t>(order.argument));
+      axis.operand_low = static_cast<std::uint32_t>(target);
+      axis.operand_high = static_cast<std::uint32_t>(target >> 32);
+    }
+  }
+}
+
+using Replies = std::vector<firmware::boards::PilReply>;
+
+/// Closes the loop for as many periods: `exchange` stands for the board.
+template <typename Scalar, typename Exchange>
+Replies run(std::uint32_t periods, Exchange&& exchange) {
+  Plants plants;
+  Replies replies;
+  replies.reserve(periods);
+  for (std::uint32_t period = 0; period < periods; ++period) {
+    firmware::boards::PilRequest request = plants.read(period);
+    add_orders<Scalar>(request);
+    replies.push_back(exchange(request));
+    plants.apply(replies.back());
+  }
+  return replies;
+}
+
+/// The same run with the control core built for this computer. Throws if it refuses the parameters.
+template <typename Scalar>
+Replies run_on_host(std::uint32_t periods = kPeriods);
+
+/// FNV-1a, 64 bits, over every bit of every reply.
+std::uint64_t hash(const Replies& replies);
+
+/// The first reply that differs, in words; empty if none does.
+std::string first_difference(const Replies& expected, const Replies& seen);
+
+}  // namespace target_test

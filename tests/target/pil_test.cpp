@@ -1,0 +1,64 @@
+// Processor in the loop: the image in the emulator against the core built for this computer, bit for bit.
+#include <gtest/gtest.h>
+
+#include "tests/target/pil/links.hpp"
+
+namespace {
+
+using namespace target_test;
+
+template <typename Scalar>
+void expect_equal_over_files(const std::string& image_name) {
+  const std::string why = obstacle(image_name);
+  if (!why.empty()) GTEST_SKIP() << why;
+  const Replies expected = run_on_host<Scalar>();
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    FileLink link(image_name);
+    const Replies seen = run_over<Scalar>(link);
+    EXPECT_EQ(first_difference(expected, seen), "");
+    EXPECT_EQ(hash(seen), hash(expected));
+    EXPECT_EQ(link.finish(), 0);
+  }
+}
+
+TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
+  const Replies replies = run_on_host<float>();
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    std::int64_t least = 0, most = 0;
+    std::uint32_t enabled = 0;
+    for (const auto& reply : replies) {
+      const auto counts = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(reply.axis[axis].encoder_counts));
+      least = std::min(least, counts);
+      most = std::max(most, counts);
+      enabled += reply.axis[axis].enable_line;
+      EXPECT_EQ(reply.axis[axis].flags >> 8, 0u) << "a fault in period " << reply.number;
+      EXPECT_EQ(reply.axis[axis].flags & 1u, 0u) << "axis " << axis << " refuses the order of period " << reply.number;
+    }
+    EXPECT_GT(most - least, 40'000) << "encoder counts travelled by axis " << axis;
+    EXPECT_GT(enabled, 8'000u);
+  }
+}
+
+TEST(PilScenario, AChangedBitIsFound) {
+  const Replies expected = run_on_host<float>();
+  Replies seen = expected;
+  seen[7'777].axis[1].velocity ^= 1u;
+  EXPECT_NE(first_difference(expected, seen).find("period 7777"), std::string::npos);
+  EXPECT_NE(hash(seen), hash(expected));
+}
+
+TEST(Pil, FloatEqualsTheHostBitForBit) { expect_equal_over_files<float>("qemu-f405"); }
+
+TEST(Pil, TheSerialLineEqualsTheHostAndSurvivesNoise) {
+  const std::string why = obstacle("qemu-f405");
+  if (!why.empty()) GTEST_SKIP() << why;
+  SerialLink link("qemu-f405");
+  const std::array<std::byte, 5> noise{std::byte{0xA5}, std::byte{0x5A}, std::byte{0x00}, std::byte{0x00},
+                                       std::byte{0xA5}};
+  link.send_noise(noise);               // begins like an empty frame, which then fails its CRC
+  constexpr std::uint32_t kSome = 500;  // `make pil` runs all of them; the emulated port takes some ms a period
+  EXPECT_EQ(first_difference(run_on_host<float>(kSome), run_over<float>(link, kSome)), "");
+  EXPECT_EQ(link.finish(), 2) << "the board reports that it rejected a frame";
+}
+
+}  // namespace
