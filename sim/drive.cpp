@@ -48,11 +48,9 @@ struct RichContact {
     const double coefficient = viscosity * drive.friction[static_cast<std::size_t>(side)].viscous;
     FrictionPoint all{coefficient * speed, coefficient};
     for (const auto& further : drive.sliding_friction) {
-      // The derivative only steers the step; a difference over 0.1 % of the speed is enough.
-      const double near = speed * 1.001 + 1e-6;
-      const double here = further(speed);
-      all.effort += here;
-      all.slope += (further(near) - here) / (near - speed);
+      const FrictionPoint part = further(speed);
+      all.effort += part.effort;
+      all.slope += part.slope;
     }
     return all;
   }
@@ -125,15 +123,15 @@ DriveState Drive::at(double x, double w) const {
   return state;
 }
 
-double Drive::command_effort(const DriveState& state, double u_V) const {
+double Drive::command_effort(double u_V, double w) const {
   for (const auto& stage : command) u_V = stage(u_V);
   double effort = effort_per_volt * u_V;
-  for (const auto& limit : effort_limit) effort = limit(effort, state.w);
+  for (const auto& limit : effort_limit) effort = limit(effort, w);
   return effort;
 }
 
-double Drive::deliver(DriveState& state, double u_V, double duration_s) const {
-  const double wanted = command_effort(state, u_V);
+double Drive::deliver(DriveState& state, double u_V, double w, double duration_s) const {
+  const double wanted = command_effort(u_V, w);
   if (current_lag_s <= 0.0) return state.effort = wanted;
   return lag_mean(state.effort, wanted, current_lag_s, duration_s);
 }
@@ -177,10 +175,21 @@ void Drive::hold(DriveState& state, double u_V, double t_s, double duration_s) c
   constexpr double kPeriodShare = 0.125;
   constexpr double kMostParts = 64.0;
   const double by_travel = std::abs(state.w) * lead * duration_s / (kPeriodShare * finest_period);
-  const int parts =
-      static_cast<int>(std::clamp(std::ceil(std::max(duration_s / max_step_s, by_travel) - 1e-9), 1.0, kMostParts));
+  const double wanted_parts = std::max(duration_s / max_step_s, std::min(by_travel, kMostParts));
+  const int parts = std::max(1, static_cast<int>(std::ceil(wanted_parts - 1e-9)));
   const double part_s = duration_s / parts;
-  for (int part = 0; part < parts; ++part) move(state, deliver(state, u_V, part_s), t_s + part * part_s, part_s);
+  for (int part = 0; part < parts; ++part) {
+    const double at_s = t_s + part * part_s;
+    move(state, deliver(state, u_V, limiting_speed(state, u_V, at_s, part_s), part_s), at_s, part_s);
+  }
+}
+
+double Drive::limiting_speed(const DriveState& state, double u_V, double t_s, double duration_s) const {
+  // A limit that moves with the speed is taken at the middle of the step, found by a trial: order 2.
+  if (effort_limit.empty() || command_effort(u_V, state.w) == command_effort(u_V, 0.0)) return state.w;
+  DriveState trial = state;
+  move(trial, deliver(trial, u_V, state.w, duration_s), t_s, duration_s);
+  return 0.5 * (state.w + trial.w);
 }
 
 void Drive::step(DriveState& state, double u_V, double t_s, double duration_s) const {
@@ -204,7 +213,7 @@ void Drive::step(DriveState& state, double u_V, double t_s, double duration_s) c
     return;
   }
   const std::size_t whole = whole_periods_of_delay(duration_s);
-  const double rest_s = delay_s - static_cast<double>(whole) * duration_s;
+  const double rest_s = std::min(delay_s - static_cast<double>(whole) * duration_s, duration_s);
   const double newer = whole == 0 ? u_V : state.past_u_V[whole - 1];
   if (rest_s > 0.0) hold(state, state.past_u_V[whole], t_s, rest_s);
   if (rest_s < duration_s) hold(state, newer, t_s + rest_s, duration_s - rest_s);
@@ -222,14 +231,14 @@ void Drive::remember_command(DriveState& state, double u_V, std::size_t whole) c
 }
 
 double Drive::deliver_over(DriveState& state, double u_V, double duration_s) const {
-  if (delay_s <= 0.0) return deliver(state, u_V, duration_s);
+  if (delay_s <= 0.0) return deliver(state, u_V, state.w, duration_s);
   const std::size_t whole = whole_periods_of_delay(duration_s);
   const double older_s = std::min(delay_s - static_cast<double>(whole) * duration_s, duration_s);
   double impulse = 0.0;
-  if (older_s > 0.0) impulse += older_s * deliver(state, state.past_u_V[whole], older_s);
+  if (older_s > 0.0) impulse += older_s * deliver(state, state.past_u_V[whole], state.w, older_s);
   if (older_s < duration_s)
-    impulse +=
-        (duration_s - older_s) * deliver(state, whole == 0 ? u_V : state.past_u_V[whole - 1], duration_s - older_s);
+    impulse += (duration_s - older_s) *
+               deliver(state, whole == 0 ? u_V : state.past_u_V[whole - 1], state.w, duration_s - older_s);
   remember_command(state, u_V, whole);
   return impulse / duration_s;
 }

@@ -21,6 +21,12 @@ struct FrictionSide {
   double viscous = 0.0;    ///< Nm s/rad or N s/m
 };
 
+/// Friction magnitude at a speed and its derivative, Nm and Nm s/rad (or N and N s/m).
+struct FrictionPoint {
+  double effort;
+  double slope;
+};
+
 /// What an asymmetry multiplies the friction of one direction by.
 struct DirectionFactor {
   double level = 1.0;
@@ -105,8 +111,8 @@ class Drive {
   std::vector<std::function<double(double t_s, double x)>> load_effort;   ///< added to the motor's effort
   std::vector<std::function<double(double t_s, double x)>> level_factor;  ///< on Coulomb and static friction
   std::vector<std::function<double(double t_s)>> viscous_factor;
-  std::vector<std::function<double(double speed)>> sliding_friction;  ///< further friction at speed >= 0
-  double transmitted_share = 0.0;                                     ///< friction per transmitted effort
+  std::vector<std::function<FrictionPoint(double speed)>> sliding_friction;  ///< further friction at speed >= 0
+  double transmitted_share = 0.0;                                            ///< friction per transmitted effort
   double friction_memory_s = 0.0;
   double dwell_gain = 0.0;
   double dwell_time_s = 0.0;
@@ -125,8 +131,9 @@ class Drive {
 
  private:
   void settle();
-  double command_effort(const DriveState& state, double u_V) const;
-  double deliver(DriveState& state, double u_V, double duration_s) const;
+  double command_effort(double u_V, double w) const;
+  double deliver(DriveState& state, double u_V, double w, double duration_s) const;
+  double limiting_speed(const DriveState& state, double u_V, double t_s, double duration_s) const;
   void hold(DriveState& state, double u_V, double t_s, double duration_s) const;
   void move(DriveState& state, double effort, double t_s, double duration_s) const;
   void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;

@@ -5,15 +5,18 @@
 
 namespace sim {
 
-/// (e^z - 1)/z. The series is used where it is exact to the last bits of a step that matters (relative error < 1e-9).
+/// Below this |z| the series are used: their first missing term, z^6/40320, is then under 1e-10.
+inline constexpr double kSeriesReach = 0.125;
+
+/// (e^z - 1)/z.
 inline double phi1(double z) {
-  if (std::abs(z) > 0.25) return std::expm1(z) / z;
+  if (std::abs(z) > kSeriesReach) return std::expm1(z) / z;
   return 1.0 + z * (1.0 / 2 + z * (1.0 / 6 + z * (1.0 / 24 + z * (1.0 / 120 + z * (1.0 / 720 + z / 5040)))));
 }
 
 /// (phi1(z) - 1)/z.
 inline double phi2(double z) {
-  if (std::abs(z) > 0.25) return (phi1(z) - 1.0) / z;
+  if (std::abs(z) > kSeriesReach) return (phi1(z) - 1.0) / z;
   return 1.0 / 2 + z * (1.0 / 6 + z * (1.0 / 24 + z * (1.0 / 120 + z * (1.0 / 720 + z / 5040))));
 }
 

@@ -9,12 +9,6 @@
 
 namespace sim {
 
-/// Friction magnitude at a speed and its derivative, Nm and Nm s/rad (or N and N s/m).
-struct FrictionPoint {
-  double effort;
-  double slope;
-};
-
 /// Eq. (19) without its viscous term, at speed >= 0, with static friction `breakaway`. Omega = 0 means exp(-w/0) = 0.
 inline FrictionPoint stribeck_curve(const FrictionSide& side, double breakaway, double speed) {
   const double fading = side.omega1 > 0.0 ? std::exp(-speed / side.omega1) : 0.0;

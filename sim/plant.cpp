@@ -10,7 +10,8 @@ constexpr double kLongestStep_s = 0.25e-3;
 }
 
 Plant::Plant(const DriveDescription& description, std::uint64_t seed)
-    : data_(description.data), drive_(description), state_(drive_.at(0.0, 0.0)), noise_(seed) {
+    : data_(description.data), drive_(description), unpowered_(drive_), state_(drive_.at(0.0, 0.0)), noise_(seed) {
+  unpowered_.effort_per_volt = 0.0;
   if (data_.tach_noise_variance) tach_deviation_ = std::sqrt(*data_.tach_noise_variance);
 }
 
@@ -24,8 +25,8 @@ void Plant::set_command(double u_V) {
 void Plant::advance(double duration_s) {
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kLongestStep_s - 1e-9)));
   const double step_s = duration_s / steps;
-  for (int step = 0; step < steps; ++step)
-    drive_.step(state_, enabled_ ? command_V_ : 0.0, time_s_ + step * step_s, step_s);
+  const Drive& drive = enabled_ ? drive_ : unpowered_;
+  for (int step = 0; step < steps; ++step) drive.step(state_, command_V_, time_s_ + step * step_s, step_s);
   time_s_ += duration_s;
 }
 

@@ -43,6 +43,7 @@ class Plant {
  private:
   DataSheet data_;
   Drive drive_;
+  Drive unpowered_;  ///< the same without the motor's effort
   DriveState state_;
   std::mt19937_64 noise_;
   std::normal_distribution<double> normal_{0.0, 1.0};

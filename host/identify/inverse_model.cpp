@@ -23,7 +23,7 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
   double viscous = law.viscous * magnitude;
   for (const auto& factor : drive.viscous_factor) viscous *= factor(t_s);
   double friction = level + viscous;
-  for (const auto& further : drive.sliding_friction) friction += further(magnitude);
+  for (const auto& further : drive.sliding_friction) friction += further(magnitude).effort;
   return friction + drive.transmitted_share * std::abs(motor_effort);
 }
 

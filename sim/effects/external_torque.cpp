@@ -1,4 +1,6 @@
 // Torque that belongs to a time.
+#include <algorithm>
+
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 
@@ -8,7 +10,11 @@ namespace {
 
 void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
   const double torque = entry.at("torque"), start = entry.at("start"), end = start + entry.at("duration");
-  drive.load_effort.push_back([=](double t_s, double) { return t_s >= start && t_s < end ? torque : 0.0; });
+  // A sample counts by the part of it that the torque acts in: a fit can then move the edges by less than a sample.
+  const double period_s = data.sample_period_s;
+  drive.load_effort.push_back([=](double t_s, double) {
+    return torque * std::max(0.0, std::min(t_s + period_s, end) - std::max(t_s, start)) / period_s;
+  });
 }
 
 }  // namespace

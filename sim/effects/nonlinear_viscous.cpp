@@ -1,4 +1,5 @@
 // Friction curve that bends at speed.
+#include <algorithm>
 #include <cmath>
 
 #include "sim/drive.hpp"
@@ -12,8 +13,14 @@ void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const D
   // The reference speed only gives the coefficient a readable unit.
   const double reference = data.kind == DriveKind::rotary ? 10.0 : 0.1;
   const double coefficient = entry.at("coefficient"), exponent = entry.at("exponent");
-  drive.sliding_friction.push_back(
-      [=](double speed) { return speed > 0.0 ? coefficient * std::pow(speed / reference, exponent) : 0.0; });
+  drive.sliding_friction.push_back([=](double speed) {
+    // A law that flattens is infinitely steep at rest; below a thousandth of the reference its slope is held.
+    const double ratio = speed / reference, steepest = std::max(ratio, 1e-3);
+    const double at_steepest = coefficient * std::pow(steepest, exponent);
+    const double effort =
+        ratio == steepest ? at_steepest : (ratio > 0.0 ? coefficient * std::pow(ratio, exponent) : 0.0);
+    return FrictionPoint{effort, exponent * at_steepest / (steepest * reference)};
+  });
 }
 
 }  // namespace

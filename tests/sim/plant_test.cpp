@@ -1,0 +1,145 @@
+// The plant's connectors: converter, encoder, tachometer, enable.
+#include "sim/plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sim/small_drive.hpp"
+
+namespace {
+
+using namespace sim_test;
+using sim::Plant;
+
+sim::DriveDescription quantised_drive() {
+  sim::DriveDescription drive = viscous_drive();
+  drive.data.dac_resolution_V = 0.25;
+  drive.data.dac_limit_V = 10.0;
+  drive.data.encoder_resolution = 0.01;
+  drive.data.tach_noise_variance = 0.05;
+  return drive;
+}
+
+struct Moments {
+  double mean = 0.0, variance = 0.0;
+};
+
+template <typename Sample>
+Moments moments(int count, Sample&& sample) {
+  double sum = 0.0, squares = 0.0;
+  for (int k = 0; k < count; ++k) {
+    const double value = sample(k);
+    sum += value;
+    squares += value * value;
+  }
+  const double mean = sum / count;
+  return {mean, squares / count - mean * mean};
+}
+
+TEST(Converter, RoundingErrorHasTheVarianceOfEq10) {
+  Plant plant(quantised_drive(), 1);
+  const double step_V = 0.25;
+  // 4001 commands over 16 whole steps visit every place within a step equally often.
+  const Moments error = moments(4001, [&](int k) {
+    const double wanted = -2.0 + 4.0 * k / 4001.0;
+    plant.set_command(wanted);
+    return plant.command_V() - wanted;
+  });
+  EXPECT_NEAR(error.variance, step_V * step_V / 12.0, 1e-3 * step_V * step_V / 12.0);
+  EXPECT_NEAR(error.mean, 0.0, 1e-3 * step_V);
+}
+
+TEST(Converter, RangeIsLimited) {
+  Plant plant(quantised_drive(), 1);
+  for (const double u_V : {10.2, 50.0, HUGE_VAL}) {
+    plant.set_command(u_V);
+    EXPECT_EQ(plant.command_V(), 10.0);
+    plant.set_command(-u_V);
+    EXPECT_EQ(plant.command_V(), -10.0);
+  }
+}
+
+TEST(Encoder, RoundingErrorHasTheVarianceOfEq12) {
+  Plant plant(quantised_drive(), 1);
+  const double step_mm = 0.01;
+  const Moments error = moments(7001, [&](int k) {
+    plant.truth().x = -0.35 + 0.7 * k / 7001.0;
+    return static_cast<double>(plant.encoder_counts()) * step_mm - plant.truth().x;
+  });
+  EXPECT_NEAR(error.variance, step_mm * step_mm / 12.0, 1e-2 * step_mm * step_mm / 12.0);
+  EXPECT_NEAR(error.mean, -0.5 * step_mm, 1e-2 * step_mm) << "the edge that was passed last";
+}
+
+TEST(Encoder, CountsFromTheStartBothWays) {
+  Plant plant(quantised_drive(), 1);
+  plant.truth().x = 0.0349;
+  EXPECT_EQ(plant.encoder_counts(), 3);
+  plant.truth().x = -0.0001;
+  EXPECT_EQ(plant.encoder_counts(), -1);
+  plant.truth().x = 10000.005;  // ten metres
+  EXPECT_EQ(plant.encoder_counts(), 1000000);
+}
+
+TEST(Tachometer, NoiseHasItsVarianceAndNoMemory) {
+  Plant plant(quantised_drive(), 7);
+  const int count = 40000;
+  plant.truth() = sim::Drive(quantised_drive()).at(0.0, 12.0);
+  double last = 12.0, products = 0.0;
+  const Moments reading = moments(count, [&](int) {
+    const double value = plant.read_tachometer().value();
+    products += (value - 12.0) * (last - 12.0);
+    return last = value;
+  });
+  // Four standard errors of mean, variance and covariance for independent normal readings.
+  EXPECT_NEAR(reading.mean, 12.0, 4.0 * std::sqrt(0.05 / count));
+  EXPECT_NEAR(reading.variance, 0.05, 4.0 * 0.05 * std::sqrt(2.0 / count));
+  EXPECT_NEAR(products / count, 0.0, 4.0 * 0.05 / std::sqrt(count));
+}
+
+TEST(Tachometer, TheSeedFixesTheNoise) {
+  Plant a(quantised_drive(), 3), b(quantised_drive(), 3), c(quantised_drive(), 4);
+  const double first = a.read_tachometer().value();
+  EXPECT_EQ(first, b.read_tachometer().value());
+  EXPECT_NE(first, c.read_tachometer().value());
+}
+
+TEST(Tachometer, MayBeAbsent) {
+  sim::DriveDescription drive = quantised_drive();
+  drive.data.tach_noise_variance.reset();
+  EXPECT_FALSE(Plant(drive, 1).read_tachometer().has_value());
+}
+
+TEST(Plant, FollowsTheQuantisedCommand) {
+  Plant plant(quantised_drive(), 1);
+  plant.set_command(1.1);  // 1.0 V after rounding
+  plant.advance(0.3);
+  const double rate = kViscous / kInertia;
+  EXPECT_NEAR(plant.truth().w, 1.0 / kViscous * (1.0 - std::exp(-rate * 0.3)), 1e-9);
+  EXPECT_NEAR(plant.time_s(), 0.3, 1e-12);
+}
+
+TEST(Plant, WithoutEnableTheMotorIsFreeOfCurrent) {
+  // Also where the amplifier adds an offset of its own to the command.
+  Plant plant(with(with(quantised_drive(), "dac_offset", {{"offset", 0.5}}), "torque_ripple",
+                   {{"cosine", 0.1}, {"sine", 0.0}, {"period", 5.0}}),
+              1);
+  plant.set_enabled(false);
+  plant.set_command(5.0);
+  plant.advance(0.1);
+  EXPECT_EQ(plant.truth().w, 0.0);
+  EXPECT_EQ(plant.truth().x, 0.0);
+  plant.set_enabled(true);
+  plant.advance(0.01);
+  EXPECT_GT(plant.truth().w, 0.0);
+  plant.truth().w = 10.0;
+  plant.set_enabled(false);
+  plant.advance(0.2);
+  EXPECT_NEAR(plant.truth().w, 10.0 * std::exp(-kViscous / kInertia * 0.2), 1e-9) << "coasts";
+}
+
+TEST(Plant, RefusesAnUnknownEffect) {
+  EXPECT_THROW(Plant(with(quantised_drive(), "gremlins", {}), 1), std::invalid_argument);
+}
+
+}  // namespace
