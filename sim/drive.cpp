@@ -101,7 +101,7 @@ void Drive::settle() {
     side.viscous *= direction_factor[direction].viscous;
   }
   max_step_s = HUGE_VAL;
-  if (bristles) max_step_s = std::min(max_step_s, kPreslidingStep_s);
+  if (bristles) max_step_s = std::min(max_step_s, presliding_step_s(*bristles, inertia));
   if (second_mass) max_step_s = std::min(max_step_s, two_mass_step_s(*second_mass));
   for (const FrictionSide& side : friction) stribeck_ = stribeck_ || side.omega1 > 0.0 || side.omega2 > 0.0;
   plain_ = command.empty() && delay_s <= 0.0 && current_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&

@@ -10,9 +10,12 @@
 
 namespace sim {
 
-/// Longest step: the contact's oscillation of some 200 to 300 rad/s is then followed within 1 % a period, and the fast
-/// decay of z at speed is left to the stable implicit scheme.
-inline constexpr double kPreslidingStep_s = 0.5e-3;
+/// Longest step: half a radian of the mass swinging on its bristles, at most 0.5 ms: the contacts of machines swing at
+/// some 200 to 300 rad/s, followed within 1 % a period. The fast decay of z at speed is left to the implicit scheme.
+/// Not below 20 us: contacts so stiff deflect by nanometres.
+inline double presliding_step_s(const Bristles& bristles, double inertia) {
+  return std::clamp(0.5 * std::sqrt(inertia / bristles.stiffness), 20e-6, 0.5e-3);
+}
 
 /// Linearly implicit scheme of order 2 (ROS2, gamma = 1 - 1/sqrt 2, L-stable): two stages, each one 2-by-2 solution.
 template <typename Contact>
