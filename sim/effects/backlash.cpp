@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.second_mass =
       SecondMass{entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"), entry.at("gap")};
 }
@@ -17,9 +17,8 @@ extern const EffectInfo backlash;
 const EffectInfo backlash{
     .kind = "backlash",
     .title = "Backlash",
-    .equation = "as compliance, with d = the twist beyond a gap of +-e/2",
+    .equation = "as compliance, with s = 0 while the twist is within +-e/2, and a contact that pushes but never pulls",
     .stage = Stage::mechanics,
-
     .parameters = {{.id = "gap",
                     .rotary_key = "gap_mm",
                     .linear_key = "gap_m",
@@ -49,11 +48,17 @@ const EffectInfo backlash{
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}}},
-    .shows = "after a reversal the motor runs free for a fixed travel, then hits the load",
-    .confused_with = {"compliance", "presliding"},
-    .separate_by = "two encoders; reversal under a bias load, which closes the gap",
-    .origin = "worn nut, key, coupling, gear or rack",
-    .remedy = "preload the nut; backlash compensation",
+    .shows =
+        "After a reversal the motor runs free for a fixed travel, then hits the load: torque falls short, then peaks. "
+        "The travel is the same at any speed",
+    .confused_with = {"compliance", "presliding", "input_delay"},
+    .separate_by =
+        "Encoders on motor and table; reversals under a bias load, which closes the gap: what then disappears was "
+        "backlash, what recovers gradually was presliding or wind-up",
+    .origin =
+        "Worn nut, key, coupling, gear or rack: up to 20 um in a ball screw, 10 to 200 um in racks and worm gears "
+        "(textbook)",
+    .remedy = "Renew or preload the nut; clamp the coupling; backlash compensation",
     .install = install,
 };
 

@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
   drive.finest_period = std::min(drive.finest_period, entry.at("period"));
   drive.load_effort.push_back([harmonic](double, double x) { return harmonic(x); });
@@ -21,7 +21,7 @@ extern const EffectInfo cogging;
 const EffectInfo cogging{
     .kind = "cogging",
     .title = "Cogging",
-    .equation = "T = T_motor + c cos(2 pi x/L) + s sin(2 pi x/L)",
+    .equation = "T = T_motor + c cos(2 pi x/L) + s sin(2 pi x/L); x: travel",
     .stage = Stage::load,
     .periodic = true,
     .parameters = {{.id = "cosine",
@@ -47,11 +47,17 @@ const EffectInfo cogging{
                     .lower = 1e-5,
                     .upper = 1e5,
                     .scale = Scale::millimetre}},
-    .shows = "residual torque periodic in position, of the same size at any speed and any current",
+    .shows =
+        "Residual torque periodic in position, of the same size at any speed and any current, and in the same sense "
+        "both ways",
     .confused_with = {"torque_ripple", "encoder_cyclic_error", "tach_ripple", "position_dependent_friction"},
-    .separate_by = "the same slow stroke with two loads: cogging keeps its size, torque ripple grows with the current",
-    .origin = "magnets pulling at the slots of the motor; balls passing in the screw",
-    .remedy = "skewed or ironless motor; cogging table in the drive",
+    .separate_by =
+        "The same slow stroke with two loads: cogging keeps its size, ripple grows with the current. A sweep of "
+        "speeds: the trace of a sensor error grows with speed squared",
+    .origin =
+        "Magnets pulling at the slots of the motor (orders: slots, poles, their common multiples); balls passing in "
+        "the screw (orders that are no whole numbers)",
+    .remedy = "Skewed or ironless motor; cogging table over the motor angle, aligned anew after homing",
     .install = install,
 };
 

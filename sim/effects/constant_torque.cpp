@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double torque = entry.at("torque");
   drive.load_effort.push_back([torque](double, double) { return torque; });
 }
@@ -17,9 +17,8 @@ extern const EffectInfo constant_torque;
 const EffectInfo constant_torque{
     .kind = "constant_torque",
     .title = "Constant torque",
-    .equation = "T = T_motor + T_0",
+    .equation = "T = T_motor + T_0; acts in both directions and at rest",
     .stage = Stage::load,
-
     .parameters = {{.id = "torque",
                     .rotary_key = "torque_Nm",
                     .linear_key = "force_N",
@@ -28,13 +27,15 @@ const EffectInfo constant_torque{
                     .upper = 1e6,
                     .scale = Scale::coulomb,
                     .starts = {0.05, -0.05}}},
-    .shows = "residual torque constant, of one sign in both directions",
+    .shows =
+        "Residual torque constant, of one sign in both directions. A released axis moves by itself where friction does "
+        "not hold it",
     .confused_with = {"coulomb_asymmetry", "dac_offset", "viscous_asymmetry", "spring_torque"},
     .separate_by =
-        "hold the axis at rest without friction in play (coupling off); turn the axis over; read the current at zero "
-        "command",
-    .origin = "gravity on an inclined or vertical axis, a counterweight out of balance",
-    .remedy = "trim the counterweight; feed the weight forward",
+        "Hold the axis at rest without friction in play (coupling off); turn the axis over; read the motor current at "
+        "zero command to tell it from an offset of the electronics",
+    .origin = "Gravity on an inclined or vertical axis, a counterweight out of balance, a cable under tension",
+    .remedy = "Trim the counterweight; feed the weight forward",
     .install = install,
 };
 

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.friction[0].coulomb += entry.either("positive", "level");
   drive.friction[1].coulomb += entry.either("negative", "level");
 }
@@ -17,7 +17,8 @@ extern const EffectInfo coulomb;
 const EffectInfo coulomb{
     .kind = "coulomb",
     .title = "Coulomb friction",
-    .equation = "T_f = T_coul sign(w) (eqs. 28 to 30)",
+    .equation =
+        "T_f = T_coul+ for w > 0, T_coul- for w < 0 (eqs. 28 to 30); at rest it holds any torque between the two",
     .stage = Stage::friction,
     .base = true,
     .parameters = {{.id = "positive",
@@ -48,11 +49,13 @@ const EffectInfo coulomb{
                     .starts = {1},
                     .optional = true,
                     .pair_of = "positive negative"}},
-    .shows = "residual torque constant in each direction of motion",
-    .confused_with = {"constant_torque", "dac_offset", "coulomb_asymmetry"},
-    .separate_by = "constant speeds both ways",
-    .origin = "guideways, wipers, preloaded nut and bearings",
-    .remedy = "check preload, wipers and gib adjustment",
+    .shows = "Residual torque constant in each direction of motion, at any speed; a jump at every reversal",
+    .confused_with = {"constant_torque", "dac_offset", "coulomb_asymmetry", "dac_dead_zone"},
+    .separate_by =
+        "Constant speeds both ways: half the difference of forward and backward torque, carried on to zero speed, is "
+        "the level; half their sum belongs to offsets",
+    .origin = "Guideways, wipers, preloaded nut and bearings",
+    .remedy = "Check preload, wipers and gib adjustment; feed the level forward",
     .install = install,
 };
 

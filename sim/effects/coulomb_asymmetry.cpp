@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double asymmetry = entry.at("asymmetry");
   drive.direction_factor[0].level *= 1.0 + asymmetry;
   drive.direction_factor[1].level *= 1.0 - asymmetry;
@@ -18,9 +18,10 @@ extern const EffectInfo coulomb_asymmetry;
 const EffectInfo coulomb_asymmetry{
     .kind = "coulomb_asymmetry",
     .title = "Coulomb friction that differs by direction",
-    .equation = "T_coul+ = (1+a) T_coul, T_coul- = (1-a) T_coul; static friction alike",
+    .equation =
+        "T_coul+ = (1 + a) T_coul, T_coul- = (1 - a) T_coul, static friction by the same factors; +: forward, -: "
+        "backward",
     .stage = Stage::friction,
-
     .parameters = {{.id = "asymmetry",
                     .rotary_key = "asymmetry",
                     .linear_key = "asymmetry",
@@ -28,13 +29,15 @@ const EffectInfo coulomb_asymmetry{
                     .lower = -0.9,
                     .upper = 0.9,
                     .starts = {0.05, -0.05}}},
-    .shows = "residual torque constant in each direction, of one sign, independent of the speed",
+    .shows =
+        "Residual torque constant, of one sign in both directions, while the axis moves. Where friction falls with "
+        "speed, the asymmetry fades with it and an offset does not",
     .confused_with = {"constant_torque", "dac_offset", "viscous_asymmetry"},
     .separate_by =
-        "hold the axis at rest with the coupling off, and turn the axis over: a constant torque stays while standing, "
-        "asymmetry does not",
-    .origin = "wiper lips, one-sided preload of a double nut, inclined guideway contact",
-    .remedy = "check wipers and the nut preload in both directions",
+        "While moving it equals a constant torque. Hold the axis at rest with the coupling off, or turn the axis over: "
+        "a constant torque acts while standing, friction only against motion",
+    .origin = "Wiper lips, one-sided preload of a double nut, tilted gibs. 2 to 20 % of the level (textbook)",
+    .remedy = "Check wipers and the nut's preload in both directions; feed friction forward by direction",
     .install = install,
 };
 

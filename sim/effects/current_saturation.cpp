@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   const double per_limit = data.kind == DriveKind::rotary ? data.torque_constant_Nm_per_A : 1.0;
   const double limit = per_limit * entry.at("limit");
   drive.effort_limit.push_back([limit](double effort, double) { return std::clamp(effort, -limit, limit); });
@@ -20,9 +20,8 @@ extern const EffectInfo current_saturation;
 const EffectInfo current_saturation{
     .kind = "current_saturation",
     .title = "Current limit",
-    .equation = "|i| <= i_max",
+    .equation = "-i_max <= i <= i_max; i: motor current",
     .stage = Stage::motor,
-
     .parameters = {{.id = "limit",
                     .rotary_key = "limit_A",
                     .linear_key = "limit_N",
@@ -31,11 +30,13 @@ const EffectInfo current_saturation{
                     .upper = 1e6,
                     .scale = Scale::stall_current,
                     .starts = {0.4, 0.6, 0.8}}},
-    .shows = "residual only where the command is large, flat-topped",
+    .shows =
+        "Residual only where the command is large, with a flat top: more command brings no more acceleration, in "
+        "whichever direction",
     .confused_with = {"voltage_limit", "nonlinear_viscous", "torque_ripple"},
-    .separate_by = "the same motion at half the amplitude",
-    .origin = "amplifier peak or thermal limit",
-    .remedy = "raise the limit if motor and screw bear it; else limit acceleration",
+    .separate_by = "The same motion at half the amplitude; the same torque at low speed tells it from a voltage limit",
+    .origin = "Peak or thermal limit of the amplifier, a limit left in from commissioning",
+    .remedy = "Raise the limit if motor and screw bear it; else lower acceleration and jerk of the reference",
     .install = install,
 };
 

@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double width = entry.at("width");
   drive.command.push_back(
       [width](double u_V) { return std::abs(u_V) <= width ? 0.0 : u_V - std::copysign(width, u_V); });
@@ -20,9 +20,8 @@ extern const EffectInfo dac_dead_zone;
 const EffectInfo dac_dead_zone{
     .kind = "dac_dead_zone",
     .title = "Dead zone of the command",
-    .equation = "u_eff = 0 for |u| <= d, else u - d sign(u)",
+    .equation = "u_eff = 0 for |u| <= d, else u - d sign(u); u: command",
     .stage = Stage::command,
-
     .parameters = {{.id = "width",
                     .rotary_key = "width_V",
                     .linear_key = "width_V",
@@ -30,11 +29,15 @@ const EffectInfo dac_dead_zone{
                     .lower = 0.0,
                     .upper = 5.0,
                     .starts = {0.05}}},
-    .shows = "residual changes sign with the command, not with the motion",
-    .confused_with = {"load_dependent_friction", "stribeck", "coulomb"},
-    .separate_by = "coupling off: a slow ramp of the command through zero, both ways",
-    .origin = "output stage of converter or amplifier, deliberate dead band",
-    .remedy = "switch the dead band off; replace the output stage",
+    .shows = "Residual changes sign with the command, not with the motion; commands below the zone move nothing",
+    .confused_with = {"load_dependent_friction", "stribeck", "coulomb", "dac_offset"},
+    .separate_by =
+        "Coupling off: a slow ramp of the command through zero, both ways. A dead zone is symmetric in the command, "
+        "friction in the speed",
+    .origin =
+        "Output stage of converter or amplifier, deliberate dead band of the drive: 0.1 to 2 % of full scale "
+        "(textbook)",
+    .remedy = "Switch the dead band off; replace the output stage; add the width to the command",
     .install = install,
 };
 

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double offset = entry.at("offset");
   drive.command.push_back([offset](double u_V) { return u_V + offset; });
 }
@@ -17,9 +17,8 @@ extern const EffectInfo dac_offset;
 const EffectInfo dac_offset{
     .kind = "dac_offset",
     .title = "Offset of the command",
-    .equation = "u_eff = u + u_0",
+    .equation = "u_eff = u + u_0; u: command",
     .stage = Stage::command,
-
     .parameters = {{.id = "offset",
                     .rotary_key = "offset_V",
                     .linear_key = "offset_V",
@@ -27,11 +26,13 @@ const EffectInfo dac_offset{
                     .lower = -5.0,
                     .upper = 5.0,
                     .starts = {0.02, -0.02}}},
-    .shows = "residual torque constant, of one sign in both directions",
-    .confused_with = {"constant_torque", "coulomb_asymmetry"},
-    .separate_by = "voltmeter at the converter with zero command",
-    .origin = "drift of converter or amplifier input",
-    .remedy = "trim the offset",
+    .shows =
+        "Residual torque constant, of one sign in both directions and at rest, from the electronics instead of the "
+        "mechanics",
+    .confused_with = {"constant_torque", "coulomb_asymmetry", "viscous_asymmetry"},
+    .separate_by = "Voltmeter at the converter with zero command. Motion alone never tells it from a constant torque",
+    .origin = "Drift of the converter or of the amplifier's input: 0.1 to 2 % of full scale (textbook)",
+    .remedy = "Trim the offset; check earth and shielding of the command line",
     .install = install,
 };
 

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.dwell_gain = entry.at("gain");
   drive.dwell_time_s = entry.at("time_constant");
 }
@@ -17,9 +17,8 @@ extern const EffectInfo dwell_stiction;
 const EffectInfo dwell_stiction{
     .kind = "dwell_stiction",
     .title = "Static friction that grows with rest",
-    .equation = "T_stat(t) = T_stat (1 + g (1 - exp(-t/tau))), t = time at rest",
+    .equation = "T_stat(t) = T_stat (1 + g (1 - exp(-t/tau))); t: time at rest before the start",
     .stage = Stage::friction,
-
     .parameters = {{.id = "gain",
                     .rotary_key = "gain",
                     .linear_key = "gain",
@@ -34,11 +33,16 @@ const EffectInfo dwell_stiction{
                     .lower = 0.01,
                     .upper = 1000.0,
                     .starts = {0.3, 2.0}}},
-    .shows = "the first breakaway after a rest needs more torque, the more the longer the rest was",
-    .confused_with = {"stribeck", "thermal_friction_drift", "presliding"},
-    .separate_by = "rests of 0.1, 1, 10 and 100 s before the same slow ramp",
-    .origin = "oil squeezed out of the contact while it stands",
-    .remedy = "a wobble of a few micrometres during long rests; hydrostatic or rolling guides",
+    .shows =
+        "The first breakaway after a rest needs more torque, the longer the rest the more. Starts after short stops "
+        "are not affected",
+    .confused_with = {"stribeck", "thermal_friction_drift", "presliding", "position_dependent_friction"},
+    .separate_by =
+        "Rests of 0.1, 1, 10 and 100 s at one place before the same slow ramp; another ramp rate tells it from a lag",
+    .origin = "Oil squeezed out of the contact, wipers that adhere. 5 to 50 % more, over decades of seconds (textbook)",
+    .remedy =
+        "A wobble of a few micrometres during long rests; an oil impulse before the start; hydrostatic or rolling "
+        "guides",
     .install = install,
 };
 

@@ -7,7 +7,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.encoder_error.push_back(Harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")});
 }
 
@@ -17,7 +17,7 @@ extern const EffectInfo encoder_cyclic_error;
 const EffectInfo encoder_cyclic_error{
     .kind = "encoder_cyclic_error",
     .title = "Cyclic error of the encoder",
-    .equation = "x_m = x + c cos(2 pi x/L) + s sin(2 pi x/L)",
+    .equation = "x_m = x + c cos(2 pi x/L) + s sin(2 pi x/L); x: travel, x_m: reading",
     .stage = Stage::encoder,
     .periodic = true,
     .parameters = {{.id = "cosine",
@@ -43,11 +43,17 @@ const EffectInfo encoder_cyclic_error{
                     .lower = 1e-5,
                     .upper = 1e5,
                     .scale = Scale::millimetre}},
-    .shows = "error of the position periodic in position; in torque it grows with the square of the speed",
-    .confused_with = {"cogging", "tach_ripple"},
-    .separate_by = "constant speeds: a fixed size in position points to the encoder; a second scale or a laser decides",
-    .origin = "eccentric disc or coupling, interpolation error",
-    .remedy = "centre the disc; correct offset, gain and phase of the signals",
+    .shows =
+        "Error of the position, periodic in position, of one size at any speed; carried into torque it grows with the "
+        "square of speed",
+    .confused_with = {"cogging", "tach_ripple", "torque_ripple"},
+    .separate_by =
+        "Constant speeds: a fixed size in position points to the encoder, a fixed size in torque to cogging; a second "
+        "scale or a laser decides",
+    .origin =
+        "Eccentric disc or coupling (once a turn), interpolation of the signals (once a grating period), lead error of "
+        "the screw: 1 to 50 um (textbook)",
+    .remedy = "Centre the disc; correct offset, gain and phase of the signals; error table over the travel",
     .install = install,
 };
 

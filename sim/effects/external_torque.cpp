@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   const double torque = entry.at("torque"), start = entry.at("start"), end = start + entry.at("duration");
   // A sample counts by the part of it that the torque acts in: a fit can then move the edges by less than a sample.
   const double period_s = data.sample_period_s;
@@ -23,9 +23,8 @@ extern const EffectInfo external_torque;
 const EffectInfo external_torque{
     .kind = "external_torque",
     .title = "Torque that belongs to a time",
-    .equation = "T = T_motor + T_e for t_0 <= t < t_0 + d",
+    .equation = "T = T_motor + T_e for t_0 <= t < t_0 + d; t: time on the clock of the record",
     .stage = Stage::load,
-
     .parameters = {{.id = "torque",
                     .rotary_key = "torque_Nm",
                     .linear_key = "force_N",
@@ -50,11 +49,13 @@ const EffectInfo external_torque{
                     .upper = 1e6,
                     .scale = Scale::duration,
                     .starts = {0.05}}},
-    .shows = "residual torque inside one stretch of time, whatever the drive does there",
+    .shows = "Residual torque inside one stretch of time, whatever the drive does there; nothing before and after",
     .confused_with = {"thermal_friction_drift", "position_dependent_friction"},
-    .separate_by = "run the same programme again without cutting and with nobody at the machine",
-    .origin = "cutting force, a collision, somebody leaning on the table",
-    .remedy = "leave that stretch out of the fit",
+    .separate_by =
+        "Run the same programme again without cutting and with nobody at the machine: what does not repeat belongs to "
+        "the time",
+    .origin = "Cutting force, a collision, a chip, somebody leaning on the table",
+    .remedy = "Leave that stretch out of the fit; never let it into a friction model",
     .install = install,
 };
 

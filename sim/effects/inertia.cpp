@@ -6,9 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
-  drive.inertia = entry.at("J");
-}
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.inertia = entry.at("J"); }
 
 }  // namespace
 
@@ -16,7 +14,7 @@ extern const EffectInfo inertia;
 const EffectInfo inertia{
     .kind = "inertia",
     .title = "Inertia",
-    .equation = "J dw/dt = T (eq. 1)",
+    .equation = "J dw/dt = T - T_f (eq. 1); w: shaft speed, T: motor torque, T_f: friction. Linear: mass, m/s, N",
     .stage = Stage::mechanics,
     .base = true,
     .parameters = {{.id = "J",
@@ -27,11 +25,17 @@ const EffectInfo inertia{
                     .upper = 1e6,
                     .scale = Scale::inertia,
                     .starts = {1}}},
-    .shows = "residual torque proportional to acceleration, of the same sign in both directions",
-    .confused_with = {"current_loop_lag", "tach_gain", "input_delay"},
-    .separate_by = "two acceleration levels at the same speeds; a known mass added to the table",
-    .origin = "rotor, coupling, screw, table, workpiece",
-    .remedy = "enter the payload, or identify again after a change of workpiece",
+    .shows =
+        "Residual torque proportional to acceleration, of the same sign in both directions. Speeding up and braking "
+        "errors have opposite signs; none at constant speed",
+    .confused_with = {"current_loop_lag", "tach_gain", "input_delay", "load_dependent_friction"},
+    .separate_by =
+        "Two acceleration levels at the same speeds: inertia keeps its ratio to acceleration, a lag follows jerk. A "
+        "known mass added to the table must appear in full",
+    .origin =
+        "Rotor, coupling, screw, table, workpiece. A payload changes it by 1 to 30 % (textbook). A wrong torque "
+        "constant changes it together with every friction value, by the same factor",
+    .remedy = "Enter the payload, or identify again after a change of workpiece or fixture",
     .install = install,
 };
 

@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   // The reference speed only gives the coefficient a readable unit.
   const double reference = data.kind == DriveKind::rotary ? 10.0 : 0.1;
   const double coefficient = entry.at("coefficient"), exponent = entry.at("exponent");
@@ -29,9 +29,8 @@ extern const EffectInfo nonlinear_viscous;
 const EffectInfo nonlinear_viscous{
     .kind = "nonlinear_viscous",
     .title = "Friction curve that bends at speed",
-    .equation = "T_f = B w + c sign(w) (|w|/w_r)^p, w_r = 10 rad/s or 0.1 m/s",
+    .equation = "T_f = T_coul + B |w| + c (|w|/w_r)^p, against the motion; reference speed w_r = 10 rad/s or 0.1 m/s",
     .stage = Stage::friction,
-
     .parameters = {{.id = "coefficient",
                     .rotary_key = "coefficient_Nm",
                     .linear_key = "coefficient_N",
@@ -47,11 +46,15 @@ const EffectInfo nonlinear_viscous{
                     .lower = 0.2,
                     .upper = 3.0,
                     .starts = {0.5, 2.0}}},
-    .shows = "residual torque against speed curves at the plateaus, alike in both directions",
-    .confused_with = {"thermal_friction_drift", "voltage_limit", "stribeck", "viscous_asymmetry"},
-    .separate_by = "five constant speeds or more at one temperature, up to rapid traverse",
-    .origin = "churning of grease, turbulent oil, fan losses of the motor",
-    .remedy = "less grease or a lighter grade; take the curve into the feed-forward",
+    .shows = "Residual torque over speed curves at the plateaus, alike in both directions, fast or slow",
+    .confused_with = {"thermal_friction_drift", "voltage_limit", "stribeck", "viscous_asymmetry", "tach_gain"},
+    .separate_by =
+        "Five constant speeds or more at one temperature, from creep to rapid traverse; slow plateaus tell a "
+        "flattening curve from Stribeck friction",
+    .origin =
+        "Churning grease, turbulent oil, fan losses (p above 1); shear-thinning grease, which flattens (on a public "
+        "linear axis p of 1/3 to 1/2 was measured). 5 to 30 % at top speed (textbook)",
+    .remedy = "Less grease or a lighter grade; take the curve into the feed-forward",
     .install = install,
 };
 

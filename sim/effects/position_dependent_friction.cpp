@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
   drive.finest_period = std::min(drive.finest_period, entry.at("period"));
   drive.level_factor.push_back([harmonic](double, double x) { return std::max(0.0, 1.0 + harmonic(x)); });
@@ -21,7 +21,7 @@ extern const EffectInfo position_dependent_friction;
 const EffectInfo position_dependent_friction{
     .kind = "position_dependent_friction",
     .title = "Friction that varies along the travel",
-    .equation = "T_coul(x) = T_coul (1 + c cos(2 pi x/L) + s sin(2 pi x/L))",
+    .equation = "T_f(x) = T_f (1 + c cos(2 pi x/L) + s sin(2 pi x/L)); x: travel, T_f: Coulomb and static friction",
     .stage = Stage::friction,
     .periodic = true,
     .parameters = {{.id = "cosine",
@@ -46,11 +46,15 @@ const EffectInfo position_dependent_friction{
                     .upper = 1e5,
                     .scale = Scale::travel,
                     .starts = {0.3, 0.6, 1.0, 2.0}}},
-    .shows = "half the difference of forward and backward torque follows the position",
+    .shows = "Half the difference of forward and backward torque follows the position; half the sum does not",
     .confused_with = {"thermal_friction_drift", "spring_torque", "cogging", "load_dependent_friction"},
-    .separate_by = "constant speed over the full stroke, both ways, twice",
-    .origin = "guideway wear, gib misalignment, screw bent or running out",
-    .remedy = "check straightness, gib and lubrication where friction is high",
+    .separate_by =
+        "Constant speed over the full stroke, both ways, twice: a repeat at the same place is position, a drift from "
+        "pass to pass is temperature",
+    .origin =
+        "Guideway wear in the middle of the stroke, gib or rail misalignment, bent screw. 10 to 30 % of the level "
+        "(textbook)",
+    .remedy = "Check straightness, gib and lubrication where friction is high",
     .install = install,
 };
 

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.bristles = Bristles{entry.at("sigma0"), entry.at("sigma1")};
 }
 
@@ -16,9 +16,10 @@ extern const EffectInfo presliding;
 const EffectInfo presliding{
     .kind = "presliding",
     .title = "Elastic microslip before breakaway",
-    .equation = "dz/dt = w - sigma0 |w| z / g(w), T_f = sigma0 z + sigma1 dz/dt + B w (LuGre)",
+    .equation =
+        "dz/dt = w - sigma0 |w| z/g(w), T_f = sigma0 z + sigma1 dz/dt + B w (LuGre); z: deflection of the contact, w: "
+        "speed, g(w): friction curve without its viscous part",
     .stage = Stage::friction,
-
     .parameters = {{.id = "sigma0",
                     .rotary_key = "sigma0_Nm_per_rad",
                     .linear_key = "sigma0_N_per_m",
@@ -35,11 +36,17 @@ const EffectInfo presliding{
                     .upper = 1e6,
                     .scale = Scale::bristle_damping,
                     .starts = {1}}},
-    .shows = "residual torque against the travel since the last reversal, fading over some micrometres, at any rate",
+    .shows =
+        "Residual torque follows the travel since the last reversal and fades within micrometres, however fast they "
+        "are passed. The axis springs back when the torque is let go",
     .confused_with = {"backlash", "compliance", "stribeck", "friction_lag"},
-    .separate_by = "triangles of a few micrometres at two rates and two amplitudes",
-    .origin = "rolling guides, preloaded balls, seals that roll before they slip",
-    .remedy = "reversal compensation that knows the breakaway distance",
+    .separate_by =
+        "Triangles of a few micrometres at two rates and two amplitudes: a loop that depends on travel, not on time, "
+        "is presliding; a gap shows as free travel without torque",
+    .origin =
+        "Rolling guides, preloaded balls, seals that roll before they slip. Breakaway after 5 to 100 um on rolling "
+        "guides (textbook)",
+    .remedy = "Reversal compensation that knows the breakaway distance; less preload",
     .install = install,
 };
 

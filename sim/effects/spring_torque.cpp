@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double stiffness = entry.at("stiffness"), centre = entry.at("centre");
   drive.load_effort.push_back([=](double, double x) { return -stiffness * (x - centre); });
 }
@@ -17,9 +17,8 @@ extern const EffectInfo spring_torque;
 const EffectInfo spring_torque{
     .kind = "spring_torque",
     .title = "Torque that grows with position",
-    .equation = "T = T_motor - k (x - x0)",
+    .equation = "T = T_motor - k (x - x0); x: travel",
     .stage = Stage::load,
-
     .parameters = {{.id = "stiffness",
                     .rotary_key = "stiffness_Nm_per_mm",
                     .linear_key = "stiffness_N_per_m",
@@ -36,11 +35,12 @@ const EffectInfo spring_torque{
                     .upper = 1e5,
                     .scale = Scale::travel,
                     .starts = {0.0}}},
-    .shows = "the mean of forward and backward torque is a straight line over the position",
-    .confused_with = {"position_dependent_friction", "constant_torque"},
-    .separate_by = "slow strokes over the full travel with the cable chain disconnected",
-    .origin = "cable chain, bellows, hoses",
-    .remedy = "relieve the cable chain; feed the slope forward",
+    .shows = "The mean of forward and backward residual torque is a straight line over the position",
+    .confused_with = {"position_dependent_friction", "constant_torque", "coulomb_asymmetry"},
+    .separate_by =
+        "Slow strokes over the full travel, both ways, with the cable chain or bellows disconnected and connected",
+    .origin = "Cable chain, bellows, hoses: 5 to 50 N at the table (textbook)",
+    .remedy = "Relieve the cable chain; feed the slope forward",
     .install = install,
 };
 

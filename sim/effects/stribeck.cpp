@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const auto set = [&entry](FrictionSide& side, const char* level, const char* omega1, const char* omega2) {
     side.breakaway += entry.either(level, "static");
     side.omega1 = entry.either(omega1, "omega1");
@@ -22,9 +22,9 @@ extern const EffectInfo stribeck;
 const EffectInfo stribeck{
     .kind = "stribeck",
     .title = "Stribeck friction",
-    .equation = "T_f = T_stat exp(-w/W1) + T_coul (1 - exp(-w/W2)) + B w (eq. 19)",
+    .equation =
+        "T_f = T_stat exp(-|w|/W1) + T_coul (1 - exp(-|w|/W2)) + B |w|, against the motion (eq. 19); w: shaft speed",
     .stage = Stage::friction,
-
     .parameters = {{.id = "static_positive",
                     .rotary_key = "static_positive_Nm",
                     .linear_key = "static_positive_N",
@@ -109,11 +109,19 @@ const EffectInfo stribeck{
                     .starts = {1.5, 5},
                     .optional = true,
                     .pair_of = "omega2_positive omega2_negative"}},
-    .shows = "residual torque against speed rises towards zero speed, alike while accelerating and braking",
+    .shows =
+        "Residual torque rises towards zero speed, the same while speeding up and braking. Starts come late and jerk; "
+        "slow motion sticks and slips",
     .confused_with = {"presliding", "friction_lag", "dwell_stiction", "nonlinear_viscous", "dac_dead_zone"},
-    .separate_by = "constant speeds, log-spaced from 0.05 to 10 rad/s, both ways, without acceleration",
-    .origin = "boundary lubrication of plain guideways and seals at low speed",
-    .remedy = "way oil with friction modifier; check lubrication intervals",
+    .separate_by =
+        "Constant speeds, log-spaced from 0.05 to 10 rad/s, both ways, without acceleration; a slow command ramp from "
+        "rest for the static level",
+    .origin =
+        "Boundary lubrication of guideways and seals at low speed. Static over Coulomb friction: 1.0 to 1.2 on "
+        "rolling, 1.3 to 2 on plain guides; it fades over 0.5 to 10 mm/s (textbook)",
+    .remedy =
+        "Way oil with friction modifier, shorter lubrication intervals; friction feed-forward at reversals; rolling or "
+        "hydrostatic guides",
     .install = install,
 };
 

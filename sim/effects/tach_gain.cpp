@@ -6,9 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
-  drive.tach_gain *= entry.at("gain");
-}
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.tach_gain *= entry.at("gain"); }
 
 }  // namespace
 
@@ -16,9 +14,8 @@ extern const EffectInfo tach_gain;
 const EffectInfo tach_gain{
     .kind = "tach_gain",
     .title = "Gain of the tachometer",
-    .equation = "w_m = g w",
+    .equation = "w_m = g w; w: true speed, w_m: reading",
     .stage = Stage::tachometer,
-
     .parameters = {{.id = "gain",
                     .rotary_key = "gain",
                     .linear_key = "gain",
@@ -26,11 +23,15 @@ const EffectInfo tach_gain{
                     .lower = 0.5,
                     .upper = 2.0,
                     .starts = {0.98, 1.02}}},
-    .shows = "the integral of the measured speed leaves the encoder in proportion to the travel",
+    .shows =
+        "The integral of the measured speed leaves the encoder in proportion to the travel; in torque nothing shows, "
+        "because inertia and viscous friction take it up",
     .confused_with = {"viscous", "inertia"},
-    .separate_by = "integrate the tachometer over a long stroke and compare with the encoder",
-    .origin = "ageing magnets, a potentiometer out of trim, the wrong scale",
-    .remedy = "calibrate against the encoder",
+    .separate_by =
+        "Integrate the tachometer over a long stroke and compare with the encoder; forth and back, so that an offset "
+        "cancels",
+    .origin = "Ageing magnets, a potentiometer out of trim, the wrong scale: 0.5 to 2 % (textbook)",
+    .remedy = "Calibrate against the encoder",
     .install = install,
 };
 

@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.tach_lag_s = 1.0 / (2.0 * std::numbers::pi * entry.at("bandwidth"));
 }
 
@@ -18,9 +18,8 @@ extern const EffectInfo tach_lag;
 const EffectInfo tach_lag{
     .kind = "tach_lag",
     .title = "Lag of the tachometer",
-    .equation = "dw_m/dt = 2 pi f (w - w_m)",
+    .equation = "dw_m/dt = 2 pi f (w - w_m); w: true speed, w_m: reading",
     .stage = Stage::tachometer,
-
     .parameters = {{.id = "bandwidth",
                     .rotary_key = "bandwidth_Hz",
                     .linear_key = "bandwidth_Hz",
@@ -28,11 +27,15 @@ const EffectInfo tach_lag{
                     .lower = 2.0,
                     .upper = 2000.0,
                     .starts = {50, 150}}},
-    .shows = "the measured speed trails the derivative of the position, in proportion to the acceleration",
-    .confused_with = {"current_loop_lag", "input_delay"},
-    .separate_by = "compare the tachometer with the differentiated encoder during a hard acceleration",
-    .origin = "ripple filter behind the tachometer",
-    .remedy = "a faster filter, or model it in the observer",
+    .shows =
+        "The measured speed trails the derivative of the position, in proportion to acceleration; the position itself "
+        "is on time",
+    .confused_with = {"current_loop_lag", "input_delay", "friction_lag"},
+    .separate_by =
+        "Compare the tachometer with the differentiated encoder during a hard acceleration: a lag of the sensor leaves "
+        "the encoder alone, a lag of the drive delays both",
+    .origin = "Ripple filter behind the tachometer, slow A/D conversion",
+    .remedy = "A faster filter, or model it in the observer",
     .install = install,
 };
 

@@ -6,9 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
-  drive.tach_offset += entry.at("offset");
-}
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.tach_offset += entry.at("offset"); }
 
 }  // namespace
 
@@ -16,9 +14,8 @@ extern const EffectInfo tach_offset;
 const EffectInfo tach_offset{
     .kind = "tach_offset",
     .title = "Offset of the tachometer",
-    .equation = "w_m = w + b",
+    .equation = "w_m = w + b; w: true speed, w_m: reading",
     .stage = Stage::tachometer,
-
     .parameters = {{.id = "offset",
                     .rotary_key = "offset_rad_s",
                     .linear_key = "offset_m_s",
@@ -27,11 +24,12 @@ const EffectInfo tach_offset{
                     .upper = 100.0,
                     .scale = Scale::speed,
                     .starts = {0.1, -0.1}}},
-    .shows = "the tachometer reads a speed while the axis stands",
-    .confused_with = {"viscous_asymmetry", "constant_torque"},
-    .separate_by = "read the tachometer at standstill",
-    .origin = "offset of the converter or of its amplifier",
-    .remedy = "trim, or subtract the reading at standstill",
+    .shows =
+        "The tachometer reads a speed while the axis stands; its integral leaves the encoder in proportion to time",
+    .confused_with = {"viscous_asymmetry", "constant_torque", "dac_offset"},
+    .separate_by = "Read the tachometer at standstill, before and after a run",
+    .origin = "Offset of the A/D converter or of the amplifier in front of it",
+    .remedy = "Trim, or subtract the reading at standstill",
     .install = install,
 };
 

@@ -7,7 +7,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.tach_ripple.push_back(Harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")});
 }
 
@@ -17,7 +17,7 @@ extern const EffectInfo tach_ripple;
 const EffectInfo tach_ripple{
     .kind = "tach_ripple",
     .title = "Ripple of the tachometer",
-    .equation = "w_m = w (1 + c cos(2 pi x/L) + s sin(2 pi x/L))",
+    .equation = "w_m = w (1 + c cos(2 pi x/L) + s sin(2 pi x/L)); w: true speed, w_m: reading, x: travel",
     .stage = Stage::tachometer,
     .periodic = true,
     .parameters = {{.id = "cosine",
@@ -42,11 +42,13 @@ const EffectInfo tach_ripple{
                     .upper = 1e5,
                     .scale = Scale::millimetre}},
     .shows =
-        "error of the measured speed periodic in position and proportional to the speed; the encoder does not show it",
-    .confused_with = {"cogging", "torque_ripple", "encoder_cyclic_error"},
-    .separate_by = "constant speeds: compare the tachometer with the differentiated encoder over the motor angle",
-    .origin = "commutator bars, eccentric rotor of the tachometer",
-    .remedy = "align the tachometer; filter at the ripple order",
+        "Error of the measured speed, periodic in position and in proportion to speed; the encoder does not show it",
+    .confused_with = {"cogging", "torque_ripple", "encoder_cyclic_error", "compliance"},
+    .separate_by =
+        "Constant speeds: compare the tachometer with the differentiated encoder over the motor angle; real motion "
+        "shows in both",
+    .origin = "Commutator bars, eccentric or skewed mounting of the tachometer: 1 to 3 % (textbook)",
+    .remedy = "Align the tachometer; filter at the ripple's order; take the speed from the encoder",
     .install = install,
 };
 

@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double tau = entry.at("time_constant"), b = entry.at("viscous_change"), c = entry.at("coulomb_change");
   drive.level_factor.push_back([=](double t_s, double) { return 1.0 - c * std::expm1(-t_s / tau); });
   drive.viscous_factor.push_back([=](double t_s) { return 1.0 - b * std::expm1(-t_s / tau); });
@@ -20,9 +20,10 @@ extern const EffectInfo thermal_friction_drift;
 const EffectInfo thermal_friction_drift{
     .kind = "thermal_friction_drift",
     .title = "Friction that drifts as the drive warms up",
-    .equation = "B(t) = B (1 + b (1 - exp(-t/tau))), T_coul(t) = T_coul (1 + c (1 - exp(-t/tau)))",
+    .equation =
+        "B(t) = B (1 + b (1 - exp(-t/tau))), T_coul(t) = T_coul (1 + c (1 - exp(-t/tau))); t: time since the cold "
+        "start",
     .stage = Stage::friction,
-
     .parameters = {{.id = "viscous_change",
                     .rotary_key = "viscous_change",
                     .linear_key = "viscous_change",
@@ -45,11 +46,17 @@ const EffectInfo thermal_friction_drift{
                     .upper = 1e5,
                     .scale = Scale::duration,
                     .starts = {0.3, 1.0}}},
-    .shows = "residual torque follows the time since the start, with the sign of the motion",
-    .confused_with = {"position_dependent_friction", "nonlinear_viscous", "dwell_stiction"},
-    .separate_by = "repeat one cycle for an hour, stop, repeat; log the temperature of the nut",
-    .origin = "lubricant warming up in nut, bearings and guideways",
-    .remedy = "warm-up cycle before precision work; less preload; thermal model in the feed-forward",
+    .shows =
+        "Residual torque follows the time since the start, with the sign of the motion. It grows with speed where "
+        "viscous friction drifts",
+    .confused_with = {"position_dependent_friction", "nonlinear_viscous", "dwell_stiction", "external_torque"},
+    .separate_by =
+        "Repeat one cycle for an hour, stop, repeat; log the temperature of the nut. Another order of the motions "
+        "separates time from position and speed",
+    .origin =
+        "Lubricant warming up in nut, bearings and guideways: viscous friction falls by 30 to 60 % in 10 to 40 min "
+        "(textbook)",
+    .remedy = "Warm-up cycle before precision work; less preload; a temperature-dependent feed-forward",
     .install = install,
 };
 

@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
   drive.finest_period = std::min(drive.finest_period, entry.at("period"));
   drive.effort_factor.push_back([harmonic](double x) { return 1.0 + harmonic(x); });
@@ -21,7 +21,7 @@ extern const EffectInfo torque_ripple;
 const EffectInfo torque_ripple{
     .kind = "torque_ripple",
     .title = "Torque ripple",
-    .equation = "T = K_t i (1 + c cos(2 pi x/L) + s sin(2 pi x/L))",
+    .equation = "T = K_t i (1 + c cos(2 pi x/L) + s sin(2 pi x/L)); i: motor current, x: travel",
     .stage = Stage::motor,
     .periodic = true,
     .parameters = {{.id = "cosine",
@@ -45,11 +45,17 @@ const EffectInfo torque_ripple{
                     .lower = 1e-5,
                     .upper = 1e5,
                     .scale = Scale::millimetre}},
-    .shows = "residual torque periodic in position, growing with the current",
-    .confused_with = {"cogging", "tach_ripple", "encoder_cyclic_error"},
-    .separate_by = "the same stroke with two loads, or at constant speed and while accelerating",
-    .origin = "commutation, back-EMF that is no sine, current sensors out of balance",
-    .remedy = "calibrate current offsets; ripple table over the motor angle",
+    .shows =
+        "Residual torque periodic in position, in proportion to the current: strong in accelerations, weak while "
+        "coasting",
+    .confused_with = {"cogging", "tach_ripple", "encoder_cyclic_error", "load_dependent_friction"},
+    .separate_by =
+        "The same stroke with two loads, or constant speed against hard acceleration over the same places: cogging "
+        "keeps its size, ripple grows with the current",
+    .origin =
+        "Commutation, back-EMF that is no sine (sixth order of the pole pair), current sensors out of balance (first "
+        "and second order)",
+    .remedy = "Calibrate the current sensors' offsets and gains; ripple table over the motor angle",
     .install = install,
 };
 

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   for (FrictionSide& side : drive.friction) side.viscous += entry.at("B");
 }
 
@@ -16,7 +16,7 @@ extern const EffectInfo viscous;
 const EffectInfo viscous{
     .kind = "viscous",
     .title = "Viscous friction",
-    .equation = "T_f = B w (eq. 1)",
+    .equation = "T_f = B w (eq. 1); w: shaft speed",
     .stage = Stage::friction,
     .base = true,
     .parameters = {{.id = "B",
@@ -27,11 +27,15 @@ const EffectInfo viscous{
                     .upper = 1e6,
                     .scale = Scale::viscous,
                     .starts = {1}}},
-    .shows = "residual torque proportional to speed",
-    .confused_with = {"nonlinear_viscous", "viscous_asymmetry", "tach_gain", "voltage_limit"},
-    .separate_by = "five constant speeds or more, both ways, at one temperature",
-    .origin = "lubricant in guideways, nut and bearings; eddy currents in the motor",
-    .remedy = "check grade and amount of lubricant",
+    .shows = "Residual torque proportional to speed, of opposite sign in the two directions",
+    .confused_with = {"nonlinear_viscous", "viscous_asymmetry", "tach_gain", "voltage_limit", "thermal_friction_drift"},
+    .separate_by =
+        "Five constant speeds or more, both ways, at one temperature; check the tachometer against the encoder first, "
+        "because a gain error of 1 % can move B by tens of per cent",
+    .origin =
+        "Lubricant in guideways, nut and bearings; eddy currents and iron losses in the motor. Falls by 30 to 60 % as "
+        "the drive warms up (textbook)",
+    .remedy = "Check grade and amount of lubricant; identify at working temperature",
     .install = install,
 };
 

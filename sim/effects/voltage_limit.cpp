@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install([[maybe_unused]] const EffectEntry& entry, [[maybe_unused]] const DataSheet& data, Drive& drive) {
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double stall = entry.at("stall"), no_load = entry.at("no_load_speed");
   drive.effort_limit.push_back([=](double effort, double w) {
     const double forward = std::max(0.0, stall * (1.0 - w / no_load));
@@ -23,9 +23,9 @@ extern const EffectInfo voltage_limit;
 const EffectInfo voltage_limit{
     .kind = "voltage_limit",
     .title = "Voltage limit",
-    .equation = "|T| <= T_s (1 - |w|/w_0) while motoring",
+    .equation =
+        "-T_s (1 + w/w_0) <= T <= T_s (1 - w/w_0); w: shaft speed. The supply drives the current that back-EMF leaves",
     .stage = Stage::motor,
-
     .parameters = {{.id = "stall",
                     .rotary_key = "stall_Nm",
                     .linear_key = "stall_N",
@@ -42,11 +42,11 @@ const EffectInfo voltage_limit{
                     .upper = 1e5,
                     .scale = Scale::top_speed,
                     .starts = {1.5}}},
-    .shows = "residual only at speed with torque in the direction of motion, none while braking",
-    .confused_with = {"current_saturation", "nonlinear_viscous", "viscous"},
-    .separate_by = "the same torque at low speed; log the bus voltage",
-    .origin = "supply voltage against back-EMF",
-    .remedy = "higher bus voltage or another winding; lower rapid traverse",
+    .shows = "Residual only at speed with torque in the direction of motion, none while braking",
+    .confused_with = {"current_saturation", "nonlinear_viscous", "viscous", "thermal_friction_drift"},
+    .separate_by = "The same torque at low speed, and braking from top speed; log the bus voltage",
+    .origin = "Supply voltage against back-EMF; sagging bus while several axes accelerate",
+    .remedy = "Higher bus voltage or another winding; lower rapid traverse or its acceleration",
     .install = install,
 };
 

@@ -1,0 +1,91 @@
+// Identification of a million samples, beside what reading the arrays once and forming Phi'Phi takes.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "host/identify/identification.hpp"
+#include "host/identify/paper_drives.hpp"
+#include "host/identify/rigid_estimate.hpp"
+#include "sim/drive.hpp"
+
+namespace {
+
+constexpr std::size_t kSamples = 1'000'000;
+constexpr double kDeadBand_rad_s = 0.5;  // the program's default
+
+/// One record of the paper's x drive under doublets of 10 V and less, with the motion known exactly.
+const host::Record& long_record() {
+  static const host::Record record = [] {
+    const sim::DriveDescription description = host::paper_drive("x").value();
+    const sim::Drive drive(description);
+    host::Record made;
+    made.path = "simulated x";
+    made.drive = "x";
+    made.sample_period_s = 0.001;
+    sim::DriveState state = drive.at(0.0, 0.0);
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      const std::size_t phase = k % 400;
+      const double level_V = 4.0 + static_cast<double>(k / 400 % 7);
+      const double u_V = phase < 50 || phase >= 250 ? level_V : (phase < 200 ? -level_V : 0.0);
+      made.t_s.push_back(0.001 * static_cast<double>(k));
+      made.u_V.push_back(u_V);
+      made.x.push_back(state.x);
+      made.w.push_back(drive.tachometer(state));
+      drive.step(state, u_V, made.t_s.back(), 0.001);
+    }
+    return made;
+  }();
+  return record;
+}
+
+void report(benchmark::State& state) {
+  state.counters["samples/s"] =
+      benchmark::Counter(static_cast<double>(kSamples), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// The yardstick: four regressors, one pass, nothing else.
+void form_normal_equations_only(benchmark::State& state) {
+  const host::Record& record = long_record();
+  for (auto _ : state) {
+    Eigen::Matrix4d moment = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d projection = Eigen::Vector4d::Zero();
+    for (std::size_t k = 1; k < kSamples; ++k) {
+      const double w = record.w[k - 1];
+      const Eigen::Vector4d phi(w, record.u_V[k - 1], w > kDeadBand_rad_s ? -1.0 : 0.0,
+                                w < -kDeadBand_rad_s ? -1.0 : 0.0);
+      moment.noalias() += phi * phi.transpose();
+      projection.noalias() += phi * record.w[k];
+    }
+    benchmark::DoNotOptimize(moment);
+    benchmark::DoNotOptimize(projection);
+  }
+  report(state);
+}
+BENCHMARK(form_normal_equations_only)->Unit(benchmark::kMillisecond);
+
+/// Estimate, intervals and condition number.
+void unbiased_least_squares(benchmark::State& state) {
+  const std::vector<host::Record> records = {long_record()};
+  const sim::DataSheet data = host::paper_drive("x")->data;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        host::discrete_least_squares(records, data, kDeadBand_rad_s, host::Coulomb::estimated).inertia.value);
+  report(state);
+}
+BENCHMARK(unbiased_least_squares)->Unit(benchmark::kMillisecond);
+
+/// All that the command does after reading the file: excitation check, calibration, filters, estimate, relative error.
+void whole_identification(benchmark::State& state, host::IdentificationMethod method) {
+  const std::vector<host::Record> records = {long_record()};
+  const sim::DriveDescription drive = host::paper_drive("x").value();
+  for (auto _ : state) benchmark::DoNotOptimize(host::identify_drive(records, drive, method).relative_error);
+  report(state);
+}
+BENCHMARK_CAPTURE(whole_identification, unbiased_ls, host::IdentificationMethod::unbiased_ls)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_identification, sliding_ls, host::IdentificationMethod::sliding_ls)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,102 @@
+// Speed of the simulated drive as a multiple of real time, on one core.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "firmware/core/axis.hpp"
+#include "hal/pc/simulated_axis.hpp"
+#include "tests/firmware/friction_drive.hpp"
+
+namespace {
+
+using firmware_test::kPaperX;
+using firmware_test::kSamplePeriod_s;
+
+void report(benchmark::State& state, double simulated_s) {
+  state.counters["x_real_time"] = benchmark::Counter(simulated_s, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// The control core on the simulated board: converter, encoder, tachometer with noise, jogs both ways.
+void plant_in_closed_loop(benchmark::State& state) {
+  sim::Plant plant(firmware_test::friction_drive(kPaperX), 1);
+  hal::pc::SimulatedAxis board(plant);
+  firmware::Axis<float, hal::pc::SimulatedAxis> axis(board);
+  axis.configure(firmware_test::parameters_of<float>(kPaperX));
+  axis.step();
+  axis.enable();
+  constexpr int kSamples = 2000;
+  for (auto _ : state) {
+    for (int k = 0; k < kSamples; ++k) {
+      if (k % 500 == 0) axis.jog(k % 1000 == 0 ? 80.0f : -80.0f);
+      axis.step();
+      plant.advance(kSamplePeriod_s);
+    }
+    benchmark::DoNotOptimize(plant.truth().x);
+  }
+  if (axis.telemetry().fault != firmware::AxisFault::none) state.SkipWithError("the control core stopped");
+  report(state, kSamples * kSamplePeriod_s);
+}
+BENCHMARK(plant_in_closed_loop)->Unit(benchmark::kMillisecond);
+
+/// Starts, reversals, plateaus and rests of some seconds.
+std::vector<double> command_with_reversals() {
+  std::vector<double> u_V;
+  for (int k = 0; k < 10000; ++k) {
+    const double t_s = kSamplePeriod_s * k;
+    u_V.push_back(k % 2500 < 200 ? 0.0 : 1.6 * std::sin(9.0 * t_s) + 0.8 * std::sin(31.0 * t_s));
+  }
+  return u_V;
+}
+
+void predict(benchmark::State& state, const sim::DriveDescription& description) {
+  const sim::Drive drive(description);
+  const std::vector<double> u_V = command_with_reversals();
+  int reversals = 0;
+  for (auto _ : state) {
+    sim::DriveState motion = drive.at(0.0, 0.0);
+    reversals = 0;
+    double t_s = 0.0;
+    for (const double command : u_V) {
+      const double before = motion.w;
+      drive.step(motion, command, t_s, kSamplePeriod_s);
+      reversals += before * motion.w < 0.0 || (motion.w == 0.0 && before != 0.0);
+      t_s += kSamplePeriod_s;
+    }
+    benchmark::DoNotOptimize(motion.x);
+  }
+  state.counters["stops"] = reversals;
+  report(state, static_cast<double>(u_V.size()) * kSamplePeriod_s);
+}
+
+void predictor_with_coulomb_sticking(benchmark::State& state) {
+  sim::DriveDescription drive = firmware_test::friction_drive(kPaperX);
+  std::erase_if(drive.effects, [](const sim::EffectEntry& effect) { return effect.kind == "stribeck"; });
+  predict(state, drive);
+}
+BENCHMARK(predictor_with_coulomb_sticking)->Unit(benchmark::kMicrosecond);
+
+void predictor_with_stribeck_friction(benchmark::State& state) {
+  predict(state, firmware_test::friction_drive(kPaperX));
+}
+BENCHMARK(predictor_with_stribeck_friction)->Unit(benchmark::kMicrosecond);
+
+/// What a diagnosis simulates again and again: one more effect on the drive.
+void predictor_with_one_effect(benchmark::State& state, const char* kind, std::map<std::string, double> parameters) {
+  sim::DriveDescription drive = firmware_test::friction_drive(kPaperX);
+  drive.effects.push_back({kind, std::move(parameters), {}, {}});
+  predict(state, drive);
+}
+using Parameters = std::map<std::string, double>;
+BENCHMARK_CAPTURE(predictor_with_one_effect, cogging, "cogging",
+                  Parameters{{"cosine", 0.1}, {"sine", 0.1}, {"period", 2.5}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(predictor_with_one_effect, input_delay, "input_delay", Parameters{{"delay", 0.0025}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(predictor_with_one_effect, presliding, "presliding", Parameters{{"sigma0", 400.0}, {"sigma1", 2.0}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(predictor_with_one_effect, compliance, "compliance",
+                  Parameters{{"resonance", 80.0}, {"damping_ratio", 0.05}, {"load_fraction", 0.35}})
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
