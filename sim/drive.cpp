@@ -99,7 +99,10 @@ void Drive::settle() {
     side.coulomb *= direction_factor[direction].level;
     side.breakaway = std::max(side.breakaway * direction_factor[direction].level, side.coulomb);
     side.viscous *= direction_factor[direction].viscous;
+    const auto rate = [](double omega) { return omega > 0.0 ? 1.0 / omega : 0.0; };
+    curves_[direction] = {side.coulomb, side.breakaway, side.viscous, rate(side.omega1), rate(side.omega2)};
   }
+  mobility_ = 1.0 / inertia;
   max_step_s = HUGE_VAL;
   if (bristles) max_step_s = std::min(max_step_s, presliding_step_s(*bristles, inertia));
   if (second_mass) max_step_s = std::min(max_step_s, two_mass_step_s(*second_mass));
@@ -160,7 +163,7 @@ void Drive::move(DriveState& state, double effort, double t_s, double duration_s
   } else if (bristles) {
     move_on_bristles(*bristles, inertia, lead, state, net, duration_s, contact);
   } else {
-    SlidingMass mass{state.x, state.w, inertia, lead};
+    SlidingMass mass{state.x, state.w, mobility_, lead};
     slide(mass, net, duration_s, contact);
     state.x = mass.x;
     state.w = mass.w;
@@ -194,13 +197,13 @@ double Drive::limiting_speed(const DriveState& state, double u_V, double t_s, do
 
 void Drive::step(DriveState& state, double u_V, double t_s, double duration_s) const {
   if (plain_) {
-    SlidingMass mass{state.x, state.w, inertia, lead};
+    SlidingMass mass{state.x, state.w, mobility_, lead};
     const double effort = effort_per_volt * u_V;
     if (stribeck_) {
-      PlainContact<true> contact{friction};
+      PlainContact<true> contact{curves_};
       slide(mass, effort, duration_s, contact);
     } else {
-      PlainContact<false> contact{friction};
+      PlainContact<false> contact{curves_};
       slide(mass, effort, duration_s, contact);
     }
     state.x = mass.x;

@@ -27,6 +27,12 @@ struct FrictionPoint {
   double slope;
 };
 
+/// The same with rates in place of speeds, for the predictor's innermost loop.
+struct SlidingCurve {
+  double coulomb, breakaway, viscous;
+  double rate1, rate2;  ///< 1/omega, s/rad or s/m; 0 where omega is 0
+};
+
 /// What an asymmetry multiplies the friction of one direction by.
 struct DirectionFactor {
   double level = 1.0;
@@ -142,8 +148,10 @@ class Drive {
   std::size_t whole_periods_of_delay(double period_s) const;
   void remember_command(DriveState& state, double u_V, std::size_t whole) const;
 
-  bool plain_ = false;     ///< nothing acts but inertia and the friction of eq. (19)
-  bool stribeck_ = false;  ///< friction depends on speed by more than its viscous term
+  double mobility_ = 0.0;                 ///< 1/inertia
+  std::array<SlidingCurve, 2> curves_{};  ///< of `friction`
+  bool plain_ = false;                    ///< nothing acts but inertia and the friction of eq. (19)
+  bool stribeck_ = false;                 ///< friction depends on speed by more than its viscous term
 };
 
 }  // namespace sim

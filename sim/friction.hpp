@@ -20,11 +20,11 @@ inline FrictionPoint stribeck_curve(const FrictionSide& side, double breakaway, 
   return {breakaway * fading + side.coulomb * (1.0 - rising), slope};
 }
 
-/// The position, speed and rest of one mass while its friction acts.
+/// One mass while its friction acts.
 struct SlidingMass {
   double x;
   double w;
-  double inertia;
+  double mobility;  ///< 1/inertia
   double lead;
 };
 
@@ -50,20 +50,22 @@ inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& 
     }
     const double speed = std::abs(mass.w);
     const FrictionPoint friction = contact.sliding(direction > 0.0 ? 0 : 1, speed);
-    const double acceleration = (direction * effort - friction.effort) / mass.inertia;
-    const double lambda = -friction.slope / mass.inertia;
+    const double acceleration = (direction * effort - friction.effort) * mass.mobility;
+    const double lambda = -friction.slope * mass.mobility;
     if (speed == 0.0 && acceleration <= 0.0) {  // breakaway level and curve agree at zero speed, up to rounding
       contact.rested(left);
       return;
     }
     double duration = left;
-    double end = speed + duration * phi1(lambda * duration) * acceleration;
+    ExponentialFactors factors = exponential_factors(lambda * duration);
+    double end = speed + duration * factors.phi1 * acceleration;
     const bool stops = speed > 0.0 && end <= 0.0;
     if (stops) {
       duration = std::min(left, time_to_zero(speed, acceleration, lambda));
+      factors = exponential_factors(lambda * duration);
       end = 0.0;
     }
-    mass.x += mass.lead * direction * duration * (speed + duration * phi2(lambda * duration) * acceleration);
+    mass.x += mass.lead * direction * duration * (speed + duration * factors.phi2 * acceleration);
     mass.w = direction * end;
     if (stops) contact.came_to_rest();
     left -= duration;
@@ -73,16 +75,17 @@ inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& 
 /// The contact of a drive that has nothing but eq. (19): the predictor's innermost loop.
 template <bool kStribeck>
 struct PlainContact {
-  const std::array<FrictionSide, 2>& sides;
+  const std::array<SlidingCurve, 2>& sides;
 
   FrictionPoint sliding(int side, double speed) const {
-    const FrictionSide& friction = sides[static_cast<std::size_t>(side)];
-    if constexpr (!kStribeck) {
-      return {friction.coulomb + friction.viscous * speed, friction.viscous};
-    } else {
-      const FrictionPoint curve = stribeck_curve(friction, friction.breakaway, speed);
-      return {curve.effort + friction.viscous * speed, curve.slope + friction.viscous};
-    }
+    const SlidingCurve& curve = sides[static_cast<std::size_t>(side)];
+    if constexpr (!kStribeck) return {curve.coulomb + curve.viscous * speed, curve.viscous};
+    const double fading = curve.rate1 > 0.0 ? std::exp(-speed * curve.rate1) : 0.0;
+    const double rising =
+        curve.rate1 == curve.rate2 ? fading : (curve.rate2 > 0.0 ? std::exp(-speed * curve.rate2) : 0.0);
+    const double static_part = curve.breakaway * fading, missing = curve.coulomb * rising;
+    return {static_part + curve.coulomb - missing + curve.viscous * speed,
+            missing * curve.rate2 - static_part * curve.rate1 + curve.viscous};
   }
   double breakaway(int side) const { return sides[static_cast<std::size_t>(side)].breakaway; }
   void broke_away() const {}

@@ -48,7 +48,7 @@ inline void move_two_masses(const SecondMass& second, double inertia, double lea
   const double motor_middle = state.x + half_s * lead * state.w;
   const double load_middle = state.load_x + half_s * lead * state.load_w;
   const double spring = coupling.effort((motor_middle - load_middle) / lead, state.w - state.load_w);
-  SlidingMass load{load_middle, state.load_w, coupling.load_inertia, 0.0};
+  SlidingMass load{load_middle, state.load_w, 1.0 / coupling.load_inertia, 0.0};
   slide(load, spring, duration_s, contact);
   state.w += duration_s * (effort - spring) / coupling.motor_inertia;
   state.load_w = load.w;
