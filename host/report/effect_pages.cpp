@@ -92,7 +92,7 @@ std::vector<const sim::ParameterInfo*> example_parameters(const sim::EffectInfo&
 }
 
 void append_section(std::string& page, std::string_view heading, std::string_view text, const Terminal& terminal) {
-  fmt::format_to(std::back_inserter(page), "\n{}\n{}\n", heading, wrapped(text, terminal.columns - 2, "  "));
+  fmt::format_to(std::back_inserter(page), "\n{}\n{}", heading, wrapped(text, terminal.columns - 2, "  "));
 }
 
 void append_indented(std::string& page, std::string_view lines) {
@@ -170,7 +170,7 @@ std::string effect_list(const Terminal& terminal) {
       fmt::format_to(std::back_inserter(list), "  {:<{}}  {}{}\n", info->kind, widest, info->title,
                      info->base ? " (part of every model)" : "");
       const std::string indent(widest + 4, ' ');
-      fmt::format_to(std::back_inserter(list), "{}\n", wrapped(first_sentence(info->shows), terminal.columns, indent));
+      fmt::format_to(std::back_inserter(list), "{}", wrapped(first_sentence(info->shows), terminal.columns, indent));
     }
   }
   return list;

@@ -25,9 +25,7 @@ const EffectInfo inertia{
                     .upper = 1e6,
                     .scale = Scale::inertia,
                     .starts = {1}}},
-    .shows =
-        "Residual torque proportional to acceleration, of the same sign in both directions. Speeding up and braking "
-        "errors have opposite signs; none at constant speed",
+    .shows = "Residual torque proportional to acceleration, alike in both directions; none at constant speed",
     .confused_with = {"current_loop_lag", "tach_gain", "input_delay", "load_dependent_friction"},
     .separate_by =
         "Two acceleration levels at the same speeds: inertia keeps its ratio to acceleration, a lag follows jerk. A "

@@ -81,6 +81,12 @@ TEST(EffectPage, HoldsEverythingTheCatalogueKnows) {
   }
 }
 
+TEST(EffectPage, SeparatesSectionsByOneEmptyLine) {
+  for (const sim::EffectInfo* info : sim::catalogue())
+    EXPECT_THAT(host::effect_page(*info, kPlain), testing::Not(HasSubstr("\n\n\n")));
+  EXPECT_THAT(host::effect_list(kPlain), testing::Not(HasSubstr("\n\n\n")));
+}
+
 TEST(EffectExample, ReadsAsAPartOfAModelOfEitherKind) {
   for (const sim::DriveKind kind : {sim::DriveKind::rotary, sim::DriveKind::linear}) {
     std::string base = kind == sim::DriveKind::rotary ? kRotary : kLinear;
