@@ -61,7 +61,6 @@ double example_size(sim::Scale scale, sim::DriveKind kind) {
     case sim::Scale::stall_current:
       return rotary ? 65.0 : 350.0;
     case sim::Scale::speed:
-      return rotary ? 1.0 : 0.001;
     case sim::Scale::millimetre:
       return rotary ? 1.0 : 0.001;
     case sim::Scale::top_speed:

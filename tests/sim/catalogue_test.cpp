@@ -14,12 +14,14 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::catalogue;
 using sim::Drive;
 using sim::DriveState;
 using sim::EffectInfo;
 using sim::ParameterInfo;
+using sim_test::coulomb_drive;
+using sim_test::kCoulomb;
+using sim_test::with;
 
 /// The names that model files and other programs use.
 const std::set<std::string_view> kKinds = {

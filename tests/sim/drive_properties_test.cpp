@@ -8,9 +8,12 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::Drive;
 using sim::DriveState;
+using sim_test::coulomb_drive;
+using sim_test::free_mass;
+using sim_test::kLead;
+using sim_test::with;
 
 /// A number between two bounds, in steps of a thousandth of their distance.
 rc::Gen<double> between(double low, double high) {

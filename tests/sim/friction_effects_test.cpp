@@ -7,9 +7,20 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::Drive;
 using sim::DriveState;
+using sim_test::coulomb_drive;
+using sim_test::free_mass;
+using sim_test::kCoulomb;
+using sim_test::kInertia;
+using sim_test::kLead;
+using sim_test::kOmega;
+using sim_test::kStatic;
+using sim_test::kViscous;
+using sim_test::run;
+using sim_test::stribeck_drive;
+using sim_test::viscous_drive;
+using sim_test::with;
 
 /// Sticks at `u_V` just below `level` and moves just above it, in the direction of `level`.
 void expect_breakaway(const Drive& drive, const DriveState& rest, double level, double t_s = 0.0) {

@@ -8,9 +8,15 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::Drive;
 using sim::DriveState;
+using sim_test::coulomb_drive;
+using sim_test::free_mass;
+using sim_test::kCoulomb;
+using sim_test::kInertia;
+using sim_test::kLead;
+using sim_test::run;
+using sim_test::with;
 
 constexpr double kLoadFraction = 0.3;
 

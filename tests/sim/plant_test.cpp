@@ -9,8 +9,11 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::Plant;
+using sim_test::kInertia;
+using sim_test::kViscous;
+using sim_test::viscous_drive;
+using sim_test::with;
 
 sim::DriveDescription quantised_drive() {
   sim::DriveDescription drive = viscous_drive();

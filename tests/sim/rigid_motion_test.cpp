@@ -9,9 +9,21 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::Drive;
 using sim::DriveState;
+using sim_test::coulomb_drive;
+using sim_test::entry;
+using sim_test::free_mass;
+using sim_test::kCoulomb;
+using sim_test::kInertia;
+using sim_test::kLead;
+using sim_test::kOmega;
+using sim_test::kStatic;
+using sim_test::kViscous;
+using sim_test::run;
+using sim_test::stribeck_drive;
+using sim_test::viscous_drive;
+using sim_test::with;
 
 constexpr double kRate = kViscous / kInertia;  // 1/s
 

@@ -7,9 +7,14 @@
 
 namespace {
 
-using namespace sim_test;
 using sim::Drive;
 using sim::DriveState;
+using sim_test::coulomb_drive;
+using sim_test::free_mass;
+using sim_test::kInertia;
+using sim_test::kLead;
+using sim_test::run;
+using sim_test::with;
 
 TEST(TachGain, MultipliesTheReading) {
   const Drive drive(with(free_mass(), "tach_gain", {{"gain", 0.98}}));
