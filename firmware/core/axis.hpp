@@ -138,7 +138,7 @@ class Axis {
       const hal::TachometerReading tachometer = hal_.tachometer().read();
       if (!tachometer.valid) return fail(AxisFault::tachometer_invalid);
       telemetry_.tachometer_velocity =
-          Traits::from_integer(tachometer.code) * parameters_.tachometer_gain - parameters_.tachometer_offset;
+          Traits::times(tachometer.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
       estimator_.update(model_input_V_, telemetry_.encoder_counts, telemetry_.tachometer_velocity);
     } else {
       estimator_.update(model_input_V_, telemetry_.encoder_counts);

@@ -23,29 +23,26 @@ class DacConversion {
   /// `resolution_V` > 0, `limit_V` >= 2 * resolution_V, and their quotient < 2^24.
   constexpr void configure(Scalar resolution_V, Scalar limit_V) {
     resolution_V_ = resolution_V;
-    codes_per_volt_ = Scalar(1) / resolution_V;
-    max_code_ = nearest(limit_V * codes_per_volt_) - 1;
-    limit_V_ = ScalarTraits<Scalar>::from_integer(max_code_) * resolution_V;
+    codes_per_volt_ = Traits::reciprocal(resolution_V);
+    max_code_ = Traits::nearest_product(limit_V, codes_per_volt_) - 1;
+    limit_V_ = Traits::times(max_code_, resolution_V);
   }
 
   /// `volts` is a number; the caller has excluded not-a-number.
   constexpr DacWord<Scalar> operator()(Scalar volts) const {
     if (volts > limit_V_) return {max_code_, limit_V_, true};
     if (volts < Scalar(0) - limit_V_) return {-max_code_, Scalar(0) - limit_V_, true};
-    const std::int32_t code = nearest(volts * codes_per_volt_);
-    return {code, ScalarTraits<Scalar>::from_integer(code) * resolution_V_, false};
+    const std::int32_t code = Traits::nearest_product(volts, codes_per_volt_);
+    return {code, Traits::times(code, resolution_V_), false};
   }
 
   constexpr std::int32_t max_code() const { return max_code_; }
 
  private:
-  static constexpr std::int32_t nearest(Scalar value) {
-    constexpr Scalar kHalf = Scalar(0.5f);
-    return ScalarTraits<Scalar>::truncate(value < Scalar(0) ? value - kHalf : value + kHalf);
-  }
+  using Traits = ScalarTraits<Scalar>;
 
   Scalar resolution_V_{};
-  Scalar codes_per_volt_{};
+  typename Traits::Reciprocal codes_per_volt_{};
   Scalar limit_V_{};
   std::int32_t max_code_ = 0;
 };

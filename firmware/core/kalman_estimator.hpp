@@ -61,7 +61,7 @@ class KalmanEstimator {
   constexpr Prediction predict(Scalar input, std::int64_t encoder_counts) const {
     const Scalar net_input = input - estimate_.disturbance;
     const auto travel = static_cast<std::int32_t>(encoder_counts - estimate_.anchor_counts);
-    const Scalar measured = ScalarTraits<Scalar>::from_integer(travel) * count_length_;
+    const Scalar measured = ScalarTraits<Scalar>::times(travel, count_length_);
     return {estimate_.offset + drive_.Ad12 * estimate_.velocity + drive_.Bd1 * net_input - measured,
             drive_.Ad22 * estimate_.velocity + drive_.Bd2 * net_input};
   }

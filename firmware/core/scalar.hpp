@@ -19,6 +19,20 @@ template <std::floating_point Real>
 struct ScalarTraits<Real> {
   static constexpr Real from_integer(std::int32_t value) { return static_cast<Real>(value); }
 
+  /// number * factor.
+  static constexpr Real times(std::int32_t number, Real factor) { return from_integer(number) * factor; }
+
+  /// 1 / value, in a type whose range may differ from the scalar's.
+  using Reciprocal = Real;
+  static constexpr Reciprocal reciprocal(Real value) { return Real(1) / value; }
+
+  /// value * rate as a whole number, halves away from zero. |value * rate| < 2^31.
+  static constexpr std::int32_t nearest_product(Real value, Reciprocal rate) {
+    constexpr Real kHalf = Real(0.5f);
+    const Real product = value * rate;
+    return truncate(product < Real(0) ? product - kHalf : product + kHalf);
+  }
+
   /// Toward zero. |value| < 2^31; outside that range machines differ, so callers limit first.
   static constexpr std::int32_t truncate(Real value) { return static_cast<std::int32_t>(value); }
 

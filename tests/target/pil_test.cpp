@@ -21,8 +21,13 @@ void expect_equal_over_files(const std::string& image_name) {
   }
 }
 
-TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
-  const Replies replies = run_on_host<float>();
+template <typename Scalar>
+class PilScenario : public testing::Test {};
+using Scalars = testing::Types<float, firmware::FixedPoint>;
+TYPED_TEST_SUITE(PilScenario, Scalars);
+
+TYPED_TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
+  const Replies replies = run_on_host<TypeParam>();
   for (std::size_t axis = 0; axis < 2; ++axis) {
     std::int64_t least = 0, most = 0;
     std::uint32_t enabled = 0;
@@ -39,7 +44,7 @@ TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
   }
 }
 
-TEST(PilScenario, AChangedBitIsFound) {
+TEST(PilComparison, AChangedBitIsFound) {
   const Replies expected = run_on_host<float>();
   Replies seen = expected;
   seen[7'777].axis[1].velocity ^= 1u;
@@ -48,6 +53,16 @@ TEST(PilScenario, AChangedBitIsFound) {
 }
 
 TEST(Pil, FloatEqualsTheHostBitForBit) { expect_equal_over_files<float>("qemu-f405"); }
+
+TEST(Pil, FixedPointEqualsTheHostBitForBit) { expect_equal_over_files<firmware::FixedPoint>("qemu-f405-fixed"); }
+
+TEST(Pil, FixedPointForCortexM3EqualsTheHostBitForBit) {
+  expect_equal_over_files<firmware::FixedPoint>("qemu-f405-fixed-m3");
+}
+
+TEST(Pil, FixedPointForCortexM0PlusEqualsTheHostBitForBit) {
+  expect_equal_over_files<firmware::FixedPoint>("qemu-f405-fixed-m0plus");
+}
 
 TEST(Pil, TheSerialLineEqualsTheHostAndSurvivesNoise) {
   const std::string why = obstacle("qemu-f405");

@@ -51,7 +51,10 @@ struct Image {
   void (*run)(const std::string&, bool);
   bool serial_too;
 };
-constexpr Image kImages[] = {{"qemu-f405", run_image<float>, true}};
+constexpr Image kImages[] = {{"qemu-f405", run_image<float>, true},
+                             {"qemu-f405-fixed", run_image<firmware::FixedPoint>, false},
+                             {"qemu-f405-fixed-m3", run_image<firmware::FixedPoint>, false},
+                             {"qemu-f405-fixed-m0plus", run_image<firmware::FixedPoint>, false}};
 
 }  // namespace
 

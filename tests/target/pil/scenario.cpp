@@ -74,6 +74,7 @@ Replies run_on_host(std::uint32_t periods) {
 }
 
 template Replies run_on_host<float>(std::uint32_t);
+template Replies run_on_host<firmware::FixedPoint>(std::uint32_t);
 
 std::uint64_t hash(const Replies& replies) {
   std::uint64_t value = 0xCBF29CE484222325;

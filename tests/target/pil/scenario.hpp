@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/boards/pil/pil_station.hpp"
+#include "firmware/core/fixed_units.hpp"
 #include "hal/pc/simulated_axis.hpp"
 #include "tests/firmware/paper_axes.hpp"
 
@@ -39,6 +40,17 @@ struct BoardUnits<float> {
             with_all_parts(firmware_test::parameters_of<float>(firmware_test::kPaperY), 1)};
   }
   static float velocity(double mm_per_s) { return static_cast<float>(mm_per_s); }
+};
+
+template <>
+struct BoardUnits<firmware::FixedPoint> {
+  static firmware::boards::PilStation<firmware::FixedPoint>::Parameters parameters() {
+    return {with_all_parts(firmware::to_fixed(firmware_test::parameters_of<double>(firmware_test::kPaperX)), 0),
+            with_all_parts(firmware::to_fixed(firmware_test::parameters_of<double>(firmware_test::kPaperY)), 1)};
+  }
+  static firmware::FixedPoint velocity(double mm_per_s) {
+    return firmware::FixedPoint::from(mm_per_s * firmware_test::kSamplePeriod_s / firmware_test::kEncoderResolution_mm);
+  }
 };
 
 /// One command at one period.

@@ -1,0 +1,89 @@
+// The periphery of the axis board, and the two axes' hardware interface on it.
+#pragma once
+
+#include "firmware/boards/axis-f405/pins.hpp"
+#include "firmware/boards/image/survival_record.hpp"
+#include "hal/ad5752.hpp"
+#include "hal/axis_hal.hpp"
+#include "hal/stm32f4/clock_tree.hpp"
+#include "hal/stm32f4/drive_lines.hpp"
+#include "hal/stm32f4/encoder_timer.hpp"
+#include "hal/stm32f4/spi_port.hpp"
+#include "hal/stm32f4/tachometer_adc.hpp"
+#include "hal/stm32f4/usart_port.hpp"
+#include "hal/stm32f4/watchdog.hpp"
+
+namespace firmware::boards {
+
+using Converter = hal::Ad5752<hal::stm32f4::SpiPort>;
+
+/// One axis's share of the board.
+class BoardAxisHal {
+ public:
+  BoardAxisHal(hal::stm32f4::Timer& timer, const hal::stm32f4::TachometerSamples& samples, std::uint32_t channel,
+               Converter::Channel& dac, hal::stm32f4::DriveLines lines, hal::stm32f4::SwitchInputs switches)
+      : encoder_(timer), tachometer_(samples, channel), dac_(dac), lines_(lines), switches_(switches) {}
+
+  void start() {
+    lines_.start();
+    switches_.start();
+    encoder_.start();
+  }
+
+  hal::stm32f4::EncoderTimer& encoder() { return encoder_; }
+  hal::stm32f4::TachometerChannel& tachometer() { return tachometer_; }
+  Converter::Channel& dac() { return dac_; }
+  hal::stm32f4::DriveLines& drive_enable() { return lines_; }
+  hal::stm32f4::SwitchInputs& limits() { return switches_; }
+
+ private:
+  hal::stm32f4::EncoderTimer encoder_;
+  hal::stm32f4::TachometerChannel tachometer_;
+  Converter::Channel& dac_;
+  hal::stm32f4::DriveLines lines_;
+  hal::stm32f4::SwitchInputs switches_;
+};
+static_assert(hal::AxisHal<BoardAxisHal>);
+
+class Board {
+ public:
+  /// Clocks, pins and peripherals, with the D/A at 0 V and the enables off from the first moment. False when the clock
+  /// or the converter does not start; the board must then stay disabled.
+  bool start();
+
+  /// Converts the tachometers and calls the control interrupt at this rate, 250 Hz to 20 kHz.
+  void start_control(std::uint32_t rate_Hz);
+  /// First thing in the control interrupt.
+  void acknowledge_control();
+
+  BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
+  hal::stm32f4::StopInput& emergency_stop() { return stop_; }
+  hal::stm32f4::UsartPort& serial() { return serial_; }
+  hal::stm32f4::Watchdog& watchdog() { return watchdog_; }
+  void show(bool running, bool fault);
+
+ private:
+  hal::stm32f4::TachometerSamples samples_{};
+  hal::stm32f4::SpiPort spi_{hal::stm32f4::spi1(), pins::dac_select()};
+  Converter converter_{spi_};
+  BoardAxisHal x_{hal::stm32f4::timer2(),
+                  samples_,
+                  0,
+                  converter_.a(),
+                  {pins::enable_x(), pins::drive_fault_x()},
+                  {pins::positive_end_x(), pins::negative_end_x(), pins::home_x()}};
+  BoardAxisHal y_{hal::stm32f4::timer5(),
+                  samples_,
+                  1,
+                  converter_.b(),
+                  {pins::enable_y(), pins::drive_fault_y()},
+                  {pins::positive_end_y(), pins::negative_end_y(), pins::home_y()}};
+  hal::stm32f4::StopInput stop_{pins::emergency_stop()};
+  hal::stm32f4::UsartPort serial_{hal::stm32f4::usart1()};
+  hal::stm32f4::Watchdog watchdog_{hal::stm32f4::independent_watchdog()};
+};
+
+/// What the chip's reset flags say (RM0090, 7.3.21); clears them.
+ResetCause read_reset_cause();
+
+}  // namespace firmware::boards

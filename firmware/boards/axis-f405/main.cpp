@@ -1,0 +1,102 @@
+// The axis board: control interrupt, supervision, service port.
+#include "firmware/app/liveness.hpp"
+#include "firmware/boards/axis-f405/board.hpp"
+#include "firmware/boards/image/board_scalar.hpp"
+#include "firmware/boards/image/boot_report.hpp"
+#include "firmware/boards/image/fault_handler.hpp"
+#include "firmware/boards/image/stack_use.hpp"
+#include "firmware/core/axis.hpp"
+
+namespace firmware::boards {
+
+namespace {
+
+using BoardAxis = Axis<BoardScalar, BoardAxisHal>;
+
+constexpr std::uint32_t kControlRate_Hz = 1000;
+constexpr std::uint32_t kWatchdog_ms = 50;
+
+Board board;
+// The control law's data lie in the core-coupled memory, which no DMA ever makes wait.
+[[gnu::section(".ccm")]] std::array<BoardAxis, 2> axes{BoardAxis(board.axis(0)), BoardAxis(board.axis(1))};
+constinit Liveness liveness;
+
+void remember(std::size_t index) {
+  LastAxisState& last = survival_record().running.axis[index];
+  const auto& telemetry = axes[index].telemetry();
+  last.encoder_counts = telemetry.encoder_counts;
+  last.dac_code = telemetry.dac_code;
+  last.enabled = telemetry.enabled ? 1 : 0;
+  last.fault = static_cast<std::uint32_t>(telemetry.fault);
+}
+
+/// Shows the state of the axes; what acts on them runs in the control interrupt.
+void supervise() {
+  bool fault = board.emergency_stop().is_pressed();
+  for (const BoardAxis& axis : axes) fault = fault || axis.telemetry().fault != AxisFault::none;
+  board.show(true, fault);
+  liveness.supervisor_ran();
+}
+
+/// Letters on the service port: 'r' repeats the boot report, 'u' tells the use of stack and time.
+void serve(const LastRun& last_run, ImageState image) {
+  std::byte letter{};
+  if (!board.serial().receive(letter)) return;
+  TextWriter out(board.serial());
+  switch (static_cast<char>(letter)) {
+    case 'r':
+      report_boot(board.serial(), last_run, image);
+      break;
+    case 'u':
+      out << "stack: used " << stack_used_bytes() << " of " << stack_size_bytes() << " bytes, control periods "
+          << liveness.control_periods() << "\n";
+      break;
+    default:
+      out << "r report, u use of stack\n";
+  }
+}
+
+/// For a board that cannot be trusted to control: outputs stay safe, the service port tells why.
+[[noreturn]] void stay_safe(const LastRun& last_run, ImageState image) {
+  make_outputs_safe();
+  for (;;) serve(last_run, image);
+}
+
+}  // namespace
+
+}  // namespace firmware::boards
+
+extern "C" void control_interrupt() {
+  using namespace firmware::boards;
+  board.acknowledge_control();
+  const bool stopped = board.emergency_stop().is_pressed();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].telemetry().enabled && (stopped || board.axis(i).drive_enable().is_faulted())) axes[i].disable();
+    axes[i].step();
+    remember(i);
+  }
+  liveness.control_ran();
+  LastState& last = survival_record().running;
+  last.control_periods = liveness.control_periods();
+  last.supervisor_rounds = liveness.supervisor_rounds();
+}
+
+extern "C" [[noreturn]] void run_board() {
+  using namespace firmware::boards;
+  const bool periphery_works = board.start();
+  const LastRun last_run = take_over_survival_record(read_reset_cause());
+  arm_fault_detection();
+  using firmware::ImageState;
+  const ImageState image = verify_this_image();
+  report_boot(board.serial(), last_run, image);
+  if (!periphery_works) TextWriter(board.serial()) << "periphery: the clock or the D/A converter does not start\n";
+  if (!periphery_works || image != ImageState::whole) stay_safe(last_run, image);
+  survival_record().watchdog_armed = 1;
+  board.start_control(kControlRate_Hz);
+  board.watchdog().start(kWatchdog_ms);
+  for (;;) {
+    supervise();
+    if (liveness.may_feed()) board.watchdog().feed();
+    serve(last_run, image);
+  }
+}

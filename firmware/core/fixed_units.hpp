@@ -1,0 +1,75 @@
+// The units in which fixed point computes: every state is of the order of one, whatever the machine.
+#pragma once
+
+#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/fixed_point.hpp"
+
+namespace firmware {
+
+/// Length: one encoder count dx. Time: one sample Ts. So a velocity is in counts a sample, dx / (lead Ts) rad/s (m/s).
+/// Voltage: 4096 steps of the converter, so that a step is exactly 2^-12.
+///
+/// Ranges, with a resolution of 4.8e-7 of each unit:
+///   velocity            below 1024 counts a sample (2.5 m/s at 1 kHz and 2.44 um), and Kc2 times it below 1024 units
+///   position error      saturates at 1024 counts; the converter saturates long before if Kc1 > 8 / 1024 units a count
+///   any voltage         saturates at 1024 units (1280 V with steps of 0.3 mV); the converter's limit is 8
+///   gains               Kobs, Kc, drive model in these units: below 1024
+///   encoder, reference  unlimited: they are integers, 64 bits and more, as in float
+///   parameters          rounded to 2.4e-7 of their unit: those of the order of 1 relatively to 2.4e-7, jerk limits
+///   (some
+///                       0.02 counts a sample^3) to 1e-5, a tachometer's gain (some 0.01 counts a sample a code) to
+///                       3e-5
+template <typename Real>
+struct FixedUnits {
+  Real length;  ///< mm (m)
+  Real time_s;
+  Real velocity;         ///< of the drive: rad/s (m/s)
+  Real travel_velocity;  ///< mm/s (m/s)
+  Real volts;
+
+  explicit constexpr FixedUnits(const AxisParameters<Real>& p)
+      : length(p.encoder_resolution),
+        time_s(p.sample_period_s),
+        velocity(p.encoder_resolution / (p.lead * p.sample_period_s)),
+        travel_velocity(p.encoder_resolution / p.sample_period_s),
+        volts(Real(4096) * p.dac_resolution_V) {}
+};
+
+/// The same axis in fixed-point units. What does not fit stays at the limit of the range, and Axis::configure() refuses
+/// it as not finite. Telemetry is in these units too.
+template <typename Real>
+constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
+  const FixedUnits<Real> unit(p);
+  const auto fixed = [](Real value) { return FixedPoint::from(value); };
+  const Real gain_velocity = unit.velocity / unit.volts;
+  const auto direction = [&](const FrictionDirection<Real>& d) {
+    return FrictionDirection<FixedPoint>{fixed(d.static_V / unit.volts), fixed(d.coulomb_V / unit.volts),
+                                         fixed(d.viscous_V_s_per_rad * gain_velocity),
+                                         fixed(d.omega1_rad_s / unit.velocity), fixed(d.omega2_rad_s / unit.velocity)};
+  };
+  AxisParameters<FixedPoint> q;
+  q.sample_period_s = q.lead = q.encoder_resolution = FixedPoint(1);
+  q.dac_resolution_V = fixed(p.dac_resolution_V / unit.volts);
+  q.dac_limit_V = fixed(p.dac_limit_V / unit.volts);
+  q.tachometer_fitted = p.tachometer_fitted;
+  q.tachometer_gain = fixed(p.tachometer_gain / unit.velocity);
+  q.tachometer_offset = fixed(p.tachometer_offset / unit.velocity);
+  q.drive = {fixed(p.drive.Ad12 * unit.velocity / unit.length), fixed(p.drive.Ad22),
+             fixed(p.drive.Bd1 * unit.volts / unit.length), fixed(p.drive.Bd2 * unit.volts / unit.velocity)};
+  const Real row_unit[3] = {unit.length, unit.velocity, unit.volts};
+  for (std::size_t row = 0; row < 3; ++row)
+    q.Kobs[row] = {fixed(p.Kobs[row][0] * unit.length / row_unit[row]),
+                   fixed(p.Kobs[row][1] * unit.velocity / row_unit[row])};
+  q.Kc = {fixed(p.Kc[0] * unit.length / unit.volts), fixed(p.Kc[1] * gain_velocity)};
+  q.friction = {direction(p.friction.positive), direction(p.friction.negative),
+                fixed(p.friction.blend_velocity_rad_s / unit.velocity)};
+  q.friction_feedforward_on = p.friction_feedforward_on;
+  q.disturbance_cancellation_on = p.disturbance_cancellation_on;
+  q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;
+  q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
+  q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);
+  q.jerk_limit = fixed(p.jerk_limit / unit.travel_velocity * unit.time_s * unit.time_s);
+  return q;
+}
+
+}  // namespace firmware

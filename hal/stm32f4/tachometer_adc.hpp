@@ -1,0 +1,67 @@
+// Both tachometers on ADC1, converted once a control period by a timer's trigger and brought to memory by DMA.
+// RM0090, sections 13.3 to 13.8 and 10.3.
+#pragma once
+
+#include <array>
+
+#include "hal/stm32f4/registers.hpp"
+#include "hal/tachometer.hpp"
+
+namespace hal::stm32f4 {
+
+inline constexpr std::uint32_t kTachometerSamples = 4;  ///< of each channel a period, summed: half the noise
+
+/// The conversions of one period, x y x y x y x y. Written by DMA.
+using TachometerSamples = std::array<volatile std::uint16_t, 2 * kTachometerSamples>;
+
+/// One tachometer: +-10 V scaled onto 0..3.3 V, so that 0 V reads as mid-scale. Codes are -8192..8188.
+class TachometerChannel {
+ public:
+  TachometerChannel(const TachometerSamples& samples, std::uint32_t channel) : samples_(samples), channel_(channel) {}
+
+  /// Called by the control interrupt, which the end of the DMA transfer starts: the samples are this period's.
+  void conversions_have_arrived() { is_new_ = true; }
+
+  TachometerReading read() {
+    if (!is_new_) return {};
+    is_new_ = false;
+    std::int32_t sum = 0;
+    for (std::uint32_t i = 0; i < kTachometerSamples; ++i) {
+      const std::uint32_t sample = samples_[2 * i + channel_];
+      if (sample <= kLeast || sample >= kMost) return {};  // a wire broken or shorted pins the input to a rail
+      sum += static_cast<std::int32_t>(sample) - kMiddle;
+    }
+    return {sum, true};
+  }
+
+ private:
+  static constexpr std::int32_t kMiddle = 2048;
+  static constexpr std::uint32_t kLeast = 8, kMost = 4087;  // within 0.2 % of a rail
+
+  const TachometerSamples& samples_;
+  std::uint32_t channel_;
+  bool is_new_ = false;
+};
+static_assert(Tachometer<TachometerChannel>);
+
+/// Channels 10 and 11 (PC0, PC1) in turn; TIM3's update starts each scan; the end of the transfer interrupts.
+inline void start_tachometer_conversions(Adc& adc, Register& common_control, Dma& dma, TachometerSamples& samples) {
+  constexpr std::uint32_t kX = 10, kY = 11;
+  constexpr std::uint32_t kPair = kX | kY << 5;
+  DmaStream& stream = dma.stream[0];  // DMA2 stream 0, channel 0: ADC1 (table 43)
+  stream.CR = 0;
+  stream.PAR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&adc.DR));
+  stream.M0AR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(samples.data()));
+  stream.NDTR = samples.size();
+  stream.CR = DmaStream::kCircular | DmaStream::kMemoryIncrement | DmaStream::kPeripheral16 | DmaStream::kMemory16 |
+              DmaStream::kHighPriority | DmaStream::kInterruptOnComplete | DmaStream::kEnable;
+  common_control = kAdcClockBy4;  // 21 MHz
+  adc.CR1 = Adc::kScan;
+  adc.SMPR1 = 3u << 0 | 3u << 3;          // 56 cycles on both: a scan takes 8 * 68 / 21 MHz = 26 us
+  adc.SQR1 = (samples.size() - 1) << 20;  // scan length (13.13.9)
+  adc.SQR3 = kPair | kPair << 10 | kPair << 20;
+  adc.SQR2 = kPair;
+  adc.CR2 = Adc::kOn | Adc::kDma | Adc::kDmaContinues | Adc::kTriggerTimer3 | Adc::kTriggerRising;
+}
+
+}  // namespace hal::stm32f4
