@@ -52,6 +52,13 @@ pil: firmware ## Processor in the loop: the image under QEMU against the host bu
 	ninja -C $(BUILD) -j $(JOBS) axis_pil
 	$(BUILD)/bin/axis_pil $(IMAGE)
 
+.PHONY: cost
+cost: firmware ## Executed instructions of one control step, by number type and processor
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axis_cost
+	$(BUILD)/bin/axis_cost
+
 .PHONY: bench
 bench: ## Measure speed: plant and predictor against real time, identification, diagnosis (FILTER=regex)
 	$(NEED) build bench

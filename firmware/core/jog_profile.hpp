@@ -17,7 +17,7 @@ class JogProfile {
   /// `limits` have passed check().
   constexpr void configure(const MotionLimits& limits) {
     velocity_limit_ = limits.velocity;
-    most_steps_ = (limits.acceleration + limits.jerk - 1) / limits.jerk;
+    most_steps_ = static_cast<std::int32_t>((limits.acceleration + limits.jerk - 1) / limits.jerk);
     acceleration_step_ = limits.acceleration / most_steps_;
     reset();
   }
@@ -68,10 +68,10 @@ class JogProfile {
 
  private:
   /// Velocity added while the step falls from n to 0, one a sample, n included.
-  constexpr Increment run_out(std::int64_t n) const { return acceleration_step_ * (n * (n + 1) / 2); }
+  constexpr Increment run_out(std::int32_t n) const { return acceleration_step_ * ((std::int64_t{n} * (n + 1)) >> 1); }
 
   /// The next step towards a velocity that lies `amount` ahead; a step below 0 still leads away from it.
-  constexpr std::int64_t best_step(std::int64_t step, Increment amount) const {
+  constexpr std::int32_t best_step(std::int32_t step, Increment amount) const {
     if (step < 0) return step + 1;
     if (step < most_steps_ && run_out(step + 1) <= amount) return step + 1;
     return run_out(step) <= amount ? step : step - 1;
@@ -79,8 +79,8 @@ class JogProfile {
 
   Increment velocity_limit_ = 0;
   Increment acceleration_step_ = 1;
-  std::int64_t most_steps_ = 1;
-  std::int64_t step_ = 0;
+  std::int32_t most_steps_ = 1;  // below 2^30: so many steps of at least 16 units, and their sum, pass check()
+  std::int32_t step_ = 0;
   Increment velocity_ = 0;
   Increment target_ = 0;
   bool settling_ = false;

@@ -20,7 +20,8 @@ struct MovePlan {
   std::int32_t velocity_remainder = 0;      ///< samples of the move that take one unit more
   bool negative = false;
 
-  constexpr std::int64_t samples() const { return N1 == 0 ? 0 : std::int64_t{N1} + N2 + N3 - 1; }
+  /// Below 2^30: N2 + N3 <= N1 <= 2^29.
+  constexpr std::int32_t samples() const { return N1 == 0 ? 0 : N1 + N2 + N3 - 1; }
 };
 
 enum class MovePlanError : std::uint8_t {

@@ -66,7 +66,7 @@ inline constexpr double kMotorConstant_Nm_per_A = 0.4769;        // Table 1
 inline constexpr double kTachometerResolution_rad_s = 1.0 / 64;  // this project's simulated board
 
 template <typename Scalar>
-firmware::AxisParameters<Scalar> parameters_of(const PaperAxis& axis) {
+constexpr firmware::AxisParameters<Scalar> parameters_of(const PaperAxis& axis) {
   const auto scalar = [](double value) { return static_cast<Scalar>(value); };
   firmware::AxisParameters<Scalar> p;
   p.sample_period_s = scalar(kSamplePeriod_s);

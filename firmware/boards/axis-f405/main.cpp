@@ -1,51 +1,35 @@
 // The axis board: control interrupt, supervision, service port.
 #include "firmware/app/liveness.hpp"
-#include "firmware/boards/axis-f405/board.hpp"
-#include "firmware/boards/image/board_scalar.hpp"
+#include "firmware/boards/axis-f405/control.hpp"
 #include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/stack_use.hpp"
-#include "firmware/core/axis.hpp"
 
 namespace firmware::boards {
 
 namespace {
 
-using BoardAxis = Axis<BoardScalar, BoardAxisHal>;
-
 constexpr std::uint32_t kControlRate_Hz = 1000;
 constexpr std::uint32_t kWatchdog_ms = 50;
 
-Board board;
-// The control law's data lie in the core-coupled memory, which no DMA ever makes wait.
-[[gnu::section(".ccm")]] std::array<BoardAxis, 2> axes{BoardAxis(board.axis(0)), BoardAxis(board.axis(1))};
 constinit Liveness liveness;
-
-void remember(std::size_t index) {
-  LastAxisState& last = survival_record().running.axis[index];
-  const auto& telemetry = axes[index].telemetry();
-  last.encoder_counts = telemetry.encoder_counts;
-  last.dac_code = telemetry.dac_code;
-  last.enabled = telemetry.enabled ? 1 : 0;
-  last.fault = static_cast<std::uint32_t>(telemetry.fault);
-}
 
 /// Shows the state of the axes; what acts on them runs in the control interrupt.
 void supervise() {
-  bool fault = board.emergency_stop().is_pressed();
-  for (const BoardAxis& axis : axes) fault = fault || axis.telemetry().fault != AxisFault::none;
-  board.show(true, fault);
+  bool fault = board().emergency_stop().is_pressed();
+  for (std::size_t i = 0; i < kAxes; ++i) fault = fault || axis_telemetry(i).fault != AxisFault::none;
+  board().show(true, fault);
   liveness.supervisor_ran();
 }
 
 /// Letters on the service port: 'r' repeats the boot report, 'u' tells the use of stack and time.
 void serve(const LastRun& last_run, ImageState image) {
   std::byte letter{};
-  if (!board.serial().receive(letter)) return;
-  TextWriter out(board.serial());
+  if (!board().serial().receive(letter)) return;
+  TextWriter out(board().serial());
   switch (static_cast<char>(letter)) {
     case 'r':
-      report_boot(board.serial(), last_run, image);
+      report_boot(board().serial(), last_run, image);
       break;
     case 'u':
       out << "stack: used " << stack_used_bytes() << " of " << stack_size_bytes() << " bytes, control periods "
@@ -68,13 +52,8 @@ void serve(const LastRun& last_run, ImageState image) {
 
 extern "C" void control_interrupt() {
   using namespace firmware::boards;
-  board.acknowledge_control();
-  const bool stopped = board.emergency_stop().is_pressed();
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    if (axes[i].telemetry().enabled && (stopped || board.axis(i).drive_enable().is_faulted())) axes[i].disable();
-    axes[i].step();
-    remember(i);
-  }
+  board().acknowledge_control();
+  control_period();
   liveness.control_ran();
   LastState& last = survival_record().running;
   last.control_periods = liveness.control_periods();
@@ -83,20 +62,20 @@ extern "C" void control_interrupt() {
 
 extern "C" [[noreturn]] void run_board() {
   using namespace firmware::boards;
-  const bool periphery_works = board.start();
+  const bool periphery_works = board().start();
   const LastRun last_run = take_over_survival_record(read_reset_cause());
   arm_fault_detection();
   using firmware::ImageState;
   const ImageState image = verify_this_image();
-  report_boot(board.serial(), last_run, image);
-  if (!periphery_works) TextWriter(board.serial()) << "periphery: the clock or the D/A converter does not start\n";
+  report_boot(board().serial(), last_run, image);
+  if (!periphery_works) TextWriter(board().serial()) << "periphery: the clock or the D/A converter does not start\n";
   if (!periphery_works || image != ImageState::whole) stay_safe(last_run, image);
   survival_record().watchdog_armed = 1;
-  board.start_control(kControlRate_Hz);
-  board.watchdog().start(kWatchdog_ms);
+  board().start_control(kControlRate_Hz);
+  board().watchdog().start(kWatchdog_ms);
   for (;;) {
     supervise();
-    if (liveness.may_feed()) board.watchdog().feed();
+    if (liveness.may_feed()) board().watchdog().feed();
     serve(last_run, image);
   }
 }

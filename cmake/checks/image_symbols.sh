@@ -1,0 +1,24 @@
+#!/bin/sh
+# image_symbols.sh NM SIZE FLASH_LIMIT RAM_LIMIT IMAGE.elf...
+# Fails when an image holds what must not be on the target (heap, double precision, exceptions) or is too large.
+set -eu
+nm=$1 size=$2 flash_limit=$3 ram_limit=$4
+shift 4
+status=0
+for image in "$@"; do
+  found=$("$nm" "$image" | awk '{ print $NF }' |
+    grep -E '^(_?malloc|_?free|_?calloc|_?realloc|_malloc_r|_sbrk|__aeabi_(d[a-z0-9]+|f2d|i2d|ui2d|l2d|ul2d)|__cxa_.*|_Unwind.*|_Znw.*|_Zdl.*)$' || true)
+  if [ -n "$found" ]; then
+    echo "$image holds what must not be on the target:" $found >&2
+    status=1
+  fi
+  "$size" -A "$image" | awk -v image="$image" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
+    $1 ~ /^\.(vectors|image_header|text|ARM\.exidx|data|ccm)$/ { flash += $2 }
+    $1 ~ /^\.(stack|noinit|data|bss|ccm)$/ { ram += $2 }
+    END {
+      n = split(image, parts, "/")
+      printf "%-28s flash %6d of %d bytes, RAM %6d of %d bytes\n", parts[n], flash, flash_limit, ram, ram_limit
+      if (flash == 0 || flash > flash_limit || ram > ram_limit) { print image ": too large" > "/dev/stderr"; exit 1 }
+    }' || status=1
+done
+exit $status

@@ -1,0 +1,51 @@
+#!/bin/sh
+# stack_depth.sh FOLDER LIMIT ROOT...
+# Worst-case stack of each ROOT function (part of its name) from the call graphs (*.ci) that the compiler left below
+# FOLDER (-fcallgraph-info=su). Fails above LIMIT bytes, on recursion, on frames of unknown size and on a missing root.
+# Control interrupt and background share the stack, so the depths of the roots and an exception frame each are added.
+set -eu
+folder=$1 limit=$2
+shift 2
+find "$folder" -name '*.ci' -exec cat {} + | awk -v limit="$limit" -v roots="$*" '
+  function field(name,   rest) {
+    rest = substr($0, index($0, name ": \"") + length(name) + 3)
+    return substr(rest, 1, index(rest, "\"") - 1)
+  }
+  /^node:/ {
+    title = field("title")
+    if (match($0, /[0-9]+ bytes \([a-z,]+\)/)) {
+      text = substr($0, RSTART, RLENGTH)
+      bytes = text + 0
+      if (!(title in frame) || bytes > frame[title]) frame[title] = bytes
+      if (text ~ /dynamic/ && text !~ /bounded/) unbounded[title] = 1
+      label[title] = field("label")
+    }
+  }
+  /^edge:/ {
+    source = field("sourcename"); target = field("targetname")
+    if (!((source, target) in seen)) { seen[source, target] = 1; callee[source, ++callees[source]] = target }
+  }
+  # Our function at the end of a recursion is a fault; the compiler cannot see behind pointers, which we do not use.
+  function depth(f,   i, most, d) {
+    if (f in known) return known[f]
+    if (f in open) { print "recursion through " f > "/dev/stderr"; broken = 1; return 0 }
+    open[f] = 1
+    if (f in unbounded) { print "frame of unknown size: " f > "/dev/stderr"; broken = 1 }
+    most = 0
+    for (i = 1; i <= callees[f]; i++) { d = depth(callee[f, i]); if (d > most) most = d }
+    delete open[f]
+    return known[f] = most + frame[f]
+  }
+  END {
+    n = split(roots, wanted, " ")
+    exception_frame = 108  # with FPU registers and alignment: ARMv7-M ARM, B1.5.7
+    for (i = 1; i <= n; i++) {
+      worst = -1
+      for (f in frame) if (index(f, wanted[i])) { d = depth(f); if (d > worst) worst = d }
+      if (worst < 0) { print "no function " wanted[i] " in the call graph" > "/dev/stderr"; exit 1 }
+      printf "stack: %-24s %5d bytes\n", wanted[i], worst
+      total += worst + (i > 1 ? exception_frame : 0)
+    }
+    printf "stack: worst case            %5d of %d bytes\n", total, limit
+    exit broken || total > limit
+  }'

@@ -1,0 +1,60 @@
+# How an image for the microcontroller is built: axis_image().
+set(AXIS_IMAGE_VERSION "0.1.0")
+set(AXIS_IMAGES "${CMAKE_BINARY_DIR}/images")
+file(MAKE_DIRECTORY "${AXIS_IMAGES}")
+
+set(BUILD_VERSION "${CMAKE_BINARY_DIR}/version/build_version.hpp")
+add_custom_target(build_version BYPRODUCTS "${BUILD_VERSION}"
+  COMMAND "${CMAKE_COMMAND}" "-DROOT=${AXIS_ROOT}" "-DOUTPUT=${BUILD_VERSION}" "-DVERSION=${AXIS_IMAGE_VERSION}"
+          -P "${AXIS_ROOT}/cmake/modules/WriteBuildVersion.cmake")
+
+# The program that completes image headers runs on this machine, so this machine's compiler builds it.
+find_program(BUILD_MACHINE_CXX NAMES g++ c++ REQUIRED)
+set(STAMP_IMAGE "${CMAKE_BINARY_DIR}/stamp_image")
+add_custom_command(OUTPUT "${STAMP_IMAGE}"
+  COMMAND "${BUILD_MACHINE_CXX}" -std=c++20 -O1 -I "${AXIS_ROOT}" "${AXIS_ROOT}/host/stamp_image/main.cpp" -o "${STAMP_IMAGE}"
+  DEPENDS "${AXIS_ROOT}/host/stamp_image/main.cpp" "${AXIS_ROOT}/firmware/app/image_header.hpp"
+          "${AXIS_ROOT}/firmware/app/crc32.hpp")
+add_custom_target(stamp_program DEPENDS "${STAMP_IMAGE}")
+
+set(CPU_FLAGS_m4 -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16)
+set(CPU_FLAGS_m3 -mcpu=cortex-m3 -mthumb)
+set(CPU_FLAGS_m0plus -mcpu=cortex-m0plus -mthumb)
+
+# Contraction is off on every machine: with it, a multiplication and an addition round once here and twice elsewhere.
+add_library(axis_target_flags INTERFACE)
+target_link_libraries(axis_target_flags INTERFACE axis_core_flags)
+target_compile_options(axis_target_flags INTERFACE -O3 -g -ffp-contract=off -fno-exceptions -fno-rtti
+  -fno-threadsafe-statics -fno-use-cxa-atexit -ffunction-sections -fdata-sections -fno-common -fstack-usage
+  -fcallgraph-info=su)
+target_link_options(axis_target_flags INTERFACE -nostartfiles --specs=nano.specs --specs=nosys.specs -Wl,--gc-sections
+  -Wl,--no-warn-rwx-segments)
+
+file(GLOB COMMON_SOURCES CONFIGURE_DEPENDS "${AXIS_ROOT}/firmware/boards/image/*.cpp")
+
+# axis_image(NAME CPU m4|m3|m0plus BOARD folder [DEFINES ...] SOURCES ...): images/NAME.elf, .bin and .hex with a
+# complete header, and NAME.map beside them.
+function(axis_image NAME)
+  cmake_parse_arguments(IMAGE "" "CPU;BOARD" "DEFINES;SOURCES" ${ARGN})
+  set(MEMORY "${AXIS_ROOT}/firmware/boards/${IMAGE_BOARD}/memory.ld")
+  add_executable(${NAME} ${COMMON_SOURCES} ${IMAGE_SOURCES})
+  add_dependencies(${NAME} build_version)
+  target_link_libraries(${NAME} PRIVATE axis_target_flags)
+  target_include_directories(${NAME} PRIVATE "${CMAKE_BINARY_DIR}/version")
+  target_compile_definitions(${NAME} PRIVATE "AXIS_BOARD_NAME=\"${IMAGE_BOARD}\"" ${IMAGE_DEFINES})
+  target_compile_options(${NAME} PRIVATE ${CPU_FLAGS_${IMAGE_CPU}})
+  target_link_options(${NAME} PRIVATE ${CPU_FLAGS_${IMAGE_CPU}} -L "${AXIS_ROOT}/firmware/boards/image"
+    -T "${MEMORY}" "-Wl,-Map=${AXIS_IMAGES}/${NAME}.map")
+  set_target_properties(${NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/linked" SUFFIX .elf
+    LINK_DEPENDS "${MEMORY};${AXIS_ROOT}/firmware/boards/image/sections.ld")
+  set(IMAGE "${AXIS_IMAGES}/${NAME}")
+  add_custom_command(OUTPUT "${IMAGE}.elf" "${IMAGE}.bin" "${IMAGE}.hex"
+    COMMAND "${CMAKE_OBJCOPY}" -O binary "$<TARGET_FILE:${NAME}>" "${IMAGE}.unstamped"
+    COMMAND "${STAMP_IMAGE}" "${IMAGE}.unstamped" "${IMAGE}.header"
+    COMMAND "${CMAKE_OBJCOPY}" --update-section ".image_header=${IMAGE}.header" "$<TARGET_FILE:${NAME}>" "${IMAGE}.elf"
+    COMMAND "${CMAKE_OBJCOPY}" -O binary "${IMAGE}.elf" "${IMAGE}.bin"
+    COMMAND "${CMAKE_OBJCOPY}" -O ihex "${IMAGE}.elf" "${IMAGE}.hex"
+    COMMAND "${CMAKE_COMMAND}" -E rm "${IMAGE}.unstamped" "${IMAGE}.header"
+    DEPENDS ${NAME} stamp_program "${STAMP_IMAGE}")
+  add_custom_target(${NAME}_image ALL DEPENDS "${IMAGE}.elf")
+endfunction()

@@ -1,0 +1,51 @@
+// Holds the control law to its budget of executed instructions.
+#include "tests/target/cost/cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/target/qemu.hpp"
+
+namespace {
+
+using target_test::count_instructions;
+
+class CostOfAStep : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string why = target_test::obstacle("cost-float-m4");
+    if (!why.empty()) GTEST_SKIP() << why;
+  }
+};
+
+TEST_F(CostOfAStep, CountsAreExactAndRepeatable) {
+  auto first = count_instructions("cost-float-m4");
+  EXPECT_EQ(first["100_nops"].worst, 100);
+  EXPECT_EQ(first, count_instructions("cost-float-m4"));
+}
+
+TEST_F(CostOfAStep, FloatKeepsItsBudget) {
+  auto costs = count_instructions("cost-float-m4");
+  EXPECT_LE(costs["estimator_and_feedback"].worst, 90);
+  EXPECT_LE(costs["one_axis"].worst, 450);
+  EXPECT_LE(costs["both_axes"].worst, 1000);
+  EXPECT_LT(costs["both_axes"].worst * 20e3 / 168e6, 0.15) << "share of the chip at 20 kHz";
+  EXPECT_GT(costs["one_axis"].mean, 100) << "the step did nothing";
+}
+
+TEST_F(CostOfAStep, FixedPointTakesAtMostTwoAndAHalfTimesFloat) {
+  auto in_float = count_instructions("cost-float-m4");
+  for (const char* image : {"cost-fixed-m4", "cost-fixed-m3"}) {
+    auto in_fixed = count_instructions(image);
+    EXPECT_LE(in_fixed["one_axis"].worst, 2.5 * in_float["one_axis"].worst) << image;
+    EXPECT_LE(in_fixed["both_axes"].worst, 2.5 * in_float["both_axes"].worst) << image;
+  }
+}
+
+TEST_F(CostOfAStep, FixedPointBeatsSoftwareFloatWithoutFpu) {
+  EXPECT_LT(count_instructions("cost-fixed-m0plus")["one_axis"].worst,
+            count_instructions("cost-float-m0plus")["one_axis"].worst);
+  EXPECT_LT(count_instructions("cost-fixed-m3")["one_axis"].worst,
+            count_instructions("cost-float-m3")["one_axis"].worst);
+}
+
+}  // namespace
