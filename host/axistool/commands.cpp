@@ -16,6 +16,7 @@ void add_all_commands(CLI::App& app) {
   add_friction(app);
   add_design(app);
   add_effects(app);
+  add_demo(app);
 }
 
 }  // namespace axistool

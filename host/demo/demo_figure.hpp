@@ -1,0 +1,25 @@
+// One number that the demonstration shows, beside what it should be.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace host {
+
+struct DemoFigure {
+  std::string what;  ///< for example "inertia J, kg m^2"
+  double found = 0.0;
+  double lowest = 0.0;    ///< of the values that agree with the reference
+  double highest = 0.0;   ///< likewise
+  std::string reference;  ///< what it is compared with, in words
+
+  bool agrees() const { return found >= lowest && found <= highest; }
+};
+
+/// `found` agrees when it is within `tolerance` (a fraction) of the true value.
+DemoFigure within_fraction(std::string what, double found, double truth, double tolerance);
+
+/// `found` agrees when it does not exceed `limit`; `what` is a magnitude.
+DemoFigure at_most(std::string what, double found, double limit);
+
+}  // namespace host

@@ -1,0 +1,17 @@
+// The public EMPS benchmark: a real linear drive. Its records are not part of the project.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/demo/demo_figure.hpp"
+#include "host/report/report.hpp"
+
+namespace host {
+
+/// `folder` holds DATA_EMPS.mat and DATA_EMPS_PULSES.mat of "Data set and reference models of EMPS" (Janot, Gautier,
+/// Brunot 2019). Imports both, identifies from the first, checks on the second. Throws Failure(bad_input) where a file
+/// is missing.
+std::vector<DemoFigure> show_emps(const std::string& folder, Report& report);
+
+}  // namespace host
