@@ -16,6 +16,12 @@ struct DemoFigure {
   bool agrees() const { return found >= lowest && found <= highest; }
 };
 
+/// What one part of the demonstration found.
+struct DemoPart {
+  std::string sentence;  ///< the gist, in plain words
+  std::vector<DemoFigure> figures;
+};
+
 /// `found` agrees when it is within `tolerance` (a fraction) of the true value.
 DemoFigure within_fraction(std::string what, double found, double truth, double tolerance);
 

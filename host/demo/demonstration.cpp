@@ -30,8 +30,11 @@ Demonstration demonstrate(const DemonstrationInput& input) {
   constexpr std::string_view kAxes[] = {"x", "y"};
   Report details("axistool: the demonstration", "Feed drives identified, controlled and checked");
   std::vector<DemoFigure> figures;
-  const auto keep = [&figures](std::vector<DemoFigure> more) {
-    figures.insert(figures.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  std::vector<std::string> sentences;
+  const auto keep = [&](DemoPart part) {
+    sentences.push_back(std::move(part.sentence));
+    figures.insert(figures.end(), std::make_move_iterator(part.figures.begin()),
+                   std::make_move_iterator(part.figures.end()));
   };
 
   Progress progress("demonstration", 1 + (input.emps_folder ? 1 : 0) + 2 * std::size(kAxes));
@@ -43,7 +46,7 @@ Demonstration demonstrate(const DemonstrationInput& input) {
   }
   for (const std::string_view axis : kAxes) {
     PaperAxisOutcome outcome = show_paper_axis(axis, details);
-    keep(std::move(outcome.figures));
+    keep(std::move(outcome.part));
     progress.advance(1, fmt::format("axis {} identified", axis));
     keep(show_tracking(*paper_drive(axis), outcome.identified, details));
     progress.advance(1, fmt::format("axis {} controlled", axis));
@@ -57,9 +60,7 @@ Demonstration demonstrate(const DemonstrationInput& input) {
   verdict.tone = shown.agrees() ? Tone::good : Tone::bad;
   verdict.label = shown.agrees() ? "all agree" : "differs";
   verdict.headline = fmt::format("{} of {} figures agree with their reference.", agreeing, shown.figures.size());
-  verdict.sentences = {input.emps_folder
-                           ? "One drive from an independent plant, the real EMPS drive, and the paper's axes x and y."
-                           : "One drive from an independent plant, and the paper's axes x and y."};
+  verdict.sentences = std::move(sentences);
   shown.report.verdict(std::move(verdict));
   return shown;
 }

@@ -31,7 +31,7 @@ EmpsLog read_emps(const std::string& path) {
 
 }  // namespace
 
-std::vector<DemoFigure> show_emps(const std::string& folder, Report& report) {
+DemoPart show_emps(const std::string& folder, Report& report) {
   EmpsLog seen = read_emps(folder + "/DATA_EMPS.mat");
   EmpsLog unseen = read_emps(folder + "/DATA_EMPS_PULSES.mat");
   sim::DriveDescription drive;
@@ -63,7 +63,11 @@ std::vector<DemoFigure> show_emps(const std::string& folder, Report& report) {
   plot.title = "Measured and modelled force (DATA_EMPS)";
   plot.caption = "What is left at the reversals and in the strokes is what this simple model lacks.";
   report.add(std::move(plot));
-  return figures;
+  return {fmt::format(
+              "The real EMPS drive: mass {} kg (published 95.11), force error {} % (published 4.08), and {} % on "
+              "another experiment (published 5.98).",
+              format_value(figures[0].found, 4), format_value(figures[4].found, 3), format_value(figures[5].found, 3)),
+          std::move(figures)};
 }
 
 }  // namespace host

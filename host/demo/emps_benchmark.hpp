@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "host/demo/demo_figure.hpp"
 #include "host/report/report.hpp"
@@ -12,6 +11,6 @@ namespace host {
 /// `folder` holds DATA_EMPS.mat and DATA_EMPS_PULSES.mat of "Data set and reference models of EMPS" (Janot, Gautier,
 /// Brunot 2019). Imports both, identifies from the first, checks on the second. Throws Failure(bad_input) where a file
 /// is missing.
-std::vector<DemoFigure> show_emps(const std::string& folder, Report& report);
+DemoPart show_emps(const std::string& folder, Report& report);
 
 }  // namespace host

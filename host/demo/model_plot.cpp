@@ -11,7 +11,7 @@ TimePlot model_plot(const std::string& quantity, const std::string& unit, const 
   TimePlot plot;
   plot.t_s = t_s;
   plot.panels = {
-      {quantity, unit, {{"measured", SeriesRole::measured, measured}, {"model", SeriesRole::model, modelled}}},
+      {quantity, unit, {{"measured", SeriesRole::measured, measured}, {"model", SeriesRole::predicted, modelled}}},
       {"difference", unit, {{"measured - model", SeriesRole::residual, std::move(difference)}}}};
   return plot;
 }

@@ -151,13 +151,13 @@ PaperAxisOutcome show_paper_axis(std::string_view axis, Report& report) {
 
   PaperAxisOutcome outcome;
   const FrictionLaw truth = friction_law(machine);
-  add_step_figures(unbiased, machine, name, outcome.figures);
+  add_step_figures(unbiased, machine, name, outcome.part.figures);
   // Between 0.6 and 63 rad/s; the y axis has the noisier torque.
-  outcome.figures.push_back(at_most(name + " friction curve, worst error, Nm",
-                                    worst_curve_error(friction.fit.law, truth), axis == "x" ? 0.015 : 0.03));
-  outcome.figures.push_back(
+  outcome.part.figures.push_back(at_most(name + " friction curve, worst error, Nm",
+                                         worst_curve_error(friction.fit.law, truth), axis == "x" ? 0.015 : 0.03));
+  outcome.part.figures.push_back(
       within_fraction(name + " viscous B' from jogs, Nm s/rad", friction.fit.law.viscous, truth.viscous, 0.02));
-  add_tachometer_figures(machine, sliding.model, design, name, outcome.figures);
+  add_tachometer_figures(machine, sliding.model, design, name, outcome.part.figures);
 
   report.section(
       fmt::format("Axis {}: open-loop steps", name),
@@ -177,6 +177,11 @@ PaperAxisOutcome show_paper_axis(std::string_view axis, Report& report) {
   report.section(fmt::format("Axis {}: friction from jogs in closed loop", name));
   add_friction_plot(friction, machine, report);
   add_jog_plot(jogs, design, machine, report);
+  outcome.part.sentence = fmt::format(
+      "Axis {} of the paper, simulated: inertia {:.5f} kg m² (Table 1: {:.5f}); friction curve within {} Nm of the "
+      "truth.",
+      axis, unbiased.estimate.inertia.value, rigid_axis(machine).inertia,
+      format_value(worst_curve_error(friction.fit.law, truth), 1));
   outcome.identified = std::move(friction.model);
   return outcome;
 }

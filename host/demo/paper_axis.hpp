@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "host/demo/demo_figure.hpp"
 #include "host/report/report.hpp"
@@ -11,7 +10,7 @@
 namespace host {
 
 struct PaperAxisOutcome {
-  std::vector<DemoFigure> figures;
+  DemoPart part;
   sim::DriveDescription identified;  ///< inertia and friction curve as found, what the controller is designed from
 };
 

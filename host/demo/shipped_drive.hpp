@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "host/demo/demo_figure.hpp"
 #include "host/report/report.hpp"
@@ -11,6 +10,6 @@ namespace host {
 
 /// `folder`: one case of the independent plant with model.toml, train-steps.csv, validate.csv and truth.json.
 /// Identifies from the steps and predicts the validation record. Throws Failure(bad_input) where a file is missing.
-std::vector<DemoFigure> show_shipped_drive(const std::string& folder, Report& report);
+DemoPart show_shipped_drive(const std::string& folder, Report& report);
 
 }  // namespace host

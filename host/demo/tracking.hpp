@@ -1,8 +1,6 @@
 // Third part of the demonstration: step and jog in closed loop with gains designed from the identified model.
 #pragma once
 
-#include <vector>
-
 #include "host/demo/demo_figure.hpp"
 #include "host/report/report.hpp"
 #include "sim/drive_description.hpp"
@@ -10,7 +8,6 @@
 namespace host {
 
 /// `machine` is the plant, `identified` all that the controller knows of it.
-std::vector<DemoFigure> show_tracking(const sim::DriveDescription& machine, const sim::DriveDescription& identified,
-                                      Report& report);
+DemoPart show_tracking(const sim::DriveDescription& machine, const sim::DriveDescription& identified, Report& report);
 
 }  // namespace host

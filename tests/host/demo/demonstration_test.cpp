@@ -97,7 +97,7 @@ TEST(EmpsBenchmark, AgreesWithThePublishedIdentification) {
   const std::string folder = std::string(AXIS_SHARED_DIR) + "/data/emps";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
   host::Report report("t");
-  const auto figures = host::show_emps(folder, report);
+  const auto figures = host::show_emps(folder, report).figures;
   ASSERT_EQ(figures.size(), 6u);
   const double published[] = {95.1, 203.3, 20.4, -3.17, 4.10, 5.95};
   const double tolerance[] = {0.1, 0.6, 0.06, 0.03, 0.02, 0.05};
