@@ -102,7 +102,10 @@ void add_friction_plot(const FrictionIdentification& found, const sim::DriveDesc
 
 double worst_curve_error(const FrictionLaw& found, const FrictionLaw& truth) {
   double worst = 0.0;
-  for (double v = 0.6; v <= 63.0; v *= 1.02) {
+  constexpr double kSlowest_rad_s = 0.6, kFastest_rad_s = 63.0;  // the range that the paper's jogs cover
+  constexpr int kSpeeds = 240;
+  for (int k = 0; k <= kSpeeds; ++k) {
+    const double v = kSlowest_rad_s * std::pow(kFastest_rad_s / kSlowest_rad_s, static_cast<double>(k) / kSpeeds);
     for (const double speed : {v, -v}) worst = std::max(worst, std::abs(found.effort(speed) - truth.effort(speed)));
   }
   return worst;
