@@ -45,6 +45,19 @@ firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images
 	$(FIRMWARE)
 	ninja -C $(BUILD)/firmware -j $(JOBS)
 
+SCALAR ?= float
+IMAGE_FILE = $(BUILD)/firmware/images/axis-f405$(if $(filter fixed,$(SCALAR)),-fixed).bin
+
+.PHONY: flash
+flash: all firmware ## Write the image onto the board by ST-Link (PROBE=serial chooses one, SCALAR=fixed, DRY=1)
+	$(NEED) flash
+	$(BUILD)/bin/axistool flash $(IMAGE_FILE) --stlink $(if $(PROBE),--probe $(PROBE)) $(if $(DRY),--dry-run)
+
+.PHONY: flash-dfu
+flash-dfu: all firmware ## Write the image onto a board that is in its USB bootloader (SCALAR=fixed, DRY=1)
+	$(NEED) flash
+	$(BUILD)/bin/axistool flash $(IMAGE_FILE) $(if $(DRY),--dry-run)
+
 .PHONY: pil
 pil: firmware ## Processor in the loop: the image under QEMU against the host build, bit for bit (IMAGE=name for one)
 	$(NEED) build test

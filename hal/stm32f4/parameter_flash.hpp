@@ -63,7 +63,7 @@ class ParameterFlash {
   void unlock() {
     registers_.KEYR = FlashInterface::kKey1;
     registers_.KEYR = FlashInterface::kKey2;
-    registers_.SR = FlashInterface::kErrors;  // written ones clear
+    registers_.SR = registers_.SR & FlashInterface::kErrors;  // ones written back clear
   }
 
   FlashResult program_word(std::byte* cell, std::span<const std::byte> bytes) {

@@ -48,17 +48,18 @@ static_assert(Tachometer<TachometerChannel>);
 inline void start_tachometer_conversions(Adc& adc, Register& common_control, Dma& dma, TachometerSamples& samples) {
   constexpr std::uint32_t kX = 10, kY = 11;
   constexpr std::uint32_t kPair = kX | kY << 5;
+  constexpr std::uint32_t kConversions = 2 * kTachometerSamples;
   DmaStream& stream = dma.stream[0];  // DMA2 stream 0, channel 0: ADC1 (table 43)
   stream.CR = 0;
   stream.PAR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&adc.DR));
   stream.M0AR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(samples.data()));
-  stream.NDTR = samples.size();
+  stream.NDTR = kConversions;
   stream.CR = DmaStream::kCircular | DmaStream::kMemoryIncrement | DmaStream::kPeripheral16 | DmaStream::kMemory16 |
               DmaStream::kHighPriority | DmaStream::kInterruptOnComplete | DmaStream::kEnable;
   common_control = kAdcClockBy4;  // 21 MHz
   adc.CR1 = Adc::kScan;
-  adc.SMPR1 = 3u << 0 | 3u << 3;          // 56 cycles on both: a scan takes 8 * 68 / 21 MHz = 26 us
-  adc.SQR1 = (samples.size() - 1) << 20;  // scan length (13.13.9)
+  adc.SMPR1 = 3u << 0 | 3u << 3;        // 56 cycles on both: a scan takes 8 * 68 / 21 MHz = 26 us
+  adc.SQR1 = (kConversions - 1) << 20;  // scan length (13.13.9)
   adc.SQR3 = kPair | kPair << 10 | kPair << 20;
   adc.SQR2 = kPair;
   adc.CR2 = Adc::kOn | Adc::kDma | Adc::kDmaContinues | Adc::kTriggerTimer3 | Adc::kTriggerRising;

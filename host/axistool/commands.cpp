@@ -17,6 +17,8 @@ void add_all_commands(CLI::App& app) {
   add_design(app);
   add_effects(app);
   add_demo(app);
+  add_flash(app);
+  add_info(app);
 }
 
 }  // namespace axistool

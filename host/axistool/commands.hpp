@@ -17,6 +17,8 @@ void add_friction(CLI::App& app);
 void add_design(CLI::App& app);
 void add_effects(CLI::App& app);
 void add_demo(CLI::App& app);
+void add_flash(CLI::App& app);
+void add_info(CLI::App& app);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);

@@ -1,0 +1,53 @@
+// axistool info: what a firmware image says about itself.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/image_file.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct InfoArguments {
+  std::string image, json;
+};
+
+void run(const InfoArguments& arguments) {
+  const host::ImageFile image = host::read_image_file(arguments.image);
+  const firmware::ImageHeader& header = image.header;
+  const bool whole = image.state == firmware::ImageState::whole;
+  if (!whole) end_with(host::ExitCode::answer_is_no);
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-image/1"},
+                {"board", header.board.data()},
+                {"version", header.version.data()},
+                {"git_hash", header.git_hash.data()},
+                {"chip_id", header.chip_id},
+                {"schema_hash", header.schema_hash},
+                {"size", header.image_size},
+                {"crc32", header.crc},
+                {"whole", whole}},
+               arguments.json);
+  if (arguments.json == "-") return;
+  fmt::print("board        {}\nversion      {}\ncommit       {}\nchip         {:#05x}\n", header.board.data(),
+             header.version.data(), header.git_hash.data(), header.chip_id);
+  fmt::print("schema hash  {:#010x}\nsize         {} bytes\nCRC-32       {:#010x}\nimage        {}\n",
+             header.schema_hash, header.image_size, header.crc, host::describe(image.state));
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* command = app.add_subcommand("info", "what a firmware image says about itself, and whether it is whole");
+  command->add_option("IMAGE", arguments->image, "image file (.bin)")->required();
+  add_json_option(*command, arguments->json);
+  command->footer("Example:\n  axistool info build/firmware/images/axis-f405.bin\nExit code 1: the image is damaged.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,68 @@
+// What flashing a board takes, step by step: lines to drive, pauses to keep, programs to run.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace host {
+
+struct GpioWiring {
+  std::string chip;  ///< /dev/gpiochipN
+  unsigned boot0 = 0;
+  unsigned reset = 0;
+};
+
+enum class FlashWay {
+  dfu,     ///< ROM bootloader over USB, dfu-util
+  serial,  ///< ROM bootloader over a serial port, stm32flash
+  probe,   ///< ST-Link, openocd
+};
+
+struct FlashRequest {
+  FlashWay way = FlashWay::dfu;
+  std::string image;               ///< .bin
+  std::size_t image_size = 0;      ///< bytes
+  std::optional<GpioWiring> gpio;  ///< empty: somebody else has put the board into its bootloader
+  std::string serial_port;         ///< way serial
+  std::string probe;               ///< way probe: serial number; empty if there is only one
+  std::string read_back;           ///< file for what is read back, way dfu
+};
+
+struct FlashStep {
+  enum class Kind { set_boot0, set_reset, pause, run, compare };
+  Kind kind = Kind::pause;
+  bool level = false;                  ///< set_*: level of the pin; reset is low active
+  std::chrono::milliseconds pause{0};  ///< pause
+  std::vector<std::string> command;    ///< run
+  std::string meaning;
+};
+
+/// The whole sequence. After a failure between its steps, recovery_steps() lets the board start what it has.
+std::vector<FlashStep> flash_steps(const FlashRequest& request);
+std::vector<FlashStep> recovery_steps(const FlashRequest& request);
+
+/// One line for people: what a dry run prints.
+std::string describe(const FlashStep& step, const FlashRequest& request);
+
+struct CommandResult {
+  int status = 0;  ///< exit status; 127 if the program does not exist
+  std::string output;
+};
+
+/// What a sequence acts on. Tests hand in recorders.
+struct FlashActions {
+  std::function<void(bool)> set_boot0, set_reset;
+  std::function<void(std::chrono::milliseconds)> pause;
+  std::function<CommandResult(const std::vector<std::string>&)> run;
+  std::function<bool()> read_back_equals;
+  std::function<void(const std::string&)> tell;
+};
+
+/// Runs the steps. Throws Failure that names the cause (no device, permission, wrong chip, verification) and the
+/// remedy; by then the board has been reset out of its bootloader.
+void run_flash(const FlashRequest& request, const FlashActions& actions);
+
+}  // namespace host

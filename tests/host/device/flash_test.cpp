@@ -1,0 +1,166 @@
+// Flashing: the edges and pauses of the sequence, and what becomes of each failure.
+#include <gtest/gtest.h>
+
+#include "host/device/flash_sequence.hpp"
+#include "host/device/image_file.hpp"
+#include "host/device/run_command.hpp"
+#include "host/exit_codes.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kListing =
+    "Found DFU: [0483:df11] ver=2200, alt=0, name=\"@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg\"";
+
+/// A board computer that writes down what is done to it, with the time that pauses have taken.
+struct Bench {
+  struct Event {
+    std::string what;
+    std::chrono::milliseconds at;
+  };
+  std::vector<Event> events;
+  std::chrono::milliseconds now{0};
+  host::CommandResult list{0, kListing}, write{0, ""};
+  bool equal = true;
+
+  host::FlashActions actions() {
+    host::FlashActions all;
+    all.set_boot0 = [this](bool level) { events.push_back({level ? "boot0 high" : "boot0 low", now}); };
+    all.set_reset = [this](bool level) { events.push_back({level ? "reset high" : "reset low", now}); };
+    all.pause = [this](std::chrono::milliseconds time) { now += time; };
+    all.run = [this](const std::vector<std::string>& command) {
+      const bool lists = command[1] == "-l";
+      events.push_back({lists ? "list" : command[0], now});
+      return lists ? list : write;
+    };
+    all.read_back_equals = [this] { return equal; };
+    all.tell = [](const std::string&) {};
+    return all;
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> result;
+    for (const Event& event : events) result.push_back(event.what);
+    return result;
+  }
+};
+
+host::FlashRequest with_gpio() {
+  host::FlashRequest request;
+  request.image = "image.bin";
+  request.image_size = 1234;
+  request.gpio = host::GpioWiring{"/dev/gpiochip0", 17, 27};
+  return request;
+}
+
+TEST(Flash, EdgesComeInOrderWithTheirPauses) {
+  Bench bench;
+  host::run_flash(with_gpio(), bench.actions());
+  const std::vector<std::string> expected{"boot0 high", "reset low", "reset high", "list",      "dfu-util",
+                                          "dfu-util",   "boot0 low", "reset low",  "reset high"};
+  ASSERT_EQ(bench.names(), expected);
+  EXPECT_GE(bench.events[1].at - bench.events[0].at, 1ms) << "BOOT0 is stable before reset";
+  EXPECT_GE(bench.events[2].at - bench.events[1].at, 10ms) << "reset pulse";
+  EXPECT_GE(bench.events[3].at - bench.events[2].at, 100ms) << "the bootloader needs time";
+  EXPECT_GE(bench.events[8].at - bench.events[7].at, 10ms) << "reset pulse";
+}
+
+struct Trouble {
+  const char* name;
+  int list_status;
+  const char* list_output;
+  int write_status;
+  const char* write_output;
+  bool equal;
+  host::ExitCode code;
+  const char* says;
+};
+
+class FlashTrouble : public testing::TestWithParam<Trouble> {};
+
+TEST_P(FlashTrouble, IsNamedAndTheBoardIsLetGo) {
+  Bench bench;
+  bench.list = {GetParam().list_status, GetParam().list_output};
+  bench.write = {GetParam().write_status, GetParam().write_output};
+  bench.equal = GetParam().equal;
+  try {
+    host::run_flash(with_gpio(), bench.actions());
+    FAIL() << "no failure";
+  } catch (const host::Failure& failure) {
+    EXPECT_EQ(failure.code, GetParam().code);
+    EXPECT_NE(std::string(failure.what()).find(GetParam().says), std::string::npos) << failure.what();
+  }
+  const auto names = bench.names();
+  ASSERT_GE(names.size(), 3u);
+  EXPECT_EQ(names[names.size() - 3], "boot0 low");
+  EXPECT_EQ(names.back(), "reset high");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Flash, FlashTrouble,
+    testing::Values(
+        Trouble{"not_installed", 127, "", 0, "", true, host::ExitCode::no_such_device, "apt-get install"},
+        Trouble{"no_board", 0, "dfu-util 0.11", 0, "", true, host::ExitCode::no_such_device, "no board"},
+        Trouble{"no_permission", 74, "Cannot open DFU device 0483:df11 (LIBUSB_ERROR_ACCESS)", 0, "", true,
+                host::ExitCode::permission, "udev"},
+        Trouble{"wrong_chip", 0, "Found DFU: name=\"@Internal Flash /0x08000000/064*0002Kg\"", 0, "", true,
+                host::ExitCode::refused, "nothing was written"},
+        Trouble{"write_fails", 0, kListing, 74, "error during download", true, host::ExitCode::protocol, "download"},
+        Trouble{"read_back_differs", 0, kListing, 0, "", false, host::ExitCode::protocol, "verification failed"}),
+    [](const auto& chosen) { return std::string(chosen.param.name); });
+
+std::string image_text(const char* board) {
+  std::string text(firmware::kImageHeaderOffset + sizeof(firmware::ImageHeader) + 100, 'x');
+  firmware::ImageHeader header;
+  header.magic = firmware::kImageMagic;
+  header.layout = firmware::kImageLayout;
+  header.header_size = sizeof header;
+  header.chip_id = 0x413;
+  header.image_size = static_cast<std::uint32_t>(text.size());
+  std::copy_n(board, std::min<std::size_t>(std::strlen(board), 15), header.board.begin());
+  std::memcpy(text.data() + firmware::kImageHeaderOffset, &header, sizeof header);
+  header.crc = firmware::image_crc(std::as_bytes(std::span(text)));
+  std::memcpy(text.data() + firmware::kImageHeaderOffset, &header, sizeof header);
+  return text;
+}
+
+host::ExitCode code_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const host::Failure& failure) {
+    return failure.code;
+  }
+  return host::ExitCode::done;
+}
+
+TEST(ImageFile, OnlyAWholeImageForThisBoardPasses) {
+  const TemporaryFolder folder;
+  const auto good = host::read_image_file(folder.write("good.bin", image_text("axis-f405")));
+  EXPECT_EQ(good.state, firmware::ImageState::whole);
+  EXPECT_EQ(code_of([&] { host::check_image_for(good, "axis-f405"); }), host::ExitCode::done);
+  EXPECT_EQ(code_of([&] { host::check_image_for(good, "other"); }), host::ExitCode::bad_input);
+
+  std::string damaged = image_text("axis-f405");
+  damaged.back() ^= 1;
+  EXPECT_EQ(host::read_image_file(folder.write("damaged.bin", damaged)).state, firmware::ImageState::wrong_crc);
+  EXPECT_EQ(host::read_image_file(folder.write("short.bin", image_text("axis-f405").substr(0, 620))).state,
+            firmware::ImageState::wrong_size);
+  EXPECT_EQ(code_of([&] { host::read_image_file(folder.write("text.bin", "hello")); }), host::ExitCode::bad_input);
+}
+
+TEST(Crc32, IsTheWorldsCrc32) {
+  const std::string check = "123456789";  // the check value that every catalogue of CRCs gives
+  EXPECT_EQ(firmware::crc32(std::as_bytes(std::span(check))), 0xCBF43926u);
+}
+
+TEST(RunCommand, KeepsOutputAndStatus) {
+  const host::CommandResult result = host::run_command({"sh", "-c", "echo out; echo err >&2; exit 3"}, false);
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.output.find("out"), std::string::npos);
+  EXPECT_NE(result.output.find("err"), std::string::npos);
+  EXPECT_EQ(host::run_command({"no-such-program-here"}, false).status, 127);
+}
+
+}  // namespace
