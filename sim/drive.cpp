@@ -40,6 +40,7 @@ struct RichContact {
     FrictionPoint all = viscous(side, speed);
     all.effort += level * curve.effort + carried;
     all.slope += level * curve.slope;
+    if (all.effort < 0.0) return {0.0, 0.0};  // friction never drives, whatever a fit tries
     return all;
   }
 
@@ -113,9 +114,15 @@ void Drive::settle() {
            tach_lag_s <= 0.0;
 }
 
-bool Drive::has_hidden_state() const {
-  return delay_s > 0.0 || current_lag_s > 0.0 || friction_memory_s > 0.0 || dwell_gain > 0.0 || bristles ||
-         second_mass || tach_lag_s > 0.0;
+double Drive::memory_s() const {
+  // Five time constants leave less than 1 % of what was before; a bristle and a second mass settle within 0.1 s.
+  constexpr double kTimeConstants = 5.0, kContact_s = 0.1;
+  double memory = delay_s;
+  for (const double lag_s : {current_lag_s, friction_memory_s, tach_lag_s})
+    memory = std::max(memory, kTimeConstants * lag_s);
+  if (dwell_gain > 0.0) memory = std::max(memory, kTimeConstants * dwell_time_s);
+  if (bristles || second_mass) memory = std::max(memory, kContact_s);
+  return memory;
 }
 
 DriveState Drive::at(double x, double w) const {
@@ -174,9 +181,10 @@ void Drive::move(DriveState& state, double effort, double t_s, double duration_s
 }
 
 void Drive::hold(DriveState& state, double u_V, double t_s, double duration_s) const {
-  // The mean of a sine over an eighth of its period is within 2.5 % of its middle value; speeds are bounded by drives.
+  // The mean of a sine over an eighth of its period is within 2.5 % of its middle value. What passes several periods in
+  // a sixth of the interval averages out whatever is done.
   constexpr double kPeriodShare = 0.125;
-  constexpr double kMostParts = 64.0;
+  constexpr double kMostParts = 6.0;
   const double by_travel = std::abs(state.w) * lead * duration_s / (kPeriodShare * finest_period);
   const double wanted_parts = std::max(duration_s / max_step_s, std::min(by_travel, kMostParts));
   const int parts = std::max(1, static_cast<int>(std::ceil(wanted_parts - 1e-9)));
@@ -249,6 +257,13 @@ double Drive::deliver_over(DriveState& state, double u_V, double duration_s) con
 bool Drive::shapes_effort() const {
   return !command.empty() || delay_s > 0.0 || current_lag_s > 0.0 || !effort_limit.empty() || !effort_factor.empty() ||
          !load_effort.empty();
+}
+
+double Drive::sliding_effort(DriveState& state, double effort, double t_s) const {
+  const RichContact contact{*this, state, product(level_factor, t_s, state.x), product(viscous_factor, t_s),
+                            transmitted_share * std::abs(effort)};
+  const double magnitude = contact.sliding(state.w >= 0.0 ? 0 : 1, std::abs(state.w)).effort;
+  return state.w >= 0.0 ? magnitude : -magnitude;
 }
 
 void Drive::observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const {

@@ -85,6 +85,9 @@ class Drive {
   /// reaches the drive's inertia before friction is taken off, Nm or N.
   double follow(DriveState& state, double u_V, double x1, double w1, double t_s, double duration_s) const;
 
+  /// Friction of a sliding state, signed like its speed; `effort` is what is transmitted, Nm or N.
+  double sliding_effort(DriveState& state, double effort, double t_s) const;
+
   /// What an ideal encoder reads, with the errors that belong to the drive but without quantisation.
   double encoder(const DriveState& state) const;
 
@@ -98,7 +101,8 @@ class Drive {
   /// remembers (dead time, current loop).
   double deliver_over(DriveState& state, double u_V, double duration_s) const;
 
-  bool has_hidden_state() const;
+  /// How far back a motion still shows in the hidden states, s; 0 where there are none.
+  double memory_s() const;
   /// Whether anything but friction adds to or takes from the effort that the command asks for.
   bool shapes_effort() const;
   bool has_second_mass() const { return second_mass.has_value(); }

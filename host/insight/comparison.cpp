@@ -71,7 +71,8 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
     error.windows.push_back(score);
   });
   const auto root_mean = [](double sum, std::size_t count) {
-    return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
+    const double mean = count == 0 ? 0.0 : sum / static_cast<double>(count);
+    return std::isfinite(mean) ? std::sqrt(mean) : HUGE_VAL;  // a model that runs away is as bad as can be
   };
   error.combined = root_mean(combined, x_count + w_count);
   error.x_rms = root_mean(x_sum, x_count);

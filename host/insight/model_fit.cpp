@@ -81,7 +81,7 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   solver.function_tolerance = options.least_gain;
   solver.parameter_tolerance = 1e-6;
   solver.logging_type = ceres::SILENT;
-  solver.num_threads = 1;
+  solver.num_threads = 1;  // candidates are fitted side by side
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 
@@ -91,7 +91,7 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   for (Eigen::Index k = 0; k < scaled.size(); ++k)
     values(k) = scaled(k) * vector.parameters()[static_cast<std::size_t>(k)].scale;
   vector.write(values, result.model);
-  result.combined = std::sqrt(2.0 * summary.final_cost);
+  result.combined = summary.IsSolutionUsable() ? std::sqrt(2.0 * summary.final_cost) : HUGE_VAL;
   result.iterations = static_cast<int>(summary.iterations.size());
   return result;
 }

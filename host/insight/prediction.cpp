@@ -36,83 +36,80 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
 
 namespace {
 
-/// The motion that windows restart from, as a drive understands it: one whose encoder errs or whose command arrives
-/// changed sees another motion behind the same record.
-class RestartMotion {
+/// Builds the states that windows restart from, as a drive understands the record: hidden states follow the motion
+/// before the window, and a drive whose encoder errs or whose command arrives changed sees another motion behind the
+/// same readings.
+class Restarts {
  public:
-  RestartMotion(const sim::Drive& drive, const PreparedRecord& prepared)
-      : x_(&prepared.motion().x), w_(&prepared.motion().w) {
-    if (drive.encoder_error.empty() && !drive.shapes_effort()) return;
-    changed_ = prepared.smoother.change(reading_change(drive, prepared), command_change(drive, prepared));
-    for (std::size_t k = 0; k < changed_.x.size(); ++k) {
-      changed_.x[k] += prepared.motion().x[k];
-      changed_.w[k] += prepared.motion().w[k];
-    }
-    x_ = &changed_.x;
-    w_ = &changed_.w;
-  }
-  RestartMotion(const RestartMotion&) = delete;
-  RestartMotion& operator=(const RestartMotion&) = delete;
+  Restarts(const sim::Drive& drive, const PreparedRecord& prepared)
+      : drive_(drive),
+        prepared_(prepared),
+        motion_(prepared.motion()),
+        memory_(static_cast<std::size_t>(std::ceil(drive.memory_s() / prepared.period_s))),
+        shifts_(!drive.encoder_error.empty() || drive.shapes_effort()) {}
 
-  double x(std::size_t row) const { return (*x_)[row]; }
-  double w(std::size_t row) const { return (*w_)[row]; }
+  /// Rows must be asked for in rising order.
+  sim::DriveState at(std::size_t row) {
+    if (memory_ == 0 && !shifts_) return drive_.at(motion_.x[row], motion_.w[row]);
+    // Rows further back than the drive remembers need not be gone through.
+    const std::size_t needed = row - std::min(row, memory_ + (shifts_ ? prepared_.smoother.reach() : 0));
+    if (!begun_ || needed > row_) {
+      state_ = drive_.at(motion_.x[needed], motion_.w[needed]);
+      row_ = needed;
+      begun_ = true;
+    }
+    const std::size_t first = shifts_ ? row - std::min(row, prepared_.smoother.reach()) : row;
+    while (row_ < first) follow(state_, row_++);
+    if (!shifts_) return state_;
+    return shifted(row, first);
+  }
 
  private:
-  /// What the true travel is less than the encoder's reading, row by row.
-  std::vector<double> reading_change(const sim::Drive& drive, const PreparedRecord& prepared) const {
-    std::vector<double> change;
-    if (drive.encoder_error.empty()) return change;
-    for (const double x : prepared.motion().x) change.push_back(-drive.encoder_error_at(x - drive.encoder_error_at(x)));
-    return change;
+  double follow(sim::DriveState& state, std::size_t row) const {
+    return drive_.follow(state, prepared_.u_V[row], motion_.x[row + 1], motion_.w[row + 1], prepared_.record->t_s[row],
+                         prepared_.period_s);
   }
 
-  /// What the drive's inertia is given beyond the recorded command, in volts.
-  std::vector<double> command_change(const sim::Drive& drive, const PreparedRecord& prepared) const {
-    std::vector<double> change;
-    if (!drive.shapes_effort()) return change;
-    const std::size_t n = x_->size();
-    change.resize(n);
-    sim::DriveState state = drive.at((*x_)[0], (*w_)[0]);
-    for (std::size_t k = 0; k + 1 < n; ++k) {
-      const double effort =
-          drive.follow(state, prepared.u_V[k], (*x_)[k + 1], (*w_)[k + 1], prepared.record->t_s[k], prepared.period_s);
-      change[k] = effort / drive.effort_per_volt - prepared.u_V[k];
+  sim::DriveState shifted(std::size_t row, std::size_t first) {
+    const std::size_t last = std::min(row + prepared_.smoother.reach(), motion_.x.size() - 1);
+    reading_.clear();
+    command_V_.clear();
+    sim::DriveState restart = state_, ahead = state_;
+    for (std::size_t k = first; k < last; ++k) {
+      if (k == row) restart = ahead;
+      if (!drive_.encoder_error.empty()) {
+        const double x = motion_.x[k];
+        reading_.push_back(-drive_.encoder_error_at(x - drive_.encoder_error_at(x)));
+      }
+      const double effort = follow(ahead, k);
+      if (drive_.shapes_effort()) command_V_.push_back(effort / drive_.effort_per_volt - prepared_.u_V[k]);
     }
-    return change;
+    if (row >= last) restart = ahead;
+    const MotionSmoother::Shift shift = prepared_.smoother.shift_at(row, first, reading_, command_V_);
+    restart.x += shift.x;
+    restart.w += shift.w;
+    if (!drive_.has_second_mass()) restart.load_x = restart.x;
+    return restart;
   }
 
-  const std::vector<double>* x_;
-  const std::vector<double>* w_;
-  MotionSmoother::Change changed_;
+  const sim::Drive& drive_;
+  const PreparedRecord& prepared_;
+  const SmoothedMotion& motion_;
+  std::size_t memory_;
+  bool shifts_;
+  bool begun_ = false;
+  std::size_t row_ = 0;
+  sim::DriveState state_;
+  std::vector<double> reading_, command_V_;
 };
-
-/// Gives use(window index, restart state) every `stride`-th window; hidden states follow the motion from the record's
-/// start.
-template <typename Use>
-void for_each_restart(const sim::Drive& drive, const PreparedRecord& prepared, std::size_t stride, Use use) {
-  const RestartMotion motion(drive, prepared);
-  const bool hidden = drive.has_hidden_state();
-  sim::DriveState followed = drive.at(motion.x(0), motion.w(0));
-  std::size_t row = 0;
-  for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
-    const std::size_t begin = prepared.windows[index].begin;
-    if (!hidden) {
-      use(index, drive.at(motion.x(begin), motion.w(begin)));
-      continue;
-    }
-    for (; row < begin; ++row)
-      drive.follow(followed, prepared.u_V[row], motion.x(row + 1), motion.w(row + 1), prepared.record->t_s[row],
-                   prepared.period_s);
-    use(index, followed);
-  }
-}
 
 }  // namespace
 
 std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared) {
   std::vector<sim::DriveState> states;
   states.reserve(prepared.windows.size());
-  for_each_restart(drive, prepared, 1, [&](std::size_t, const sim::DriveState& state) { states.push_back(state); });
+  Restarts restarts(drive, prepared);
+  for (const Window& window : prepared.windows) states.push_back(restarts.at(window.begin));
   return states;
 }
 
@@ -120,14 +117,16 @@ void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction
   out.x.resize(prepared.record->size());
   out.w.resize(prepared.record->size());
   const std::vector<double>& t_s = prepared.record->t_s;
-  for_each_restart(drive, prepared, stride, [&](std::size_t index, sim::DriveState state) {
+  Restarts restarts(drive, prepared);
+  for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
+    sim::DriveState state = restarts.at(window.begin);
     for (std::size_t k = window.begin; k < window.begin + window.length; ++k) {
       drive.step(state, prepared.u_V[k], t_s[k], prepared.period_s);
       out.x[k + 1] = drive.encoder(state);
       out.w[k + 1] = drive.tachometer(state);
     }
-  });
+  }
 }
 
 }  // namespace host

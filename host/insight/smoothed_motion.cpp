@@ -27,6 +27,10 @@ namespace {
 /// some 5 ms. A tenth of the paper's on-line variance (48), since a smoother sees both sides of a sample.
 constexpr double kQuietStep_V = 0.03;
 
+/// Signals farther from a sample do not reach its smoothed state, s: ten times the time over which the speed is
+/// averaged.
+constexpr double kReach_s = 0.05;
+
 /// Part of a recent change of the command that may not have arrived as the model says (dead time, current loop).
 constexpr double kCommandDoubt = 0.3;
 
@@ -114,7 +118,9 @@ std::vector<double> command_volts(const Record& record, const sim::DataSheet& da
 
 MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
                                double friction_level)
-    : by_position_(record.has_position()), effort_per_volt_(data.effort_per_volt()) {
+    : by_position_(record.has_position()),
+      reach_(static_cast<std::size_t>(std::ceil(kReach_s / record.sample_period_s))),
+      effort_per_volt_(data.effort_per_volt()) {
   const double period_s = record.sample_period_s;
   // Eqs. (5), (7), (16) by the matrix exponential.
   const double gain = effort_per_volt_ / inertia;
@@ -190,32 +196,6 @@ void MotionSmoother::solve_gains(const std::vector<Observation>& observed, doubl
   }
 }
 
-namespace {
-
-/// The smoother's two passes over signals: value(k) is measured, command(k) drives; use(k, state) takes the result.
-template <typename Gain, typename Value, typename Command, typename Use>
-void pass(const std::vector<Gain>& gains, const Matrix3d& A, const Vector3d& B, Eigen::Index seen, Vector3d state,
-          Value value, Command command, Use use) {
-  const std::size_t n = gains.size();
-  static thread_local std::vector<Vector3d> filtered, predicted;
-  filtered.resize(n);
-  predicted.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    predicted[k] = state;
-    state += gains[k].measurement * (value(k) - state(seen));
-    if (gains[k].standing) state -= gains[k].standstill * state(1);
-    filtered[k] = state;
-    state = A * state + B * command(k);
-  }
-  Vector3d later = filtered[n - 1];
-  for (std::size_t k = n; k-- > 0;) {
-    if (k + 1 < n) later = filtered[k] + gains[k].backward * (later - predicted[k + 1]);
-    use(k, later);
-  }
-}
-
-}  // namespace
-
 void MotionSmoother::smooth(const std::vector<Observation>& observed, const std::vector<double>& u_V,
                             const Vector3d& start) {
   const std::size_t n = observed.size();
@@ -223,31 +203,47 @@ void MotionSmoother::smooth(const std::vector<Observation>& observed, const std:
   motion_.w.resize(n);
   motion_.disturbance.resize(n);
   motion_.standing.resize(n);
-  pass(
-      gains_, A_, B_, by_position_ ? 0 : 1, start, [&](std::size_t k) { return observed[k].value; },
-      [&](std::size_t k) { return u_V[k]; },
-      [&](std::size_t k, const Vector3d& state) {
-        motion_.x[k] = state(0);
-        motion_.w[k] = observed[k].standing ? 0.0 : state(1);
-        motion_.disturbance[k] = effort_per_volt_ * state(2);
-        motion_.standing[k] = observed[k].standing;
-      });
+  const Eigen::Index seen = by_position_ ? 0 : 1;
+  std::vector<Vector3d> filtered(n), predicted(n);
+  Vector3d state = start;
+  for (std::size_t k = 0; k < n; ++k) {
+    predicted[k] = state;
+    state += gains_[k].measurement * (observed[k].value - state(seen));
+    if (gains_[k].standing) state -= gains_[k].standstill * state(1);
+    filtered[k] = state;
+    state = A_ * state + B_ * u_V[k];
+  }
+  Vector3d later = filtered[n - 1];
+  for (std::size_t k = n; k-- > 0;) {
+    if (k + 1 < n) later = filtered[k] + gains_[k].backward * (later - predicted[k + 1]);
+    motion_.x[k] = later(0);
+    motion_.w[k] = observed[k].standing ? 0.0 : later(1);
+    motion_.disturbance[k] = effort_per_volt_ * later(2);
+    motion_.standing[k] = observed[k].standing;
+  }
 }
 
-MotionSmoother::Change MotionSmoother::change(const std::vector<double>& reading,
-                                              const std::vector<double>& command_V) const {
-  Change change;
-  change.x.resize(gains_.size());
-  change.w.resize(gains_.size());
-  const Vector3d start(by_position_ && !reading.empty() ? reading[0] : 0.0, 0.0, 0.0);
-  pass(
-      gains_, A_, B_, by_position_ ? 0 : 1, start, [&](std::size_t k) { return reading.empty() ? 0.0 : reading[k]; },
-      [&](std::size_t k) { return command_V.empty() ? 0.0 : command_V[k]; },
-      [&](std::size_t k, const Vector3d& state) {
-        change.x[k] = state(0);
-        change.w[k] = gains_[k].standing ? 0.0 : state(1);
-      });
-  return change;
+MotionSmoother::Shift MotionSmoother::shift_at(std::size_t row, std::size_t first, const std::vector<double>& reading,
+                                               const std::vector<double>& command_V) const {
+  const Eigen::Index seen = by_position_ ? 0 : 1;
+  const std::size_t count = std::max(reading.size(), command_V.size());
+  static thread_local std::vector<Vector3d> filtered, predicted;
+  filtered.resize(count);
+  predicted.resize(count);
+  Vector3d state(by_position_ && !reading.empty() ? reading[0] : 0.0, 0.0, 0.0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Gains& gains = gains_[first + k];
+    predicted[k] = state;
+    state += gains.measurement * ((reading.empty() ? 0.0 : reading[k]) - state(seen));
+    if (gains.standing) state -= gains.standstill * state(1);
+    filtered[k] = state;
+    state = A_ * state;
+    if (!command_V.empty()) state += B_ * command_V[k];
+  }
+  Vector3d later = filtered[count - 1];
+  for (std::size_t k = count - 1; k-- > row - first;)
+    later = filtered[k] + gains_[first + k].backward * (later - predicted[k + 1]);
+  return {later(0), gains_[row].standing ? 0.0 : later(1)};
 }
 
 }  // namespace host

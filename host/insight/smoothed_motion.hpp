@@ -36,12 +36,17 @@ class MotionSmoother {
 
   const SmoothedMotion& motion() const { return motion_; }
 
-  /// What the smoothed travel and speed change by when the encoder's readings change by `reading` (mm or m) and the
-  /// command by `command_V`, row by row; either may be empty. The smoother is linear, so changes add up.
-  struct Change {
-    std::vector<double> x, w;
+  /// Rows before and after a row whose signals still reach its smoothed state (some ten times the smoother's memory).
+  std::size_t reach() const { return reach_; }
+
+  /// How the smoothed state of one row shifts when the encoder's readings and the command change around it.
+  struct Shift {
+    double x, w;
   };
-  Change change(const std::vector<double>& reading, const std::vector<double>& command_V) const;
+  /// `reading` (mm or m) and `command_V` hold the changes of the rows first ... first + size - 1; either may be empty.
+  /// The smoother is linear, so that shifts add up.
+  Shift shift_at(std::size_t row, std::size_t first, const std::vector<double>& reading,
+                 const std::vector<double>& command_V) const;
 
  private:
   struct Observation;
@@ -56,6 +61,7 @@ class MotionSmoother {
   void smooth(const std::vector<Observation>& observed, const std::vector<double>& u_V, const Eigen::Vector3d& start);
 
   bool by_position_;
+  std::size_t reach_;
   double effort_per_volt_;
   Eigen::Matrix3d A_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d B_ = Eigen::Vector3d::Zero();

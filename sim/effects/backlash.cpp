@@ -32,7 +32,7 @@ const EffectInfo backlash{
                     .linear_key = "resonance_Hz",
                     .doc = "of both masses in contact",
                     .lower = 5.0,
-                    .upper = 1000.0,
+                    .upper = 300.0,
                     .starts = {60, 150}},
                    {.id = "damping_ratio",
                     .rotary_key = "damping_ratio",

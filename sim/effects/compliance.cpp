@@ -26,7 +26,7 @@ const EffectInfo compliance{
                     .linear_key = "resonance_Hz",
                     .doc = "of both masses on the spring, free to move",
                     .lower = 5.0,
-                    .upper = 1000.0,
+                    .upper = 300.0,
                     .starts = {40, 80, 160}},
                    {.id = "damping_ratio",
                     .rotary_key = "damping_ratio",
