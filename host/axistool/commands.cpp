@@ -15,6 +15,7 @@ void add_all_commands(CLI::App& app) {
   add_identify(app);
   add_friction(app);
   add_design(app);
+  add_compare(app);
   add_effects(app);
   add_demo(app);
   add_flash(app);

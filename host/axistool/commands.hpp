@@ -19,6 +19,7 @@ void add_effects(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_flash(CLI::App& app);
 void add_info(CLI::App& app);
+void add_compare(CLI::App& app);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);

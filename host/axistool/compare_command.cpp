@@ -1,0 +1,93 @@
+// axistool compare: how well a model predicts records, and where it fails.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/axistool/load_records.hpp"
+#include "host/insight/comparison_report.hpp"
+#include "host/insight/model_comparison.hpp"
+#include "host/model/model_file.hpp"
+#include "host/report/terminal.hpp"
+#include "host/report/text_format.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct CompareArguments {
+  std::string model;
+  std::vector<std::string> records;
+  std::string json, report, predictions;
+  double window_s = host::kWindow_s;
+  double fail_above = 0.0;
+};
+
+/// One record keeps the name that was given; of several each gets its number and name: pred.csv -> pred-2-jog.csv.
+std::string predictions_path(const CompareArguments& arguments, std::size_t index) {
+  if (arguments.records.size() == 1) return arguments.predictions;
+  const std::filesystem::path path(arguments.predictions);
+  const std::string stem = std::filesystem::path(arguments.records[index]).stem().string();
+  return (path.parent_path() /
+          fmt::format("{}-{}-{}{}", path.stem().string(), index + 1, stem, path.extension().string()))
+      .string();
+}
+
+void run(const CompareArguments& arguments) {
+  const sim::DriveDescription read = host::read_model(arguments.model);
+  const std::vector<host::Record> records = load_records(arguments.records, read.data);
+  const sim::DriveDescription model = host::with_measured_sensors(read, records);
+  std::vector<const host::Record*> pointers;
+  for (const host::Record& record : records) pointers.push_back(&record);
+  const host::RecordSet set = host::compare_on(pointers, model, arguments.window_s);
+  const host::ModelComparison comparison = host::compare_model(model, records, set, arguments.window_s);
+
+  if (!arguments.predictions.empty()) {
+    for (std::size_t r = 0; r < records.size(); ++r)
+      host::write_file_atomically(predictions_path(arguments, r),
+                                  host::predictions_csv(model, set.records[r].prepared));
+  }
+  if (!arguments.report.empty()) host::comparison_report(model, set, comparison).write(arguments.report);
+  if (!arguments.json.empty()) write_json(host::comparison_json(comparison), arguments.json);
+  if (arguments.json != "-") {
+    const host::Terminal terminal = host::terminal_of(stdout);
+    fmt::print("{}", host::comparison_text(model, comparison, terminal));
+    if (!arguments.report.empty()) fmt::print("\nReport: {}\n", arguments.report);
+  }
+  if (arguments.fail_above > 0.0 && comparison.combined > arguments.fail_above) end_with(host::ExitCode::answer_is_no);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command = app.add_subcommand("compare", "how well a model predicts records, and where it fails");
+  command->add_option("MODEL", arguments->model, "model of the drive (axis-model/1)")->required();
+  command->add_option("RECORD", arguments->records, "records of the drive (axis-record/1)")->required();
+  add_json_option(*command, arguments->json);
+  command->add_option("--report", arguments->report, "write an HTML page with plots to this file");
+  command->add_option("--predictions", arguments->predictions,
+                      "write measured and predicted rows as CSV; with several records one file each: FILE-1-NAME.csv");
+  command
+      ->add_option("--window", arguments->window_s,
+                   "length of a prediction, s; it restarts from the smoothed measured state")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--fail-above", arguments->fail_above,
+                   "exit code 1 where the combined error exceeds this many times the floor")
+      ->check(CLI::PositiveNumber);
+  command->footer(
+      "Examples:\n"
+      "  axistool compare x.toml jog.csv\n"
+      "  axistool compare x.toml steps.csv jog.csv --report compare.html --json compare.json\n"
+      "  axistool compare x.toml validate.csv --fail-above 2      # for scripts\n"
+      "The model predicts from the recorded command alone. The floor is what sensor noise and the uncertainty of the\n"
+      "restart leave; error/floor is about 1 for a perfect model. Log faults (shifted, wrapped, mis-scaled channels)\n"
+      "are listed first: mend them before believing the rest.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,19 @@
+// Channels that were logged early or late, where no lag of the drive or of a sensor explains it.
+#pragma once
+
+#include <optional>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// Whole samples by which the tachometer runs behind (> 0) or ahead of (< 0) the encoder. Empty where there is no
+/// shift, where it is not a whole number of samples, or where a first-order lag fits as well: that is physics.
+std::optional<double> tachometer_shift(const Record& record, const sim::DataSheet& data);
+
+/// Whole samples by which the axis answers before (> 0) or after (< 0) its command, beyond what a drive can: an answer
+/// before the command, or later than the catalogue's dead times. Empty otherwise.
+std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model);
+
+}  // namespace host

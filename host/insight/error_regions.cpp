@@ -1,0 +1,459 @@
+#include "host/insight/error_regions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "host/insight/effort_residual.hpp"
+#include "host/insight/period_search.hpp"
+#include "host/insight/regime.hpp"
+#include "host/report/text_format.hpp"
+
+namespace host {
+
+namespace {
+
+/// One predicted sample: the mean over its channels of (error/floor)^2.
+struct ErrorRow {
+  std::size_t record;
+  std::size_t row;
+  double square;
+};
+
+struct Units {
+  const char* travel;
+  const char* speed;
+  const char* effort;
+};
+
+Units units_of(const sim::DataSheet& data) {
+  return data.kind == sim::DriveKind::rotary ? Units{"mm", "rad/s", "Nm"} : Units{"m", "m/s", "N"};
+}
+
+/// Sums of one region while rows are handed out. Regions keep the order of their rank.
+struct RegionSum {
+  std::string region, words;
+  double squares = 0.0;
+  double weight = 0.0;
+};
+
+class Partition {
+ public:
+  explicit Partition(std::string name) : name_(std::move(name)) {}
+
+  void define(long rank, std::string region, std::string words) {
+    sums_.try_emplace(rank, RegionSum{std::move(region), std::move(words)});
+  }
+  bool has(long rank) const { return sums_.contains(rank); }
+  void add(long rank, double square, double weight = 1.0) {
+    RegionSum& sum = sums_.at(rank);
+    sum.squares += square;
+    sum.weight += weight;
+  }
+
+  void append_to(std::vector<ErrorRegion>& regions) const {
+    double squares = 0.0, weight = 0.0;
+    for (const auto& [rank, sum] : sums_) {
+      squares += sum.squares;
+      weight += sum.weight;
+    }
+    if (!(squares > 0.0)) return;
+    for (const auto& [rank, sum] : sums_) {
+      if (sum.weight <= 0.0) continue;
+      regions.push_back({name_, sum.region, sum.words, sum.squares / squares, sum.weight / weight,
+                         std::sqrt(sum.squares / sum.weight)});
+    }
+  }
+
+ private:
+  std::string name_;
+  std::map<long, RegionSum> sums_;
+};
+
+/// 1, 2 or 5 times a power of ten, so that `span` takes about `count` steps.
+double round_step(double span, double count) {
+  const double raw = span / count;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= raw * 0.999) return factor * power;
+  return 10.0 * power;
+}
+
+std::string number(double value) { return fmt::format("{:.6g}", std::abs(value) < 1e-12 ? 0.0 : value); }
+
+/// Hands a row to its bin of equal width; bins get names with round edges.
+void add_to_bin(Partition& partition, double value, double step, double square,
+                const std::function<std::pair<std::string, std::string>(const std::string&, const std::string&)>& name,
+                long offset = 0) {
+  const long bin = std::lround(std::floor(value / step));
+  if (!partition.has(offset + bin)) {
+    auto [region, words] = name(number(static_cast<double>(bin) * step), number(static_cast<double>(bin + 1) * step));
+    partition.define(offset + bin, std::move(region), std::move(words));
+  }
+  partition.add(offset + bin, square);
+}
+
+std::vector<ErrorRow> rows_of(const sim::Drive& drive, const RecordSet& set) {
+  std::vector<ErrorRow> rows;
+  Prediction prediction;
+  for (std::size_t r = 0; r < set.records.size(); ++r) {
+    const auto& [prepared, floor] = set.records[r];
+    predict(drive, prepared, prediction, set.stride);
+    const double channels = (floor.x.empty() ? 0.0 : 1.0) + (floor.w.empty() ? 0.0 : 1.0);
+    for (std::size_t index = 0; index < prepared.windows.size(); index += set.stride) {
+      const Window& window = prepared.windows[index];
+      for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k) {
+        double square = 0.0;
+        if (!floor.x.empty()) square += std::pow((prediction.x[k] - prepared.record->x[k]) / floor.x[index], 2);
+        if (!floor.w.empty()) square += std::pow((prediction.w[k] - prepared.record->w[k]) / floor.w[index], 2);
+        rows.push_back({r, k, square / channels});
+      }
+    }
+  }
+  return rows;
+}
+
+std::string regime_words(Regime regime, const sim::DataSheet& data) {
+  switch (regime) {
+    case Regime::standstill:
+      return "while the axis stands";
+    case Regime::reversal: {
+      const double micrometres = reversal_travel(data) * (data.kind == sim::DriveKind::rotary ? 1e3 : 1e6);
+      return fmt::format("in the first {:.0f} µm after a reversal", micrometres);
+    }
+    case Regime::low_speed:
+      return "at low speed";
+    case Regime::constant_speed:
+      return "at constant speed";
+    case Regime::acceleration:
+      return "while the axis speeds up";
+    case Regime::braking:
+      return "while the axis brakes";
+    case Regime::saturated_command:
+      return "while the command is at its limit";
+  }
+  return {};
+}
+
+Partition by_regime(const std::vector<ErrorRow>& rows, const RecordSet& set, const sim::DataSheet& data) {
+  Partition partition("regime");
+  std::vector<std::vector<Regime>> regimes;
+  for (const ComparedRecord& compared : set.records) regimes.push_back(regimes_of(compared.prepared, data));
+  for (const Regime regime : kRegimes)
+    partition.define(static_cast<long>(regime), std::string(regime_name(regime)), regime_words(regime, data));
+  for (const ErrorRow& row : rows) partition.add(static_cast<long>(regimes[row.record][row.row]), row.square);
+  return partition;
+}
+
+Partition by_direction(const std::vector<ErrorRow>& rows, const RecordSet& set) {
+  Partition partition("direction");
+  partition.define(0, "forward", "in forward motion");
+  partition.define(1, "backward", "in backward motion");
+  partition.define(2, "standing", "while the axis stands");
+  for (const ErrorRow& row : rows) {
+    const SmoothedMotion& motion = set.records[row.record].prepared.motion();
+    const double w = motion.w[row.row];
+    partition.add(motion.standing[row.row] || w == 0.0 ? 2 : w > 0.0 ? 0 : 1, row.square);
+  }
+  return partition;
+}
+
+Partition by_speed(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
+  Partition partition("speed");
+  double top = 0.0;
+  for (const ComparedRecord& compared : set.records)
+    for (const double w : compared.prepared.motion().w) top = std::max(top, std::abs(w));
+  if (!(top > 0.0)) return partition;
+  const double step = round_step(top, 12.0);
+  for (const ErrorRow& row : rows)
+    add_to_bin(partition, std::abs(set.records[row.record].prepared.motion().w[row.row]), step, row.square,
+               [&](const std::string& from, const std::string& to) {
+                 return std::pair(fmt::format("{}..{} {}", from, to, units.speed),
+                                  fmt::format("at speeds between {} and {} {}", from, to, units.speed));
+               });
+  return partition;
+}
+
+Partition by_position(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
+  Partition partition("position");
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const ComparedRecord& compared : set.records) {
+    if (!compared.prepared.record->has_position()) return partition;
+    const auto [least, most] = std::ranges::minmax_element(compared.prepared.motion().x);
+    low = std::min(low, *least);
+    high = std::max(high, *most);
+  }
+  if (!(high > low)) return partition;
+  const double step = round_step(high - low, 12.0);
+  for (const ErrorRow& row : rows)
+    add_to_bin(partition, set.records[row.record].prepared.motion().x[row.row], step, row.square,
+               [&](const std::string& from, const std::string& to) {
+                 return std::pair(fmt::format("{}..{} {}", from, to, units.travel),
+                                  fmt::format("between x = {} and {} {}", from, to, units.travel));
+               });
+  return partition;
+}
+
+std::string file_name(const PreparedRecord& prepared) {
+  return std::filesystem::path(prepared.record->path).filename().string();
+}
+
+Partition by_time(const std::vector<ErrorRow>& rows, const RecordSet& set) {
+  Partition partition("time");
+  double longest = 0.0;
+  for (const ComparedRecord& compared : set.records)
+    longest = std::max(longest, compared.prepared.record->t_s.back() - compared.prepared.record->t_s.front());
+  const double step = round_step(longest, 12.0);
+  constexpr long kRecordOffset = 1000;
+  for (const ErrorRow& row : rows) {
+    const PreparedRecord& prepared = set.records[row.record].prepared;
+    add_to_bin(
+        partition, prepared.record->t_s[row.row] - prepared.record->t_s.front(), step, row.square,
+        [&](const std::string& from, const std::string& to) {
+          return std::pair(fmt::format("{}..{} s of {}", from, to, file_name(prepared)),
+                           fmt::format("from {} s to {} s after the start of {}", from, to, file_name(prepared)));
+        },
+        kRecordOffset * static_cast<long>(row.record));
+  }
+  return partition;
+}
+
+/// How long the axis had rested before the motion that a row belongs to; only the start of the motion counts.
+Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
+  constexpr double kStart_s = 0.2;  // friction that grew at rest is overcome within this time
+  constexpr double kEdges_s[] = {0.0, 0.1, 0.3, 1.0, 3.0};
+  Partition partition("rest");
+  partition.define(0, "standing", "while the axis stands");
+  partition.define(1, "in motion", "in motion, long after any rest");
+  for (std::size_t edge = 0; edge < std::size(kEdges_s); ++edge) {
+    const std::string span = edge + 1 < std::size(kEdges_s)
+                                 ? fmt::format("{}..{} s", kEdges_s[edge], kEdges_s[edge + 1])
+                                 : fmt::format("more than {} s", kEdges_s[edge]);
+    partition.define(static_cast<long>(2 + edge), "after a rest of " + span, "when it starts after a rest of " + span);
+  }
+  std::vector<std::vector<long>> ranks;
+  for (const ComparedRecord& compared : set.records) {
+    const std::vector<bool>& standing = compared.prepared.motion().standing;
+    std::vector<long>& rank = ranks.emplace_back(standing.size(), 1);
+    double rest_s = 0.0, moved_s = kStart_s;
+    for (std::size_t k = 0; k < standing.size(); ++k) {
+      if (standing[k]) {
+        rest_s = moved_s > 0.0 ? compared.prepared.period_s : rest_s + compared.prepared.period_s;
+        moved_s = 0.0;
+        rank[k] = 0;
+        continue;
+      }
+      moved_s += compared.prepared.period_s;
+      if (rest_s <= 0.0 || moved_s > kStart_s) continue;
+      const auto edge = std::ranges::upper_bound(kEdges_s, rest_s) - std::begin(kEdges_s);
+      rank[k] = 1 + static_cast<long>(edge);
+    }
+  }
+  for (const ErrorRow& row : rows) partition.add(ranks[row.record][row.row], row.square);
+  return partition;
+}
+
+/// The stretch of time that stands out most against the rest: where the sum of what windows exceed twice the mean is
+/// largest (Kadane).
+Partition by_event(const std::vector<ErrorRow>& rows, const RecordSet& set) {
+  Partition partition("event");
+  if (rows.empty()) return partition;
+  double mean = 0.0;
+  for (const ErrorRow& row : rows) mean += row.square / static_cast<double>(rows.size());
+  double sum = 0.0, best = 0.0;
+  std::size_t begin = 0, best_begin = 0, best_end = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (sum <= 0.0 || rows[begin].record != rows[k].record) {
+      sum = 0.0;
+      begin = k;
+    }
+    sum += rows[k].square - 2.0 * mean;
+    if (sum > best) {
+      best = sum;
+      best_begin = begin;
+      best_end = k + 1;
+    }
+  }
+  if (best_end == 0) return partition;
+  const PreparedRecord& prepared = set.records[rows[best_begin].record].prepared;
+  const double from_s = prepared.record->t_s[rows[best_begin].row];
+  const double to_s = prepared.record->t_s[rows[best_end - 1].row];
+  const std::string span = fmt::format("t = {:.2f} s to {:.2f} s of {}", from_s, to_s, file_name(prepared));
+  partition.define(0, span, "from " + span);
+  partition.define(1, "elsewhere", "everywhere but " + span);
+  for (std::size_t k = 0; k < rows.size(); ++k) partition.add(k >= best_begin && k < best_end ? 0 : 1, rows[k].square);
+  return partition;
+}
+
+/// |DFT|^2 of one window's error by bands; by Parseval's theorem the bands' sums are the window's squares.
+Partition by_frequency(const sim::Drive& drive, const RecordSet& set) {
+  constexpr double kEdges_Hz[] = {0.0, 15.0, 35.0, 75.0, 150.0, 300.0};
+  Partition partition("frequency");
+  for (std::size_t band = 0; band < std::size(kEdges_Hz); ++band) {
+    const std::string span = band + 1 < std::size(kEdges_Hz)
+                                 ? fmt::format("{:g}..{:g} Hz", kEdges_Hz[band], kEdges_Hz[band + 1])
+                                 : fmt::format("above {:g} Hz", kEdges_Hz[band]);
+    partition.define(static_cast<long>(band), span, "at frequencies " + span);
+  }
+  Prediction prediction;
+  std::vector<double> error, cosine, sine;
+  for (const auto& [prepared, floor] : set.records) {
+    predict(drive, prepared, prediction, set.stride);
+    for (std::size_t index = 0; index < prepared.windows.size(); index += set.stride) {
+      const Window& window = prepared.windows[index];
+      const std::size_t n = window.length;
+      if (cosine.size() != n) {
+        cosine.resize(n);
+        sine.resize(n);
+        for (std::size_t k = 0; k < n; ++k) {
+          const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
+          cosine[k] = std::cos(angle);
+          sine[k] = std::sin(angle);
+        }
+      }
+      const auto spread = [&](const std::vector<double>& predicted, const std::vector<double>& measured, double unit) {
+        error.resize(n);
+        for (std::size_t k = 0; k < n; ++k)
+          error[k] = (predicted[window.begin + 1 + k] - measured[window.begin + 1 + k]) / unit;
+        for (std::size_t line = 0; line <= n / 2; ++line) {
+          double real = 0.0, imaginary = 0.0;
+          for (std::size_t k = 0, at = 0; k < n; ++k) {
+            real += error[k] * cosine[at];
+            imaginary += error[k] * sine[at];
+            at += line;
+            if (at >= n) at -= n;
+          }
+          const double twice = line == 0 || 2 * line == n ? 1.0 : 2.0;  // the line of the negative frequency
+          const double frequency_Hz = static_cast<double>(line) / (static_cast<double>(n) * prepared.period_s);
+          const auto band = std::ranges::upper_bound(kEdges_Hz, frequency_Hz) - std::begin(kEdges_Hz) - 1;
+          partition.add(static_cast<long>(band), twice * (real * real + imaginary * imaginary) / static_cast<double>(n),
+                        twice);
+        }
+      };
+      if (!floor.x.empty()) spread(prediction.x, prepared.record->x, floor.x[index]);
+      if (!floor.w.empty()) spread(prediction.w, prepared.record->w, floor.w[index]);
+    }
+  }
+  return partition;
+}
+
+/// The strongest periods along the travel in the missing effort, as orders per turn where there is a turn.
+void append_orders(const sim::DriveDescription& model, const RecordSet& set, std::vector<ErrorRegion>& regions) {
+  constexpr std::size_t kMostOrders = 4;
+  constexpr double kLeastShare = 0.02;
+  constexpr double kStepsAPeriod = 40.0;    // periods near the encoder's step are its own
+  constexpr double kPeriodsOfTravel = 3.0;  // fewer are a trend
+  constexpr double kLinesOfTravel = 2000.0;
+  constexpr std::size_t kStride = 2;
+  TravelSignal signal;
+  for (const ComparedRecord& compared : set.records) {
+    if (!compared.prepared.record->has_position()) return;
+    const ResidualSamples samples = residual_samples(model, compared.prepared, kStride);
+    signal.x.insert(signal.x.end(), samples.x.begin(), samples.x.end());
+    signal.value.insert(signal.value.end(), samples.missing.begin(), samples.missing.end());
+  }
+  constexpr std::size_t kFewest = 100;
+  if (signal.x.size() < kFewest) return;
+  signal.weight.assign(signal.x.size(), 1.0);
+  const auto [low, high] = std::ranges::minmax_element(signal.x);
+  const double travel = *high - *low;
+  if (!(travel > 0.0)) return;
+  double square = 0.0;
+  for (const double missing : signal.value) square += missing * missing / static_cast<double>(signal.value.size());
+  if (!(square > 0.0)) return;
+  const double shortest = std::max(kStepsAPeriod * model.data.encoder_resolution, travel / kLinesOfTravel);
+  const double longest = travel / kPeriodsOfTravel;
+  if (!(longest > shortest)) return;
+  const double turn = 2.0 * std::numbers::pi * model.data.lead;
+  double left = 1.0;
+  for (const PeriodPeak& peak : find_periods(signal, shortest, longest, kMostOrders)) {
+    const double share = std::min(peak.share, left);
+    if (share < kLeastShare) continue;
+    left -= share;
+    const bool rotary = model.data.kind == sim::DriveKind::rotary;
+    const std::string region = rotary ? fmt::format("order {:.2f}", turn / peak.period)
+                                      : fmt::format("period {} m", format_value(peak.period, 4));
+    const std::string words = rotary ? fmt::format("{:.2f} times a turn (every {} mm of travel)", turn / peak.period,
+                                                   format_value(peak.period, 4))
+                                     : fmt::format("every {} mm of travel", format_value(1000.0 * peak.period, 4));
+    regions.push_back({"order", region, words, share, 0.0, std::sqrt(share * square)});
+  }
+  regions.push_back(
+      {"order", "not periodic", "without a period along the travel", left, 0.0, std::sqrt(left * square)});
+}
+
+}  // namespace
+
+std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const RecordSet& set) {
+  const sim::Drive drive(model);
+  const Units units = units_of(model.data);
+  const std::vector<ErrorRow> rows = rows_of(drive, set);
+  std::vector<ErrorRegion> regions;
+  by_regime(rows, set, model.data).append_to(regions);
+  by_direction(rows, set).append_to(regions);
+  by_speed(rows, set, units).append_to(regions);
+  by_position(rows, set, units).append_to(regions);
+  append_orders(model, set, regions);
+  by_time(rows, set).append_to(regions);
+  by_rest(rows, set).append_to(regions);
+  by_frequency(drive, set).append_to(regions);
+  by_event(rows, set).append_to(regions);
+  return regions;
+}
+
+const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions) {
+  constexpr double kLeastShare = 0.3;     // of the error beyond the floor: less is not where "it" fails
+  constexpr double kOrderPortion = 0.05;  // a line in a spectrum is about so surprising
+  const ErrorRegion* worst = nullptr;
+  double most = 0.0;
+  for (const ErrorRegion& region : regions) {
+    if (region.partition == "frequency") continue;  // errors grow over a window: most of them are always slow
+    double excess = region.share, portion = kOrderPortion;
+    if (region.partition == "order") {
+      if (region.region == "not periodic") continue;
+    } else {
+      // Beyond the floor: what the squares exceed 1 by, as a part of what they exceed it by everywhere.
+      if (!(region.rms > 1.0) || !(region.share > 0.0)) continue;
+      const double everywhere = region.portion * region.rms * region.rms / region.share;
+      if (everywhere <= 1.0) continue;
+      excess = region.portion * (region.rms * region.rms - 1.0) / (everywhere - 1.0);
+      portion = region.portion;
+    }
+    excess = std::min(excess, 1.0);
+    if (excess < kLeastShare || portion <= 0.0 || portion >= excess) continue;
+    const double surprise = excess * std::log(excess / portion);
+    if (surprise > most) {
+      most = surprise;
+      worst = &region;
+    }
+  }
+  return worst;
+}
+
+std::string where_it_fails(const std::vector<ErrorRegion>& regions) {
+  const ErrorRegion* worst = worst_region(regions);
+  if (worst == nullptr) return "the error is spread evenly: no part of the motion stands out";
+  if (worst->partition == "order")
+    return fmt::format("the missing effort repeats {} ({:.0f} % of its square)", worst->words, 100.0 * worst->share);
+  return fmt::format("the model fails {} ({:.0f} % of the squared error in {:.2g} % of the samples)", worst->words,
+                     100.0 * worst->share, 100.0 * worst->portion);
+}
+
+nlohmann::json error_regions_json(const std::vector<ErrorRegion>& regions) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const ErrorRegion& region : regions) {
+    nlohmann::json row = {
+        {"partition", region.partition}, {"region", region.region}, {"share", region.share}, {"rms", region.rms}};
+    if (region.partition != "order") row["portion"] = region.portion;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace host

@@ -1,0 +1,32 @@
+// Jumps of the position that the drive cannot have made.
+#pragma once
+
+#include <cstddef>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+struct PositionJump {
+  double t_s = 0.0;   ///< of the row after the jump
+  double size = 0.0;  ///< mm or m
+};
+
+struct PositionJumps {
+  std::size_t wraps = 0;  ///< jumps by a power of two of encoder steps, against the motion
+  int wrap_bits = 0;
+  PositionJump first_wrap;
+  std::size_t new_zeros = 0;
+  PositionJump first_new_zero;
+  std::size_t dropped = 0;  ///< samples that are missing or repeated, all together
+  PositionJump first_drop;
+
+  bool none() const { return wraps == 0 && new_zeros == 0 && dropped == 0; }
+};
+
+/// A jump is a step that would take several times the drive's full effort. Needs a position and a model with inertia;
+/// finds none without.
+PositionJumps position_jumps(const Record& record, const sim::DriveDescription& model);
+
+}  // namespace host
