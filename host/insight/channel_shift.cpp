@@ -75,8 +75,9 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
 
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {
   constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
-  constexpr double kFirstAnswer = 0.7;       // samples before the command, beyond what filtering may feign
-  constexpr double kGain = 0.7;              // the squares must fall to this part
+  constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
+  constexpr double kGain = 0.5;              // the squares must fall to this part
+  constexpr double kExplained = 0.002;       // of the effort's square: else friction decides where the optimum lies
   MotionOptions options;
   options.decimation = 1;
   const Motion motion = prepare_motion(record, model.data, options);
@@ -112,7 +113,10 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   const bool too_early = beyond > kFirstAnswer;
   const bool too_late = -*shift * record.sample_period_s > kLatestAnswer_s;
   const auto index = static_cast<std::size_t>(std::lround(*shift) + kMostSamples);
-  if ((!too_early && !too_late) || squares[index] > kGain * squares[kMostSamples]) return {};
+  if (!too_early && !too_late) return {};
+  if (std::abs(*shift - std::round(*shift)) > kWhole || squares[index] > kGain * squares[kMostSamples] ||
+      squares[index] > kExplained)
+    return {};
   return std::round(*shift);
 }
 

@@ -27,7 +27,7 @@ struct LogFault {
   std::string channel;  ///< column in the file
   std::string record;   ///< path
   double t_s = 0.0;     ///< where it shows first
-  double size = 0.0;    ///< of the jump (mm or m), the factor, the shift (s), or the number of samples
+  double size = 0.0;    ///< of the jump, mm or m; times too large; s too late; or number of samples
   std::string message;  ///< what, where, and what mends it
 };
 
