@@ -9,6 +9,14 @@ SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null
 # Configures the build tree $1 with the options $2.
 configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING $2
 
+# Builds the microcontroller's images, then checks and reports their size, stack and symbols.
+define firmware
+cmake -S cmake -B $(BUILD)/firmware -G Ninja --log-level=WARNING \
+  -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/toolchains/arm-none-eabi.cmake
+ninja -C $(BUILD)/firmware -j $(JOBS)
+ninja -C $(BUILD)/firmware image_report
+endef
+
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 
@@ -28,22 +36,17 @@ demo: ## Identify a real record, control both axes in simulation, show the resul
 .PHONY: test
 test: ## Build and run all tests, again with sanitizers, and a short fuzz run of everything that reads files
 	$(NEED) build test firmware
-	$(FIRMWARE)
-	ninja -C $(BUILD)/firmware -j $(JOBS)
+	$(call firmware)
 	$(call configure,$(BUILD),-DAXIS_CHECKED_BUILD=$(abspath $(CHECKED)))
 	ninja -C $(BUILD) -j $(JOBS)
 	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug)
 	ninja -C $(CHECKED) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
-FIRMWARE = cmake -S cmake -B $(BUILD)/firmware -G Ninja --log-level=WARNING \
-           -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/toolchains/arm-none-eabi.cmake
-
 .PHONY: firmware
 firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images), with size and stack report
 	$(NEED) firmware
-	$(FIRMWARE)
-	ninja -C $(BUILD)/firmware -j $(JOBS)
+	$(call firmware)
 
 SCALAR ?= float
 IMAGE_FILE = $(BUILD)/firmware/images/axis-f405$(if $(filter fixed,$(SCALAR)),-fixed).bin

@@ -40,6 +40,7 @@ class Fixed {
 
   constexpr std::int32_t raw() const { return raw_; }
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees a null pointer in the default
   constexpr auto operator<=>(const Fixed&) const = default;
 
   friend constexpr Fixed operator+(Fixed a, Fixed b) { return from_raw(saturating_sum(a.raw_, b.raw_)); }

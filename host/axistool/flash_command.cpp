@@ -1,8 +1,9 @@
 // axistool flash: writes an image onto a board: over USB or a serial port, with or without GPIO lines, or by a probe.
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <system_error>

@@ -22,7 +22,7 @@ class Fault : public testing::Test {
     EXPECT_NE(first.find("reset: power on"), std::string::npos) << first;
     EXPECT_NE(first.find("image: whole"), std::string::npos) << first;
     board.send(letter);
-    const std::string report = board.read_until("ready");
+    std::string report = board.read_until("ready");
     board.send("q");
     EXPECT_EQ(board.wait(), 0);
     return report;

@@ -5,7 +5,14 @@
 
 namespace {
 
-using namespace target_test;
+using target_test::FileLink;
+using target_test::first_difference;
+using target_test::hash;
+using target_test::obstacle;
+using target_test::Replies;
+using target_test::run_on_host;
+using target_test::run_over;
+using target_test::SerialLink;
 
 template <typename Scalar>
 void expect_equal_over_files(const std::string& image_name) {

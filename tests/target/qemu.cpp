@@ -2,11 +2,11 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <stdexcept>
 #include <thread>
@@ -95,7 +95,7 @@ std::string Qemu::read_until(const std::string& text, std::chrono::seconds limit
   for (;;) {
     const std::size_t found = output_.find(text, consumed_);
     if (found != std::string::npos) {
-      const std::string result = output_.substr(consumed_, found + text.size() - consumed_);
+      std::string result = output_.substr(consumed_, found + text.size() - consumed_);
       consumed_ = found + text.size();
       return result;
     }

@@ -21,7 +21,8 @@ using Converter = hal::Ad5752<hal::stm32f4::SpiPort>;
 class BoardAxisHal {
  public:
   BoardAxisHal(hal::stm32f4::Timer& timer, const hal::stm32f4::TachometerSamples& samples, std::uint32_t channel,
-               Converter::Channel& dac, hal::stm32f4::DriveLines lines, hal::stm32f4::SwitchInputs switches)
+               Converter::Channel& dac, const hal::stm32f4::DriveLines& lines,
+               const hal::stm32f4::SwitchInputs& switches)
       : encoder_(timer), tachometer_(samples, channel), dac_(dac), lines_(lines), switches_(switches) {}
 
   void start() {

@@ -11,11 +11,11 @@ class ValueAxis {
  public:
   struct Encoder {
     hal::EncoderReading reading;
-    hal::EncoderReading read() { return reading; }
+    hal::EncoderReading read() const { return reading; }
   };
   struct Tachometer {
     hal::TachometerReading reading;
-    hal::TachometerReading read() { return reading; }
+    hal::TachometerReading read() const { return reading; }
   };
   struct Dac {
     std::int32_t code = 0;

@@ -15,7 +15,26 @@
 
 namespace {
 
-using namespace hal::stm32f4;
+using hal::stm32f4::DriveLines;
+using hal::stm32f4::EncoderTimer;
+using hal::stm32f4::FlashInterface;
+using hal::stm32f4::Gpio;
+using hal::stm32f4::IndependentWatchdog;
+using hal::stm32f4::kSystemClock_Hz;
+using hal::stm32f4::ParameterFlash;
+using hal::stm32f4::Pin;
+using hal::stm32f4::Power;
+using hal::stm32f4::Rcc;
+using hal::stm32f4::Spi;
+using hal::stm32f4::SpiPort;
+using hal::stm32f4::start_clocks;
+using hal::stm32f4::StopInput;
+using hal::stm32f4::TachometerChannel;
+using hal::stm32f4::TachometerSamples;
+using hal::stm32f4::Timer;
+using hal::stm32f4::Usart;
+using hal::stm32f4::UsartPort;
+using hal::stm32f4::Watchdog;
 
 TEST(EncoderTimer, CountsEveryEdgeInBothDirectionsOver32Bits) {
   Timer timer{};

@@ -8,7 +8,8 @@
 
 namespace {
 
-using namespace target_test;
+using target_test::count_instructions;
+using target_test::obstacle;
 
 constexpr double kClock_Hz = 168e6;
 constexpr double kFastest_Hz = 20e3;

@@ -11,7 +11,14 @@
 
 namespace {
 
-using namespace target_test;
+using target_test::FileLink;
+using target_test::first_difference;
+using target_test::hash;
+using target_test::obstacle;
+using target_test::Replies;
+using target_test::run_on_host;
+using target_test::run_over;
+using target_test::SerialLink;
 
 bool all_equal = true;
 
