@@ -268,8 +268,8 @@ double Drive::sliding_effort(DriveState& state, double effort, double t_s) const
 
 void Drive::observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const {
   // An alpha-beta tracker: the motor is drawn towards its measured travel as by a spring and a damper, which cannot
-  // excite the second mass. Alpha 0.3 averages the travel over some three samples.
-  constexpr double kAlpha = 0.3;
+  // excite the second mass. Alpha 0.15 averages the travel over some seven samples.
+  constexpr double kAlpha = 0.15;
   constexpr double kBeta = kAlpha * kAlpha / (2.0 - kAlpha);
   step(state, u_V, t_s, duration_s);
   const double off = x1 - state.x;

@@ -22,9 +22,9 @@ constexpr double kOutOfSight = 2.0;
 /// Two starts of one effect are both pursued while their errors are so close.
 constexpr double kOpenRace = 1.25;
 
-constexpr FitOptions kFirstLook{.most_iterations = 8, .least_gain = 1e-3};
-constexpr FitOptions kSeriousFit{.most_iterations = 15, .least_gain = 2e-4};
-constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 1e-5};
+constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3};
+constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4};
+constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5};
 
 /// The set with about so many windows in use, evenly spread over the records.
 RecordSet thinned(const RecordSet& set, std::size_t windows) {
@@ -37,8 +37,31 @@ RecordSet thinned(const RecordSet& set, std::size_t windows) {
 struct Start {
   const sim::EffectInfo* info;
   sim::DriveDescription model;
-  double error = HUGE_VAL;
+  double error = HUGE_VAL;  ///< what is left of the base's error
 };
+
+/// Floors suit the model that they are propagated through. Motion on a contact (bristles, a second mass, a gap) spreads
+/// a restart's uncertainty in ways of its own: such a candidate is compared with the base on floors of its own model.
+bool needs_own_floors(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return drive.has_second_mass() || drive.bristles.has_value();
+}
+
+/// Fits a start on a set and notes what is left of the base's error there.
+void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
+               const FitOptions& options) {
+  if (!needs_own_floors(start.model) || needs_own_floors(base)) {
+    const FitResult fit = fit_model(start.model, shared, options);
+    start.model = fit.model;
+    start.error = fit.robust / base_error;
+    return;
+  }
+  RecordSet own = shared;
+  renew_floors(own, start.model);
+  const FitResult fit = fit_model(start.model, own, options);
+  start.model = fit.model;
+  start.error = fit.robust / error_of(sim::Drive(base), own).robust;
+}
 
 }  // namespace
 
@@ -54,24 +77,66 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
   const RecordSet thin = thinned(training, SearchEffort{}.medium_windows);
   std::vector<FitResult> results(starts.size());
   for_each_in_parallel(starts.size(), [&](std::size_t k) { results[k] = fit_model(starts[k], thin, kSeriousFit); });
-  const FitResult& best = *std::ranges::min_element(results, {}, &FitResult::combined);
+  const FitResult& best = *std::ranges::min_element(results, {}, &FitResult::robust);
   return fit_model(best.model, training, kLastWord).model;
 }
 
-Candidate refine_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation) {
-  const FitResult fit = fit_model(candidate.model, training, kLastWord);
-  return {candidate.kinds, fit.model, fit.combined, error_of(sim::Drive(fit.model), validation)};
+Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
+                 const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation) {
+  Candidate candidate{kinds, model, {}, {}, HUGE_VAL};
+  const sim::Drive drive(model), without(base);
+  candidate.training = error_of(drive, training);
+  candidate.validation = error_of(drive, validation);
+  if (!needs_own_floors(model) || needs_own_floors(base)) {
+    candidate.left = candidate.training.robust * candidate.validation.robust /
+                     (error_of(without, training).robust * error_of(without, validation).robust);
+    return candidate;
+  }
+  candidate.left = 1.0;
+  for (const RecordSet* shared : {&training, &validation}) {
+    RecordSet own = *shared;
+    renew_floors(own, model);
+    candidate.left *= error_of(drive, own).robust / error_of(without, own).robust;
+  }
+  return candidate;
 }
+
+namespace {
+
+/// Fits the last effect again from both sides of each of its parameters: an effect that acts at breakaway or on impact
+/// leaves valleys side by side.
+sim::DriveDescription shaken(const sim::DriveDescription& model, const RecordSet& set) {
+  std::vector<sim::DriveDescription> starts{model};
+  for (const auto& [id, value] : model.effects.back().parameters) {
+    for (const double factor : {0.55, 1.8}) {
+      const sim::ParameterInfo& info = *sim::find_effect(model.effects.back().kind)->parameter(id);
+      if (id == "period" || id == "cosine" || id == "sine") continue;  // the spectrum has found these
+      starts.push_back(model);
+      starts.back().effects.back().parameters[id] = std::clamp(factor * value, info.lower, info.upper);
+    }
+  }
+  std::vector<FitResult> fits(starts.size());
+  for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], set, kSeriousFit); });
+  return std::ranges::min_element(fits, {}, &FitResult::robust)->model;
+}
+
+}  // namespace
 
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
                                          const Progress& progress, const SearchEffort& effort) {
-  const RecordSet coarse = thinned(training, effort.coarse_windows);
-  const RecordSet medium = thinned(training, effort.medium_windows);
   std::vector<const sim::EffectInfo*> infos;
   for (const sim::EffectInfo* info : sim::catalogue())
     if (is_applicable(*info, model, training)) infos.push_back(info);
+  return search_kinds(infos, model, kinds, training, validation, progress, effort);
+}
 
+std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
+                                    const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                    const RecordSet& training, const RecordSet& validation, const Progress& progress,
+                                    const SearchEffort& effort) {
+  const RecordSet coarse = thinned(training, effort.coarse_windows);
+  const RecordSet medium = thinned(training, effort.medium_windows);
   std::vector<std::vector<Start>> starts_of(infos.size());
   for_each_in_parallel(infos.size(), [&](std::size_t k) {
     for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
@@ -81,53 +146,46 @@ std::vector<Candidate> search_candidates(const sim::DriveDescription& model, con
   for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));
 
   std::atomic<std::size_t> done{0};
-  const double most = static_cast<double>(starts.size() + 2 * infos.size() + effort.finalists);
-  const auto report = [&](std::size_t weight = 1) {
-    done += weight;
-    if (progress) progress(std::min(1.0, static_cast<double>(done) / most));
+  const double most = static_cast<double>(starts.size() + infos.size());
+  const auto report = [&] {
+    if (progress) progress(std::min(1.0, static_cast<double>(++done) / most));
   };
-  for_each_in_parallel(starts.size(), [&](std::size_t k) {
-    const FitResult fit = fit_model(starts[k].model, coarse, kFirstLook);
-    starts[k].model = fit.model;
-    starts[k].error = fit.combined;
-    report();
-  });
-  // The base gets the same chance to suit these few windows as the candidates had.
-  const double base_error = fit_model(model, coarse, kFirstLook).combined;
-  std::ranges::stable_sort(starts, {}, &Start::error);
+  const auto fit_all = [&](std::vector<Start>& list, const RecordSet& set, const FitOptions& options) {
+    // The base gets the same chance to suit these few windows as the candidates have.
+    const double base_error = fit_model(model, set, options).robust;
+    for_each_in_parallel(list.size(), [&](std::size_t k) {
+      fit_start(list[k], model, set, base_error, options);
+      report();
+    });
+    std::ranges::stable_sort(list, {}, &Start::error);
+  };
+  fit_all(starts, coarse, kFirstLook);
   std::vector<Start> race;
   for (const Start& start : starts) {
     const bool far_behind = start.error > kOutOfSight * starts.front().error && race.size() >= effort.finalists;
-    if (start.error > kPromise * base_error || far_behind) continue;
+    if (start.error > kPromise || far_behind) continue;
     const auto rivals = std::ranges::count(race, start.info, &Start::info);
     const auto leader = std::ranges::find(race, start.info, &Start::info);
     if (rivals == 0 || (rivals == 1 && start.error < kOpenRace * leader->error)) race.push_back(start);
   }
-  for_each_in_parallel(race.size(), [&](std::size_t k) {
-    const FitResult fit = fit_model(race[k].model, medium, kSeriousFit);
-    race[k].model = fit.model;
-    race[k].error = fit.combined;
-    report();
-  });
-  std::ranges::stable_sort(race, {}, &Start::error);
+  fit_all(race, medium, kSeriousFit);
   std::vector<Start> finalists;
   for (const Start& start : race)
     if (std::ranges::find(finalists, start.info, &Start::info) == finalists.end()) finalists.push_back(start);
 
   std::vector<Candidate> candidates(finalists.size());
+  if (!finalists.empty()) {
+    RecordSet own = medium;
+    if (needs_own_floors(finalists.front().model)) renew_floors(own, finalists.front().model);
+    finalists.front().model = shaken(finalists.front().model, own);
+  }
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
-    candidates[k].kinds = kinds;
-    candidates[k].kinds.emplace_back(finalists[k].info->kind);
-    candidates[k].model = finalists[k].model;
-    candidates[k].train = finalists[k].error;
-    if (k < effort.finalists) {
-      candidates[k] = refine_candidate(candidates[k], training, validation);
-    } else {
-      candidates[k].validation = error_of(sim::Drive(candidates[k].model), validation);
-    }
-    report();
+    std::vector<std::string> all = kinds;
+    all.emplace_back(finalists[k].info->kind);
+    if (k < effort.finalists) fit_start(finalists[k], model, training, 1.0, kLastWord);
+    candidates[k] = judged(all, finalists[k].model, model, training, validation);
   });
-  std::ranges::stable_sort(candidates, {}, [](const Candidate& candidate) { return candidate.validation.combined; });
+  std::ranges::stable_sort(candidates, {}, &Candidate::left);
   return candidates;
 }
 

@@ -36,6 +36,9 @@ void for_each_window(const sim::Drive& drive, const RecordSet& set, Use use) {
   }
 }
 
+/// Squared error of a window over its floor squared, as a fit weighs it.
+double weighed(double square) { return kCommonSquare * std::log1p(square / kCommonSquare); }
+
 double mean_square(const std::vector<double>& predicted, const std::vector<double>& measured, const Window& window) {
   double sum = 0.0;
   for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
@@ -47,7 +50,7 @@ double mean_square(const std::vector<double>& predicted, const std::vector<doubl
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   SetError error;
-  double x_sum = 0.0, w_sum = 0.0, x_floor = 0.0, w_floor = 0.0, combined = 0.0;
+  double x_sum = 0.0, w_sum = 0.0, x_floor = 0.0, w_floor = 0.0, combined = 0.0, robust = 0.0;
   std::size_t x_count = 0, w_count = 0;
   for_each_window(drive, set, [&](std::size_t r, std::size_t index, const Prediction& prediction) {
     const auto& [prepared, floor] = set.records[r];
@@ -68,6 +71,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
       ++w_count;
     }
     combined += score.x + score.w;
+    robust += weighed(score.x) + weighed(score.w);
     error.windows.push_back(score);
   });
   const auto root_mean = [](double sum, std::size_t count) {
@@ -75,6 +79,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
     return std::isfinite(mean) ? std::sqrt(mean) : HUGE_VAL;  // a model that runs away is as bad as can be
   };
   error.combined = root_mean(combined, x_count + w_count);
+  error.robust = root_mean(robust, x_count + w_count);
   error.x_rms = root_mean(x_sum, x_count);
   error.w_rms = root_mean(w_sum, w_count);
   error.x_floor = root_mean(x_floor, x_count);
@@ -104,8 +109,10 @@ void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out) {
     const double share = 1.0 / std::sqrt(channels * static_cast<double>(window.length));
     const auto append = [&](const std::vector<double>& predicted, const std::vector<double>& measured,
                             double deviation) {
+      const double square = mean_square(predicted, measured, window) / (deviation * deviation);
+      const double scale = share / deviation * (square > 0.0 ? std::sqrt(weighed(square) / square) : 1.0);
       for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
-        *out++ = (predicted[k] - measured[k]) * share / deviation;
+        *out++ = (predicted[k] - measured[k]) * scale;
     };
     if (!floor.x.empty()) append(prediction.x, prepared.record->x, floor.x[index]);
     if (!floor.w.empty()) append(prediction.w, prepared.record->w, floor.w[index]);

@@ -38,9 +38,14 @@ struct WindowScore {
   double w = 0.0;
 };
 
+/// Squared error over floor squared up to which a window counts in full in a fit, three floors. One impact or breakaway
+/// that comes a moment late must not outweigh all windows that fit.
+inline constexpr double kCommonSquare = 9.0;
+
 /// RMS errors of a model on a set.
 struct SetError {
   double combined = 0.0;  ///< RMS over windows and channels of error/floor; about 1 for a perfect model
+  double robust = 0.0;    ///< the same with windows beyond the common weighed by the logarithm: what a fit minimises
   double x_rms = 0.0;     ///< mm or m
   double w_rms = 0.0;     ///< rad/s or m/s
   double x_floor = 0.0;   ///< RMS of the windows' floors
@@ -50,7 +55,7 @@ struct SetError {
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set);
 
-/// Residuals (prediction - measurement)/floor of every used row, scaled so that their squares sum to combined^2.
+/// Residuals (prediction - measurement)/floor of every used row, scaled so that their squares sum to robust^2.
 std::size_t residual_count(const RecordSet& set);
 void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out);
 

@@ -91,9 +91,62 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   for (Eigen::Index k = 0; k < scaled.size(); ++k)
     values(k) = scaled(k) * vector.parameters()[static_cast<std::size_t>(k)].scale;
   vector.write(values, result.model);
-  result.combined = summary.IsSolutionUsable() ? std::sqrt(2.0 * summary.final_cost) : HUGE_VAL;
+  result.robust = summary.IsSolutionUsable() ? std::sqrt(2.0 * summary.final_cost) : HUGE_VAL;
   result.iterations = static_cast<int>(summary.iterations.size());
   return result;
+}
+
+std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, const RecordSet& training) {
+  const ParameterVector vector(model);
+  const auto columns = static_cast<Eigen::Index>(vector.size());
+  const WindowResiduals residuals(model, vector, training);
+  const auto rows = static_cast<Eigen::Index>(residual_count(training));
+  Eigen::VectorXd values = vector.read(model), scaled(columns), here(rows);
+  for (Eigen::Index k = 0; k < columns; ++k)
+    scaled(k) = values(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
+  const double* parameters = scaled.data();
+  double* slopes = jacobian.data();
+  std::vector<ParameterEstimate> estimates;
+  if (!residuals.Evaluate(&parameters, here.data(), &slopes)) return estimates;
+
+  // Cluster-robust: residuals of one window of one channel are alike, those of different windows are not.
+  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(columns, columns);
+  Eigen::Index row = 0;
+  for (const ComparedRecord& compared : training.records) {
+    const Eigen::Index channels = (compared.floor.x.empty() ? 0 : 1) + (compared.floor.w.empty() ? 0 : 1);
+    for (std::size_t index = 0; index < compared.prepared.windows.size(); index += training.stride) {
+      const auto length = channels * static_cast<Eigen::Index>(compared.prepared.windows[index].length);
+      const Eigen::VectorXd score = jacobian.middleRows(row, length).transpose() * here.segment(row, length);
+      meat += score * score.transpose();
+      row += length;
+    }
+  }
+  const Eigen::MatrixXd bread = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd covariance = bread * meat * bread;
+  constexpr double kNormal95 = 1.96;
+  constexpr double kNearlyOne = 0.95;
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(k)];
+    ParameterEstimate estimate{
+        free.name(model), values(k), free.scale * std::sqrt(std::max(0.0, covariance(k, k))), true, {}, 0.0};
+    for (Eigen::Index other = 0; other < columns; ++other) {
+      const double product = covariance(k, k) * covariance(other, other);
+      const double correlation = other == k || product <= 0.0 ? 0.0 : covariance(k, other) / std::sqrt(product);
+      if (std::abs(correlation) > std::max(kNearlyOne, std::abs(estimate.correlation))) {
+        estimate.correlation = correlation;
+        estimate.correlated_with = vector.parameters()[static_cast<std::size_t>(other)].name(model);
+      }
+    }
+    estimate.determined = kNormal95 * estimate.deviation < std::abs(estimate.value) && estimate.deviation > 0.0;
+    const double reach = kNormal95 * estimate.deviation;
+    for (const auto& [id, sign] : free.entries) {
+      const double value = sign * estimate.value;
+      model.effects[free.effect].ci95[id] = {value - reach, value + reach};
+    }
+    estimates.push_back(std::move(estimate));
+  }
+  return estimates;
 }
 
 }  // namespace host

@@ -17,7 +17,7 @@ struct FitOptions {
 
 struct FitResult {
   sim::DriveDescription model;
-  double combined = 0.0;  ///< of the training set, at the solution
+  double robust = 0.0;  ///< SetError::robust of the training set at the solution
   int iterations = 0;
 };
 

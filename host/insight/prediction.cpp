@@ -52,7 +52,7 @@ class Restarts {
   sim::DriveState at(std::size_t row) {
     if (memory_ == 0 && !shifts_) return drive_.at(motion_.x[row], motion_.w[row]);
     // Rows further back than the drive remembers need not be gone through.
-    const std::size_t needed = row - std::min(row, memory_ + (shifts_ ? prepared_.smoother.reach() : 0));
+    const std::size_t needed = row - std::min(row, rows_back(row) + (shifts_ ? prepared_.smoother.reach() : 0));
     if (!begun_ || needed > row_) {
       state_ = drive_.at(motion_.x[needed], motion_.w[needed]);
       row_ = needed;
@@ -65,6 +65,14 @@ class Restarts {
   }
 
  private:
+  /// Rest keeps what the motion before it has left: where a second mass stands in its gap, how a bristle is bent.
+  std::size_t rows_back(std::size_t row) const {
+    if (memory_ == 0) return 0;
+    std::size_t back = std::min(row, memory_);
+    while (back < row && motion_.standing[row - back]) ++back;
+    return std::min(row, back + memory_);
+  }
+
   double follow(sim::DriveState& state, std::size_t row) const {
     return drive_.follow(state, prepared_.u_V[row], motion_.x[row + 1], motion_.w[row + 1], prepared_.record->t_s[row],
                          prepared_.period_s);

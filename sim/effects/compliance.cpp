@@ -27,7 +27,7 @@ const EffectInfo compliance{
                     .doc = "of both masses on the spring, free to move",
                     .lower = 5.0,
                     .upper = 300.0,
-                    .starts = {40, 80, 160}},
+                    .starts = {50.0, 130.0}},
                    {.id = "damping_ratio",
                     .rotary_key = "damping_ratio",
                     .linear_key = "damping_ratio",

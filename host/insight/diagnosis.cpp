@@ -1,0 +1,170 @@
+#include "host/insight/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/insight/chance.hpp"
+#include "host/insight/model_fit.hpp"
+#include "host/insight/verdict.hpp"
+#include "host/record/columns.hpp"
+
+namespace host {
+
+namespace {
+
+/// Blocks of this length alternate between training and validation where no validation record is given, s.
+constexpr double kBlock_s = 2.0;
+/// Every so many-th block is kept back.
+constexpr std::size_t kKeptBack = 4;
+
+/// Splits the windows of a set into training and validation blocks.
+void hold_back(RecordSet& training, RecordSet& validation) {
+  validation = training;
+  for (std::size_t r = 0; r < training.records.size(); ++r) {
+    PreparedRecord& kept = training.records[r].prepared;
+    PreparedRecord& back = validation.records[r].prepared;
+    const std::vector<Window> all = kept.windows;
+    kept.windows.clear();
+    back.windows.clear();
+    for (const Window& window : all) {
+      const double t_s = static_cast<double>(window.begin) * kept.period_s;
+      const bool held = static_cast<std::size_t>(t_s / kBlock_s) % kKeptBack == kKeptBack - 1;
+      (held ? back : kept).windows.push_back(window);
+    }
+  }
+}
+
+ChannelError channel_error(std::string name, bool position, const SetError& before_train,
+                           const SetError& before_validate, const SetError& after_train,
+                           const SetError& after_validate) {
+  const auto rms = [position](const SetError& error) { return position ? error.x_rms : error.w_rms; };
+  const auto floor = [position](const SetError& error) { return position ? error.x_floor : error.w_floor; };
+  return {std::move(name),     rms(before_train),  rms(before_validate), rms(after_train),
+          rms(after_validate), floor(after_train), floor(after_validate)};
+}
+
+}  // namespace
+
+JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
+                                const SetError& before) {
+  const sim::Drive drive(candidate.model);
+  const SetError after = error_of(drive, validation);
+  return {candidate.kinds,
+          before.combined,
+          after.combined,
+          error_of(drive, training).combined,
+          confidence_of_improvement(before, after),
+          candidate.model};
+}
+
+namespace {
+
+/// Splits one progress into parts that follow one another.
+Progress part(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [progress, from, to](double share) { progress(from + share * (to - from)); };
+}
+
+/// Excitation below which nothing can be said: the axis must move for a second in all, in five windows at least.
+bool moves_enough(const RecordSet& set) {
+  double moving_s = 0.0;
+  for (const ComparedRecord& compared : set.records) {
+    const SmoothedMotion& motion = compared.prepared.motion();
+    double top = 0.0;
+    for (const double w : motion.w) top = std::max(top, std::abs(w));
+    for (std::size_t k = 0; k < motion.w.size(); ++k)
+      if (!motion.standing[k] && std::abs(motion.w[k]) > 0.05 * top) moving_s += compared.prepared.period_s;
+  }
+  constexpr double kShortestMotion_s = 1.0;
+  return moving_s >= kShortestMotion_s;
+}
+
+}  // namespace
+
+Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                       const std::vector<const Record*>& validation) {
+  Diagnosis result;
+  result.held_back = validation.empty();
+  result.training = compare_on(training, model);
+  if (validation.empty()) {
+    hold_back(result.training, result.validation);
+  } else {
+    result.validation = compare_on(validation, model);
+  }
+  result.base = result.best = model;
+  if (!moves_enough(result.training)) return result;
+  result.base = fit_base(model, result.training);
+  renew_floors(result.training, result.base);
+  renew_floors(result.validation, result.base);
+  return result;
+}
+
+Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                   const std::vector<const Record*>& validation, const Progress& progress) {
+  Diagnosis result = prepare_sets(model, training, validation);
+  const sim::Drive given(model);
+  if (!moves_enough(result.training)) {
+    result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
+    result.given_validate = result.before_validate = result.after_validate =
+        error_of(given, result.validation).combined;
+    result.verdict = insufficient_data(model);
+    return result;
+  }
+  if (progress) progress(0.05);
+  const auto renew = [&](const sim::DriveDescription& reference) {
+    renew_floors(result.training, reference);
+    renew_floors(result.validation, reference);
+  };
+
+  std::vector<Candidate> singles =
+      search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5));
+  std::vector<Candidate> pairs;
+  if (!singles.empty()) {
+    renew(singles.front().model);
+    const double left = error_of(sim::Drive(singles.front().model), result.validation).combined;
+    if (left > kExplained) {
+      pairs = search_candidates(singles.front().model, singles.front().kinds, result.training, result.validation,
+                                part(progress, 0.5, 0.95));
+      if (!pairs.empty()) renew(pairs.front().model);
+    }
+  }
+
+  const SetError before = error_of(sim::Drive(result.base), result.validation);
+  for (const std::vector<Candidate>* list : {&singles, &pairs})
+    for (const Candidate& candidate : *list)
+      result.candidates.push_back(judge_candidate(candidate, result.training, result.validation, before));
+  std::ranges::stable_sort(result.candidates, {}, &JudgedCandidate::after);
+  result.before_train = error_of(sim::Drive(result.base), result.training).combined;
+  result.before_validate = before.combined;
+  result.given_train = error_of(given, result.training).combined;
+  result.given_validate = error_of(given, result.validation).combined;
+  result.verdict = reach_verdict(model, result);
+  result.best = result.base;
+  for (const JudgedCandidate& candidate : result.candidates)
+    if (std::ranges::is_permutation(candidate.kinds, result.verdict.effects)) result.best = candidate.model;
+  if (result.verdict.status == Status::ambiguous) {
+    for (const JudgedCandidate& candidate : result.candidates)
+      if (candidate.kinds.size() == 1 && candidate.kinds.front() == result.verdict.effects.front())
+        result.best = candidate.model;
+  }
+
+  const SetError before_train = error_of(sim::Drive(result.base), result.training);
+  const SetError after_train = error_of(sim::Drive(result.best), result.training);
+  const SetError after = error_of(sim::Drive(result.best), result.validation);
+  result.after_train = after_train.combined;
+  result.after_validate = after.combined;
+  const Record& first = *training.front();
+  if (first.has_position())
+    result.channels.push_back(channel_error(std::string(column_name(&Record::x, model.data.kind)), true, before_train,
+                                            before, after_train, after));
+  if (first.has_speed())
+    result.channels.push_back(channel_error(std::string(column_name(&Record::w, model.data.kind)), false, before_train,
+                                            before, after_train, after));
+  if (progress) progress(1.0);
+  return result;
+}
+
+}  // namespace host
