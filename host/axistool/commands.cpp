@@ -16,6 +16,9 @@ void add_all_commands(CLI::App& app) {
   add_friction(app);
   add_design(app);
   add_compare(app);
+  add_diagnose(app);
+  add_add(app);
+  add_improve(app);
   add_effects(app);
   add_demo(app);
   add_flash(app);

@@ -20,6 +20,9 @@ void add_demo(CLI::App& app);
 void add_flash(CLI::App& app);
 void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_diagnose(CLI::App& app);
+void add_improve(CLI::App& app);
+void add_add(CLI::App& app);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);

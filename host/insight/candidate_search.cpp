@@ -124,7 +124,7 @@ sim::DriveDescription shaken(const sim::DriveDescription& model, const RecordSet
 
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
-                                         const Progress& progress, const SearchEffort& effort) {
+                                         const ShareDone& progress, const SearchEffort& effort) {
   std::vector<const sim::EffectInfo*> infos;
   for (const sim::EffectInfo* info : sim::catalogue())
     if (is_applicable(*info, model, training)) infos.push_back(info);
@@ -133,7 +133,7 @@ std::vector<Candidate> search_candidates(const sim::DriveDescription& model, con
 
 std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
                                     const sim::DriveDescription& model, const std::vector<std::string>& kinds,
-                                    const RecordSet& training, const RecordSet& validation, const Progress& progress,
+                                    const RecordSet& training, const RecordSet& validation, const ShareDone& progress,
                                     const SearchEffort& effort) {
   const RecordSet coarse = thinned(training, effort.coarse_windows);
   const RecordSet medium = thinned(training, effort.medium_windows);

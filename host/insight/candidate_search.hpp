@@ -22,7 +22,7 @@ struct Candidate {
 };
 
 /// Called with the share of the work that is done, 0..1, from any thread.
-using Progress = std::function<void(double)>;
+using ShareDone = std::function<void(double)>;
 
 /// Windows for a first look, for a serious fit and for the last word.
 struct SearchEffort {
@@ -35,13 +35,13 @@ struct SearchEffort {
 /// promise nothing on a few windows are not fitted further. Sorted by what they leave, best first.
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
-                                         const Progress& progress = {}, const SearchEffort& effort = {});
+                                         const ShareDone& progress = {}, const SearchEffort& effort = {});
 
 /// The same for some effects only; each must be applicable.
 std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
                                     const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                     const RecordSet& training, const RecordSet& validation,
-                                    const Progress& progress = {}, const SearchEffort& effort = {});
+                                    const ShareDone& progress = {}, const SearchEffort& effort = {});
 
 /// A model measured on both sets as it stands, against the base that it extends.
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,

@@ -63,7 +63,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
 namespace {
 
 /// Splits one progress into parts that follow one another.
-Progress part(const Progress& progress, double from, double to) {
+ShareDone part(const ShareDone& progress, double from, double to) {
   if (!progress) return {};
   return [progress, from, to](double share) { progress(from + share * (to - from)); };
 }
@@ -103,7 +103,7 @@ Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<con
 }
 
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const Progress& progress) {
+                   const std::vector<const Record*>& validation, const ShareDone& progress) {
   Diagnosis result = prepare_sets(model, training, validation);
   const sim::Drive given(model);
   if (!moves_enough(result.training)) {

@@ -65,6 +65,6 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
 
 /// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const Progress& progress = {});
+                   const std::vector<const Record*>& validation, const ShareDone& progress = {});
 
 }  // namespace host

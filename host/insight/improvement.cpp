@@ -39,7 +39,7 @@ std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const 
 }
 
 Improvement improve(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                    const std::vector<const Record*>& validation, const Progress& progress) {
+                    const std::vector<const Record*>& validation, const ShareDone& progress) {
   Improvement result;
   sim::DriveDescription current = model;
   for (int step = 0; step < kMostRungs; ++step) {

@@ -26,7 +26,7 @@ struct Improvement {
 
 /// Never adds what does not replicate on validation data. Throws as diagnose() does.
 Improvement improve(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                    const std::vector<const Record*>& validation, const Progress& progress = {});
+                    const std::vector<const Record*>& validation, const ShareDone& progress = {});
 
 /// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.

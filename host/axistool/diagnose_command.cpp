@@ -1,0 +1,70 @@
+// axistool diagnose: which physical effect is missing from a model.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/insight_arguments.hpp"
+#include "host/insight/diagnosis_json.hpp"
+#include "host/insight/verdict.hpp"
+#include "host/report/insight_report.hpp"
+
+namespace axistool {
+
+namespace {
+
+void print(const host::Diagnosis& diagnosis) {
+  const host::DiagnosisVerdict& verdict = diagnosis.verdict;
+  fmt::print("Verdict: {}{}{}\n  {}\n", host::status_name(verdict.status), verdict.effects.empty() ? "" : ": ",
+             fmt::join(verdict.effects, verdict.status == host::Status::ambiguous ? " or " : " + "),
+             verdict.explanation);
+  if (!verdict.parameters.empty())
+    fmt::print("  Base parameters that were off: {}\n", fmt::join(verdict.parameters, ", "));
+  fmt::print("  Next: {}\n\n", verdict.next_experiment);
+  if (diagnosis.held_back) fmt::print("No --validate: every fourth block of 2 s of the training data was kept back.\n");
+  fmt::print("Error over floor (1 is perfect)      train  validation\n");
+  fmt::print("  model as given                {:10.3f} {:10.3f}\n", diagnosis.given_train, diagnosis.given_validate);
+  fmt::print("  base parameters re-fitted     {:10.3f} {:10.3f}\n", diagnosis.before_train, diagnosis.before_validate);
+  fmt::print("  with the effects above        {:10.3f} {:10.3f}\n\n", diagnosis.after_train, diagnosis.after_validate);
+  for (const host::ChannelError& channel : diagnosis.channels)
+    fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g}, floor {:.4g}\n", channel.name, channel.before_validate,
+               channel.after_validate, channel.floor_validate);
+  if (diagnosis.candidates.empty()) return;
+  fmt::print("\n  {:<50} {:>9} {:>9} {:>11}\n", "candidate", "train", "validate", "confidence");
+  constexpr std::size_t kShown = 8;
+  for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
+    const host::JudgedCandidate& candidate = diagnosis.candidates[k];
+    fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
+               candidate.train_after, candidate.after, 100.0 * candidate.confidence);
+  }
+}
+
+void run(const InsightArguments& arguments) {
+  const InsightRecords records(arguments);
+  host::Diagnosis diagnosis;
+  {
+    SearchProgress progress("diagnose");
+    diagnosis = host::diagnose(records.model, InsightRecords::pointers(records.train),
+                               InsightRecords::pointers(records.validate), progress.callback());
+  }
+  if (!arguments.report.empty()) host::write_diagnosis_report(diagnosis, arguments.model, arguments.report);
+  if (!arguments.json.empty()) write_json(host::to_json(diagnosis), arguments.json);
+  if (arguments.json != "-") print(diagnosis);
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app) {
+  auto arguments = std::make_shared<InsightArguments>();
+  CLI::App* command =
+      app.add_subcommand("diagnose", "which physical effect is missing from a model, and how sure is that");
+  arguments->add_to(*command);
+  command->add_option("--report", arguments->report, "write a self-contained HTML report to this file");
+  command->footer(
+      "Example:\n  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
+      "Exit code 0 whatever the verdict; 9 for a bad file.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

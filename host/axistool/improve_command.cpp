@@ -1,0 +1,105 @@
+// axistool improve: diagnose and add until nothing earns its place; axistool add: one effect at a word.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/insight_arguments.hpp"
+#include "host/insight/diagnosis_json.hpp"
+#include "host/insight/verdict.hpp"
+#include "host/report/insight_report.hpp"
+#include "host/report/terminal.hpp"
+
+namespace axistool {
+
+namespace {
+
+void print(const host::Improvement& improvement, const std::string& output) {
+  fmt::print("{}", host::terminal_bars(host::ladder_chart(improvement), host::terminal_of(stdout)));
+  fmt::print("Stopped because {}.\n", improvement.stopped_because);
+  fmt::print("Last verdict: {}. {}\n", host::status_name(improvement.verdict.status), improvement.verdict.explanation);
+  fmt::print("Model written to {}\n", output);
+}
+
+void run_improve(const InsightArguments& arguments) {
+  const InsightRecords records(arguments);
+  host::Improvement improvement;
+  {
+    SearchProgress progress("improve");
+    improvement = host::improve(records.model, InsightRecords::pointers(records.train),
+                                InsightRecords::pointers(records.validate), progress.callback());
+  }
+  host::write_model(improvement.model, arguments.output);
+  if (!arguments.report.empty()) host::write_improvement_report(improvement, arguments.model, arguments.report);
+  if (!arguments.json.empty()) write_json(host::to_json(improvement, arguments.output), arguments.json);
+  if (arguments.json != "-") print(improvement, arguments.output);
+}
+
+void run_add(const InsightArguments& arguments, const std::string& kind) {
+  const InsightRecords records(arguments);
+  const host::Addition addition = host::add_effect(records.model, kind, InsightRecords::pointers(records.train),
+                                                   InsightRecords::pointers(records.validate));
+  const host::JudgedCandidate& judged = addition.judged;
+  host::write_model(judged.model, arguments.output);
+  if (!arguments.json.empty()) {
+    nlohmann::json estimates = nlohmann::json::array();
+    for (const host::ParameterEstimate& estimate : addition.estimates)
+      estimates.push_back({{"name", estimate.name},
+                           {"value", estimate.value},
+                           {"deviation", estimate.deviation},
+                           {"determined", estimate.determined},
+                           {"correlated_with", estimate.correlated_with},
+                           {"correlation", estimate.correlation}});
+    write_json({{"format", "axis-addition/1"},
+                {"kind", kind},
+                {"before", judged.before},
+                {"after", judged.after},
+                {"train_after", judged.train_after},
+                {"confidence", judged.confidence},
+                {"held_back", addition.held_back},
+                {"parameters", estimates},
+                {"model", arguments.output}},
+               arguments.json);
+  }
+  if (arguments.json == "-") return;
+  fmt::print("{}: error over floor on validation data {:.3f} -> {:.3f} ({:.1f} % confidence)\n\n", kind, judged.before,
+             judged.after, 100.0 * judged.confidence);
+  fmt::print("  {:<32} {:>12} {:>12}\n", "parameter", "value", "+- (95 %)");
+  for (const host::ParameterEstimate& estimate : addition.estimates) {
+    fmt::print("  {:<32} {:>12.5g} {:>12.2g}{}{}\n", estimate.name, estimate.value, 1.96 * estimate.deviation,
+               estimate.determined ? "" : "  not determined by these data",
+               estimate.correlated_with.empty()
+                   ? ""
+                   : fmt::format("  moves with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
+  }
+  fmt::print("Model written to {}\n", arguments.output);
+}
+
+}  // namespace
+
+void add_improve(CLI::App& app) {
+  auto arguments = std::make_shared<InsightArguments>();
+  CLI::App* command = app.add_subcommand("improve", "diagnose and add effects until nothing earns its place");
+  arguments->add_to(*command);
+  command->add_option("-o,--output", arguments->output, "the improved model")->required();
+  command->add_option("--report", arguments->report, "write a self-contained HTML report to this file");
+  command->footer("Example:\n  axistool improve x.toml --train steps.csv jog.csv --validate other.csv -o better.toml");
+  command->callback([arguments] { run_improve(*arguments); });
+}
+
+void add_add(CLI::App& app) {
+  auto arguments = std::make_shared<InsightArguments>();
+  auto kind = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("add", "add one effect to a model and fit all parameters again");
+  command->add_option("model", arguments->model, "model file (axis-model/1)")->required();
+  command->add_option("kind", *kind, "the effect; axistool effects lists them")->required();
+  command->add_option("--train", arguments->train, "records that the fit may see")->required();
+  command->add_option("--validate", arguments->validate, "records that judge");
+  command->add_option("-o,--output", arguments->output, "the new model")->required();
+  add_json_option(*command, arguments->json);
+  command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");
+  command->callback([arguments, kind] { run_add(*arguments, *kind); });
+}
+
+}  // namespace axistool
