@@ -141,6 +141,7 @@ Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const R
   result.before_validate = before.combined;
   result.given_train = error_of(given, result.training).combined;
   result.given_validate = error_of(given, result.validation).combined;
+  result.where = error_regions(result.base, result.validation);
   result.verdict = reach_verdict(model, result);
   result.best = result.base;
   for (const JudgedCandidate& candidate : result.candidates)

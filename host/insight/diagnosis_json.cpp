@@ -62,6 +62,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
              {{"given", {{"train", diagnosis.given_train}, {"validate", diagnosis.given_validate}}},
               {"before", {{"train", diagnosis.before_train}, {"validate", diagnosis.before_validate}}},
               {"after", {{"train", diagnosis.after_train}, {"validate", diagnosis.after_validate}}}}}}},
+          {"where", error_regions_json(diagnosis.where)},
           {"candidates", candidates},
           {"verdict", verdict_json(diagnosis.verdict)}};
 }

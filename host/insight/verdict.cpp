@@ -160,6 +160,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         chosen == nullptr
             ? std::string()
             : fmt::format("; the closest, {}, leaves {:.2f}", fmt::join(chosen->kinds, " + "), chosen->after));
+    verdict.explanation += " What is left to explain: " + where_it_fails(diagnosis.where) + ".";
     verdict.next_experiment = "Look where the error lives, and record that motion alone, slowly and fast, both ways.";
     return verdict;
   }
