@@ -82,6 +82,13 @@ bench: ## Measure speed: plant and predictor against real time, identification, 
 	ninja -C $(BUILD) -j $(JOBS) axis_bench
 	$(BUILD)/bin/axis_bench $(if $(FILTER),--benchmark_filter='$(FILTER)')
 
+.PHONY: scoreboard
+scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR; the shipped ones by default)
+	$(NEED) build
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	$(BUILD)/bin/axistool scoreboard $(or $(CASES),tests/data/drive-cases)
+
 .PHONY: format
 format: ## Format all sources in place
 	$(NEED) format

@@ -19,6 +19,7 @@ void add_all_commands(CLI::App& app) {
   add_diagnose(app);
   add_add(app);
   add_improve(app);
+  add_scoreboard(app);
   add_effects(app);
   add_demo(app);
   add_flash(app);

@@ -23,6 +23,7 @@ void add_compare(CLI::App& app);
 void add_diagnose(CLI::App& app);
 void add_improve(CLI::App& app);
 void add_add(CLI::App& app);
+void add_scoreboard(CLI::App& app);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);
