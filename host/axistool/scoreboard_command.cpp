@@ -219,7 +219,9 @@ void print(const Summaries& summaries) {
 
 void run(const std::string& folder, const std::string& json) {
   const std::vector<fs::path> cases = find_cases(folder);
-  const auto name_of = [&](const fs::path& path) { return path.lexically_relative(folder).string(); };
+  const auto name_of = [&](const fs::path& path) {
+    return path == folder ? folder : path.lexically_relative(folder).string();
+  };
   std::size_t width = 4;
   for (const fs::path& path : cases) width = std::max(width, name_of(path).size());
   const bool talks = json != "-";
@@ -243,7 +245,7 @@ void add_scoreboard(CLI::App& app) {
   CLI::App* command = app.add_subcommand("scoreboard", "how often diagnose is right on cases whose truth is known");
   command
       ->add_option(
-          "folder", arguments->folder,
+          "FOLDER", arguments->folder,
           "folder with cases at any depth: each a folder with model.toml, train-*.csv, validate.csv, truth.json")
       ->required();
   add_json_option(*command, arguments->json);

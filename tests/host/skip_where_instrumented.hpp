@@ -1,0 +1,18 @@
+// A diagnosis fits some hundred models; code with sanitizers takes many times as long.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define AXIS_INSTRUMENTED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define AXIS_INSTRUMENTED 1
+#endif
+#endif
+
+#ifdef AXIS_INSTRUMENTED
+#define AXIS_SKIP_WHERE_INSTRUMENTED() GTEST_SKIP() << "a diagnosis takes too long with sanitizers"
+#else
+#define AXIS_SKIP_WHERE_INSTRUMENTED() static_cast<void>(0)
+#endif
