@@ -23,7 +23,9 @@ Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set) {
   }
   Prediction prediction;
   std::vector<double> error, cosine, sine;
-  for (const auto& [prepared, floor] : set.records) {
+  for (const ComparedRecord& compared : set.records) {
+    const PreparedRecord& prepared = compared.prepared;
+    const ErrorFloor& floor = compared.floor;
     predict(drive, prepared, prediction, set.stride);
     for (std::size_t index = 0; index < prepared.windows.size(); index += set.stride) {
       const Window& window = prepared.windows[index];

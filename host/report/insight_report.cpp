@@ -161,7 +161,7 @@ void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDesc
   predict(sim::Drive(best), compared.prepared, after);
   // Between windows, and before the first, nothing is predicted.
   const auto shown = [&](const std::vector<double>& predicted, const std::vector<double>* less) {
-    std::vector<double> values(record.size(), NAN);
+    std::vector<double> values(record.size(), std::nan(""));
     for (const Window& window : compared.prepared.windows)
       for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
         values[k] = less == nullptr ? predicted[k] : (*less)[k] - predicted[k];
