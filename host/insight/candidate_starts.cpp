@@ -133,7 +133,6 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
       double value = samples.missing[k], weight = 1.0;
       if (info.kind == "torque_ripple") weight = samples.effort[k];
       if (info.kind == "position_dependent_friction") weight = samples.w[k] > 0.0 ? 1.0 : -1.0;
-      if (info.kind == "cogging") value = samples.missing[k];
       if (info.stage == sim::Stage::tachometer || info.stage == sim::Stage::encoder) {
         if (samples.tach_error.empty()) break;
         value = samples.tach_error[k];
