@@ -29,10 +29,10 @@ Table error_table(const ModelComparison& comparison) {
   table.caption = fmt::format(
       "Predicted from the recorded command over {:g} s, restarted from the smoothed measurement.", comparison.window_s);
   table.headings = {"record", "channel", "unit", "RMS error", "floor", "fit", "error/floor", "inverse model"};
-  const auto append = [&](const std::string& name, const std::vector<ChannelError>& channels, double combined,
+  const auto append = [&](const std::string& name, const std::vector<ChannelComparison>& channels, double combined,
                           const std::optional<double>& relative_error) {
     bool first = true;
-    for (const ChannelError& channel : channels) {
+    for (const ChannelComparison& channel : channels) {
       table.rows.push_back({first ? name : "", channel.name, channel.unit, format_value(channel.rms),
                             format_value(channel.floor), fmt::format("{:.2f} %", channel.fit_percent),
                             first ? format_value(combined) : "",

@@ -42,7 +42,7 @@ struct ChannelSums {
     floor += window_floor * window_floor;
     ++windows;
   }
-  void append_to(std::vector<ChannelError>& channels, std::string_view name, const char* unit) const {
+  void append_to(std::vector<ChannelComparison>& channels, std::string_view name, const char* unit) const {
     if (rows == 0) return;
     const auto n = static_cast<double>(rows);
     const double spread = std::max(0.0, squares - values * values / n);
@@ -58,8 +58,8 @@ struct Sums {
   std::size_t scores = 0;
 
   double combined() const { return scores == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(scores)); }
-  std::vector<ChannelError> channels(sim::DriveKind kind) const {
-    std::vector<ChannelError> list;
+  std::vector<ChannelComparison> channels(sim::DriveKind kind) const {
+    std::vector<ChannelComparison> list;
     const bool rotary = kind == sim::DriveKind::rotary;
     w.append_to(list, column_name(&Record::w, kind), rotary ? "rad/s" : "m/s");
     x.append_to(list, column_name(&Record::x, kind), rotary ? "mm" : "m");
@@ -92,9 +92,9 @@ std::optional<double> inverse_error(const sim::DriveDescription& model, const st
   }
 }
 
-nlohmann::json channels_json(const std::vector<ChannelError>& channels) {
+nlohmann::json channels_json(const std::vector<ChannelComparison>& channels) {
   nlohmann::json object = nlohmann::json::object();
-  for (const ChannelError& channel : channels)
+  for (const ChannelComparison& channel : channels)
     object[channel.name] = {{"rms", channel.rms}, {"fit", channel.fit_percent}, {"floor", channel.floor}};
   return object;
 }

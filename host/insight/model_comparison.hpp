@@ -12,7 +12,7 @@
 
 namespace host {
 
-struct ChannelError {
+struct ChannelComparison {
   std::string name;  ///< column in the drive's own units: x_mm, w_rad_s, x_m, v_m_s
   std::string unit;
   double rms = 0.0;          ///< of the prediction error
@@ -22,14 +22,14 @@ struct ChannelError {
 
 struct RecordError {
   std::string path;
-  std::vector<ChannelError> channels;
+  std::vector<ChannelComparison> channels;
   double combined = 0.0;                 ///< RMS of error/floor over windows and channels; about 1 for a perfect model
   std::optional<double> relative_error;  ///< of the inverse model; empty where the axis never slides
 };
 
 struct ModelComparison {
   double window_s = kWindow_s;
-  std::vector<ChannelError> channels;  ///< all records together
+  std::vector<ChannelComparison> channels;  ///< all records together
   double combined = 0.0;
   std::optional<double> relative_error;
   std::vector<RecordError> records;
