@@ -7,12 +7,11 @@ NEED     = @cmake/packages/install.sh
 SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null)
 
 # Configures the build tree $1 with the options $2.
-configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING $2
+configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages $2
 
 # Builds the microcontroller's images, then checks and reports their size, stack and symbols.
 define firmware
-cmake -S cmake -B $(BUILD)/firmware -G Ninja --log-level=WARNING \
-  -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/toolchains/arm-none-eabi.cmake
+$(call configure,$(BUILD)/firmware,-DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/toolchains/arm-none-eabi.cmake)
 ninja -C $(BUILD)/firmware -j $(JOBS)
 ninja -C $(BUILD)/firmware image_report
 endef
@@ -36,6 +35,7 @@ demo: ## Identify a real record, control both axes in simulation, show the resul
 .PHONY: test
 test: ## Build and run all tests, again with sanitizers, and a short fuzz run of everything that reads files
 	$(NEED) build test firmware
+	$(NEED) guest || echo "packages: without these the tests in an emulated PC will skip" >&2
 	$(call firmware)
 	$(call configure,$(BUILD),-DAXIS_CHECKED_BUILD=$(abspath $(CHECKED)))
 	ninja -C $(BUILD) -j $(JOBS)

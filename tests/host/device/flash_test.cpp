@@ -5,6 +5,7 @@
 #include "host/device/image_file.hpp"
 #include "host/device/run_command.hpp"
 #include "host/exit_codes.hpp"
+#include "tests/host/device/sample_image.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -110,21 +111,6 @@ INSTANTIATE_TEST_SUITE_P(
         Trouble{"write_fails", 0, kListing, 74, "error during download", true, host::ExitCode::protocol, "download"},
         Trouble{"read_back_differs", 0, kListing, 0, "", false, host::ExitCode::protocol, "verification failed"}),
     [](const auto& chosen) { return std::string(chosen.param.name); });
-
-std::string image_text(const char* board) {
-  std::string text(firmware::kImageHeaderOffset + sizeof(firmware::ImageHeader) + 100, 'x');
-  firmware::ImageHeader header;
-  header.magic = firmware::kImageMagic;
-  header.layout = firmware::kImageLayout;
-  header.header_size = sizeof header;
-  header.chip_id = 0x413;
-  header.image_size = static_cast<std::uint32_t>(text.size());
-  std::copy_n(board, std::min<std::size_t>(std::strlen(board), 15), header.board.begin());
-  std::memcpy(text.data() + firmware::kImageHeaderOffset, &header, sizeof header);
-  header.crc = firmware::image_crc(std::as_bytes(std::span(text)));
-  std::memcpy(text.data() + firmware::kImageHeaderOffset, &header, sizeof header);
-  return text;
-}
 
 host::ExitCode code_of(const std::function<void()>& work) {
   try {
