@@ -21,7 +21,7 @@ struct ImageHeader {
   std::array<char, 16> version{};
   std::array<char, 24> git_hash{};
   std::uint32_t chip_id = 0;      ///< DBGMCU_IDCODE.DEV_ID (RM0090, 38.6.1): 0x413 for the STM32F405
-  std::uint32_t schema_hash = 0;  ///< of the parameter table; 0 in an image without one
+  std::uint32_t schema_hash = 0;  ///< of the parameter table (kSchemaHash)
   std::uint32_t image_size = 0;   ///< bytes from the start of the vector table, set after linking
   std::uint32_t crc = 0;          ///< CRC-32 of those bytes with this field as 0, set after linking
 };

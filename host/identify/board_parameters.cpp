@@ -5,101 +5,101 @@
 #include <algorithm>
 #include <cctype>
 
+#include "firmware/app/parameters/parameter_table.hpp"
 #include "host/identify/friction_law.hpp"
 
 namespace host {
 
 namespace {
 
-struct Units {
-  const char* travel;
-  const char* speed;
-  const char* effort;
-  const char* inertia;
-  const char* viscous;
-};
-constexpr Units kRotaryUnits{"mm", "rad/s", "Nm", "kg m^2", "Nm s/rad"};
-constexpr Units kLinearUnits{"m", "m/s", "N", "kg", "N s/m"};
-
-/// "Nm", "rad/s" -> "Nm/(rad/s)"; equal units cancel.
-std::string per(const std::string& numerator, const std::string& denominator) {
-  if (numerator == denominator) return "";
-  const auto grouped = [](const std::string& unit) {
-    return unit.find('/') == std::string::npos ? unit : "(" + unit + ")";
-  };
-  return grouped(numerator) + "/" + grouped(denominator);
-}
-
 bool is_bare_key(const std::string& name) {
   return !name.empty() &&
          std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
+std::string value_text(const firmware::ParameterInfo& info, double value) {
+  if (info.type == firmware::ParameterType::toggle) return value != 0.0 ? "true" : "false";
+  std::string number = fmt::format("{:.9g}", value);
+  if (number.find_first_of(".en") == std::string::npos) number += ".0";
+  return number;
+}
+
 }  // namespace
 
-std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design) {
-  const Units& unit = model.data.kind == sim::DriveKind::rotary ? kRotaryUnits : kLinearUnits;
-  const std::string travel = unit.travel, speed = unit.speed, effort = unit.effort;
+ReferenceLimits ReferenceLimits::usual_for(sim::DriveKind kind) {
+  const ReferenceLimits in_mm;
+  if (kind == sim::DriveKind::rotary) return in_mm;
+  return {1e-3 * in_mm.velocity, 1e-3 * in_mm.acceleration, 1e-3 * in_mm.jerk};
+}
+
+std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design,
+                                             const ReferenceLimits& limits) {
+  const bool rotary = model.data.kind == sim::DriveKind::rotary;
   const Eigen::Matrix3d& A = design.model.A;
   const Eigen::Vector3d& B = design.model.B;
   const auto gain = [&](int row, int column) { return column < design.Kobs.cols() ? design.Kobs(row, column) : 0.0; };
   const FrictionLaw friction = friction_law(model);
+  // Smoothed through zero over a hundredth of a turn a second; a hundredth of 1 mm/s for a linear drive's metres.
+  const double blend = rotary ? 0.06 : 1e-4;
 
   std::vector<BoardParameter> list = {
-      {"drive.sample_period", model.data.sample_period_s, "s", "control period that the gains are designed for"},
-      {"drive.lead", model.data.lead, model.data.kind == sim::DriveKind::rotary ? "mm/rad" : "",
-       "travel per shaft angle, rg"},
-      {"drive.encoder_resolution", model.data.encoder_resolution, travel, "travel per count"},
-      {"drive.dac_limit", model.data.dac_limit_V, "V", "largest command, both signs"},
-      {"drive.effort_per_volt", design.axis.effort_per_volt, per(effort, "V"), "Ka*Kt"},
-      {"drive.inertia", design.axis.inertia, unit.inertia, "J"},
-      {"drive.viscous", design.axis.viscous, unit.viscous, "B"},
-      {"model.a12", A(0, 1), per(travel, speed), "travel in a period per speed, eq. (7)"},
-      {"model.a22", A(1, 1), "", "pole pwd, eq. (6)"},
-      {"model.b1", B(0), per(travel, "V"), "travel in a period per command"},
-      {"model.b2", B(1), per(speed, "V"), "speed gained in a period per command"},
+      {"drive.fitted", 1.0},
+      {"drive.sample_period", model.data.sample_period_s},
+      {"drive.lead", model.data.lead},
+      {"drive.encoder_resolution", model.data.encoder_resolution},
+      {"drive.dac_resolution", model.data.dac_resolution_V},
+      {"drive.dac_limit", model.data.dac_limit_V},
+      {"drive.effort_per_volt", design.axis.effort_per_volt},
+      {"tachometer.fitted", design.Kobs.cols() == 2 ? 1.0 : 0.0},
+      {"model.a12", A(0, 1)},
+      {"model.a22", A(1, 1)},
+      {"model.b1", B(0)},
+      {"model.b2", B(1)},
   };
-  const char* const states[] = {"position", "speed", "disturbance"};
-  const std::string state_units[] = {travel, speed, "V"};
-  const char* const sensors[] = {"encoder", "tachometer"};
-  const std::string sensor_units[] = {travel, speed};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 2; ++column) {
-      list.push_back({fmt::format("kalman.k{}{}", row + 1, column + 1), gain(row, column),
-                      per(state_units[row], sensor_units[column]),
-                      fmt::format("correction of the {} by the {}, eq. (43)", states[row], sensors[column])});
-    }
-  }
-  list.push_back({"feedback.k1", design.Kc(0), per("V", travel), "on the position error, eq. (50)"});
-  list.push_back({"feedback.k2", design.Kc(1), per("V", speed), "on the speed error, eq. (50)"});
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 2; ++column)
+      list.push_back({fmt::format("kalman.k{}{}", row + 1, column + 1), gain(row, column)});
+  list.push_back({"feedback.k1", design.Kc(0)});
+  list.push_back({"feedback.k2", design.Kc(1)});
+  list.push_back({"feedback.cancel_disturbance", 1.0});
+  list.push_back({"feedforward.zero_phase", 1.0});
+  list.push_back({"feedforward.friction", 1.0});
   for (const bool forward : {true, false}) {
     const FrictionSideLaw& side = forward ? friction.positive : friction.negative;
     const char* sign = forward ? "positive" : "negative";
     const auto named = [&](const char* name) { return fmt::format("friction.{}_{}", name, sign); };
-    list.push_back({named("static"), side.static_level, effort, "magnitude at standstill, eq. (19)"});
-    list.push_back({named("coulomb"), side.coulomb, effort, "magnitude at speed, eq. (19)"});
-    list.push_back({named("omega1"), side.omega1, speed, "fading of the static part, eq. (19)"});
-    list.push_back({named("omega2"), side.omega2, speed, "rise of the Coulomb part, eq. (19)"});
+    list.push_back({named("static"), side.static_level});
+    list.push_back({named("coulomb"), side.coulomb});
+    list.push_back({named("viscous"), 0.0});  // the design's own B is the model's
+    list.push_back({named("omega1"), side.omega1});
+    list.push_back({named("omega2"), side.omega2});
   }
+  list.push_back({"friction.blend", blend});
+  list.push_back({"limits.velocity", limits.velocity});
+  list.push_back({"limits.acceleration", limits.acceleration});
+  list.push_back({"limits.jerk", limits.jerk});
   return list;
 }
 
 std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design) {
+  const bool rotary = model.data.kind == sim::DriveKind::rotary;
   std::string axis = model.name.empty() ? "x" : model.name;
   if (!is_bare_key(axis)) axis = fmt::format("'{}'", axis);
   std::string text = "format = \"axis-params/1\"\n";
   std::string table;
-  for (const BoardParameter& parameter : board_parameters(model, design)) {
+  for (const BoardParameter& parameter : board_parameters(model, design, ReferenceLimits::usual_for(model.data.kind))) {
+    const firmware::ParameterInfo& info =
+        *std::ranges::find(firmware::kParameters, parameter.name, &firmware::ParameterInfo::name);
     const std::size_t dot = parameter.name.find('.');
     const std::string group = parameter.name.substr(0, dot);
     if (group != table) {
       table = group;
       text += fmt::format("\n[{}.{}]\n", axis, table);
     }
-    std::string number = fmt::format("{:.9g}", parameter.value);
-    if (number.find_first_of(".en") == std::string::npos) number += ".0";
-    text += fmt::format("{} = {}  # {}{}{}\n", parameter.name.substr(dot + 1), number, parameter.unit,
-                        parameter.unit.empty() ? "" : ": ", parameter.doc);
+    const std::string_view unit = rotary ? info.unit : info.linear_unit;
+    const bool has_unit = !unit.empty() && unit != "1";
+    text += fmt::format("{} = {}  # {}{}{}\n", parameter.name.substr(dot + 1), value_text(info, parameter.value),
+                        has_unit ? unit : "", has_unit ? ": " : "", info.doc);
   }
   return text;
 }

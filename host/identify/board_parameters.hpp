@@ -1,4 +1,4 @@
-// What a board needs to know of an axis: the design and the friction curve as named parameters (`axis-params/1`).
+// What a board is told of a design: the parameters of one axis (`axis-params/1`).
 #pragma once
 
 #include <string>
@@ -8,19 +8,29 @@
 
 namespace host {
 
-struct BoardParameter {
-  std::string name;  ///< dotted, without the axis: "kalman.k11"
-  double value;
-  std::string unit;  ///< "" where it has none
-  std::string doc;   ///< one line
+/// Limits of references, mm (rotary) or m (linear) per s, s^2, s^3. Defaults: the paper, p. 1508 (in mm; its feed of
+/// 170 mm/s with room to spare).
+struct ReferenceLimits {
+  double velocity = 250.0;
+  double acceleration = 2000.0;
+  double jerk = 50000.0;
+
+  static ReferenceLimits usual_for(sim::DriveKind kind);
 };
 
-/// Parameters of one axis: drive, sampled model (7), Kalman gain (43), feedback (50), friction feed-forward (19).
-/// Without a tachometer the second column of the Kalman gain is zero; without friction effects the levels are zero.
-std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design);
+struct BoardParameter {
+  std::string name;  ///< as in firmware/app/parameters/parameter_table.hpp, without the axis: "kalman.k11"
+  double value;      ///< 0 or 1 for a switch
+};
 
-/// The same as a TOML document with one table a group, named after the axis (the model's name, "x" when it has none).
-/// Values carry nine digits: as many as single precision on the board can tell apart.
+/// Drive, sampled model (7), Kalman gain (43), feedback (50), friction feed-forward (19), limits; all compensations on.
+/// Without a tachometer the second column of the Kalman gain is zero; without friction effects the levels are zero. The
+/// tachometer's gain and offset are the board's and do not occur.
+std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design,
+                                             const ReferenceLimits& limits);
+
+/// The same with the usual limits as a TOML document with one table a group, named after the axis (the model's name,
+/// "x" when it has none). Values carry nine digits: as many as single precision on the board can tell apart.
 std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design);
 
 }  // namespace host

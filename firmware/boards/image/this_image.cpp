@@ -2,6 +2,8 @@
 
 #include <build_version.hpp>
 
+#include "firmware/app/parameters/parameter_table.hpp"
+
 extern "C" {
 extern const std::byte _image_start[];  // NOLINT: linker symbols
 extern const std::byte _image_limit[];
@@ -27,7 +29,7 @@ constexpr std::array<char, size> padded(const char (&text)[text_size]) {
     padded<16>(AXIS_VERSION),
     padded<24>(AXIS_GIT_HASH),
     AXIS_CHIP_ID,
-    0,
+    kSchemaHash,
     0,
     0,
 };

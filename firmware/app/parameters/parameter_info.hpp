@@ -1,0 +1,56 @@
+// What is known of one parameter: its identity, what values it may take, and what it means.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string_view>
+
+namespace firmware {
+
+enum class ParameterScope : std::uint8_t { board = 0, axis = 1 };
+
+/// How the value is read. All are kept as single precision, which holds whole numbers up to 2^24 exactly.
+enum class ParameterType : std::uint8_t { real = 0, whole = 1, toggle = 2 };
+
+enum class ParameterChange : std::uint8_t { any_time = 0, while_disabled = 1 };
+
+/// One row of the table (parameter_table.hpp).
+struct ParameterInfo {
+  std::uint16_t id;  ///< 1..4095, permanent: of a parameter that goes, the id is never given to another
+  ParameterScope scope;
+  std::string_view name;  ///< "group.name", without the axis
+  ParameterType type;
+  std::string_view unit;         ///< "1" for a pure number, "" for a switch
+  std::string_view linear_unit;  ///< of a linear drive, whose travel is in m and whose effort is in N
+  float minimum, maximum, initial;
+  ParameterChange change;
+  std::string_view doc;  ///< one line
+};
+
+/// What of a row decides whether a value is accepted: all that the board itself needs.
+struct ParameterRule {
+  std::uint16_t id;
+  ParameterType type;
+  ParameterChange change;
+  float minimum, maximum, initial;
+};
+
+enum class ValueProblem : std::uint8_t {
+  none = 0,
+  not_a_number = 1,
+  below_minimum = 2,
+  above_maximum = 3,
+  not_whole = 4
+};
+
+constexpr ValueProblem check_value(const ParameterRule& rule, float value) {
+  // By the bits, before any comparison: an infinity or not-a-number must not reach one.
+  constexpr std::uint32_t kExponent = 0x7F800000;
+  if ((std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent) return ValueProblem::not_a_number;
+  if (value < rule.minimum) return ValueProblem::below_minimum;
+  if (value > rule.maximum) return ValueProblem::above_maximum;
+  if (rule.type == ParameterType::real) return ValueProblem::none;
+  return static_cast<float>(static_cast<std::int32_t>(value)) == value ? ValueProblem::none : ValueProblem::not_whole;
+}
+
+}  // namespace firmware

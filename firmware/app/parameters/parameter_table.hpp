@@ -1,0 +1,151 @@
+// The one table of parameters. Storage, checks, ids of store and protocol, help, documentation and the schema hash all
+// come from it: a new parameter is a new row here and its use by name, values.get<"group.name">().
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "firmware/app/parameters/parameter_info.hpp"
+
+namespace firmware {
+
+namespace parameter_rows {
+
+using enum ParameterScope;
+using enum ParameterType;
+using enum ParameterChange;
+
+// Ranges keep nonsense out (a sign, a factor of a thousand); whether values fit each other is checked when a whole set
+// is taken over. Where rotary and linear drives differ in unit, the range covers both.
+inline constexpr std::array kRows = std::to_array<ParameterInfo>({
+    // id scope  name                        type    unit            linear     minimum maximum initial  change
+    {1, board, "control.rate", whole, "Hz", "Hz", 250, 20000, 1000, while_disabled,
+     "control periods a second; 1 / drive.sample_period of every fitted axis"},
+
+    {16, axis, "drive.fitted", toggle, "", "", 0, 1, 0, while_disabled, "the axis exists: it can be enabled"},
+    {17, axis, "drive.sample_period", real, "s", "s", 5e-5F, 4e-3F, 1e-3F, while_disabled,
+     "control period that model and gains are designed for"},
+    {18, axis, "drive.lead", real, "mm/rad", "1", 1e-6F, 1e4F, 1, while_disabled,
+     "travel per shaft angle, rg; 1 for a linear drive"},
+    {19, axis, "drive.encoder_resolution", real, "mm", "m", 1e-9F, 10, 1e-3F, while_disabled, "travel per count"},
+    {20, axis, "drive.dac_resolution", real, "V", "V", 1e-6F, 0.1F, 20.0F / 65536, while_disabled,
+     "command per step of the D/A converter"},
+    {21, axis, "drive.dac_limit", real, "V", "V", 1e-3F, 20, 10, while_disabled, "largest command, both signs"},
+    {22, axis, "drive.effort_per_volt", real, "Nm/V", "N/V", 1e-6F, 1e6F, 1, while_disabled,
+     "Ka Kt; turns friction into volts"},
+
+    {32, axis, "tachometer.fitted", toggle, "", "", 0, 1, 1, while_disabled, "off: the estimate rests on the encoder"},
+    {33, axis, "tachometer.gain", real, "rad/s", "m/s", -1e3F, 1e3F, 1.0F / 64, while_disabled,
+     "speed per code of its A/D converter"},
+    {34, axis, "tachometer.offset", real, "rad/s", "m/s", -1e4F, 1e4F, 0, while_disabled,
+     "speed that it shows at standstill; subtracted"},
+
+    {48, axis, "model.a12", real, "mm/(rad/s)", "m/(m/s)", 0, 100, 0, while_disabled,
+     "travel in a period per speed, eq. (7)"},
+    {49, axis, "model.a22", real, "1", "1", 0, 1, 0, while_disabled, "pole of the drive, eq. (6)"},
+    {50, axis, "model.b1", real, "mm/V", "m/V", 0, 1e3F, 0, while_disabled, "travel in a period per command"},
+    {51, axis, "model.b2", real, "rad/s/V", "m/s/V", 0, 1e5F, 0, while_disabled,
+     "speed gained in a period per command"},
+
+    {64, axis, "kalman.k11", real, "1", "1", -2, 2, 0, while_disabled,
+     "correction of the position by the encoder, eq. (43)"},
+    {65, axis, "kalman.k12", real, "mm/(rad/s)", "m/(m/s)", -100, 100, 0, while_disabled,
+     "correction of the position by the tachometer, eq. (43)"},
+    {66, axis, "kalman.k21", real, "(rad/s)/mm", "(m/s)/m", -1e6F, 1e6F, 0, while_disabled,
+     "correction of the speed by the encoder, eq. (43)"},
+    {67, axis, "kalman.k22", real, "1", "1", -2, 2, 0, while_disabled,
+     "correction of the speed by the tachometer, eq. (43)"},
+    {68, axis, "kalman.k31", real, "V/mm", "V/m", -1e7F, 1e7F, 0, while_disabled,
+     "correction of the disturbance by the encoder, eq. (43)"},
+    {69, axis, "kalman.k32", real, "V/(rad/s)", "V/(m/s)", -1e5F, 1e5F, 0, while_disabled,
+     "correction of the disturbance by the tachometer, eq. (43)"},
+
+    {80, axis, "feedback.k1", real, "V/mm", "V/m", 0, 1e7F, 0, while_disabled, "on the position error, eq. (50)"},
+    {81, axis, "feedback.k2", real, "V/(rad/s)", "V/(m/s)", -1e5F, 1e5F, 0, while_disabled,
+     "on the speed error, eq. (50)"},
+    {82, axis, "feedback.cancel_disturbance", toggle, "", "", 0, 1, 0, while_disabled,
+     "add the estimated disturbance to the command"},
+
+    {96, axis, "feedforward.zero_phase", toggle, "", "", 0, 1, 0, while_disabled,
+     "zero phase error tracking; off: the reference speed alone, eqs. (50) and (52)"},
+    {97, axis, "feedforward.friction", toggle, "", "", 0, 1, 0, while_disabled,
+     "add the friction of the reference speed to the command, eq. (19)"},
+
+    {112, axis, "friction.static_positive", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
+     "magnitude at standstill, eq. (19)"},
+    {113, axis, "friction.coulomb_positive", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
+     "magnitude at speed, eq. (19)"},
+    {114, axis, "friction.viscous_positive", real, "Nm/(rad/s)", "N/(m/s)", -1e6F, 1e6F, 0, while_disabled,
+     "beyond what model.a22 contains"},
+    {115, axis, "friction.omega1_positive", real, "rad/s", "m/s", 0, 1e4F, 0, while_disabled,
+     "fading of the static part, eq. (19)"},
+    {116, axis, "friction.omega2_positive", real, "rad/s", "m/s", 0, 1e4F, 0, while_disabled,
+     "rise of the Coulomb part, eq. (19)"},
+    {117, axis, "friction.static_negative", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
+     "magnitude at standstill, eq. (19)"},
+    {118, axis, "friction.coulomb_negative", real, "Nm", "N", 0, 1e6F, 0, while_disabled,
+     "magnitude at speed, eq. (19)"},
+    {119, axis, "friction.viscous_negative", real, "Nm/(rad/s)", "N/(m/s)", -1e6F, 1e6F, 0, while_disabled,
+     "beyond what model.a22 contains"},
+    {120, axis, "friction.omega1_negative", real, "rad/s", "m/s", 0, 1e4F, 0, while_disabled,
+     "fading of the static part, eq. (19)"},
+    {121, axis, "friction.omega2_negative", real, "rad/s", "m/s", 0, 1e4F, 0, while_disabled,
+     "rise of the Coulomb part, eq. (19)"},
+    {122, axis, "friction.blend", real, "rad/s", "m/s", 1e-6F, 1e3F, 0.06F, while_disabled,
+     "speed below which the compensation falls to 0 in proportion"},
+
+    {128, axis, "limits.velocity", real, "mm/s", "m/s", 1e-6F, 1e6F, 250, while_disabled, "of references"},
+    {129, axis, "limits.acceleration", real, "mm/s^2", "m/s^2", 1e-6F, 1e8F, 2000, while_disabled, "of references"},
+    {130, axis, "limits.jerk", real, "mm/s^3", "m/s^3", 1e-6F, 1e10F, 50000, while_disabled, "of references"},
+});
+
+}  // namespace parameter_rows
+
+inline constexpr const auto& kParameters = parameter_rows::kRows;
+
+namespace parameter_rows {
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kRows.size(); ++i) {
+    const ParameterInfo& row = kRows[i];
+    if (row.id == 0 || row.id > 0xFFF || (i > 0 && row.id <= kRows[i - 1].id)) return false;
+    if (i > 0 && kRows[i - 1].scope == axis && row.scope == board) return false;
+    const ParameterRule rule{row.id, row.type, row.change, row.minimum, row.maximum, row.initial};
+    if (check_value(rule, row.initial) != ValueProblem::none || !(row.minimum < row.maximum)) return false;
+    for (std::size_t other = 0; other < i; ++other)
+      if (kRows[other].name == row.name) return false;
+  }
+  return true;
+}
+static_assert(is_in_order(), "ids rise, the board's rows come first, names are unique, initial values are admissible");
+
+constexpr std::uint32_t hash_bytes(std::uint32_t hash, std::string_view text) {
+  for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619u;
+  return (hash ^ 0xFF) * 16777619u;  // ends the text: "ab" "c" differs from "a" "bc"
+}
+
+constexpr std::uint32_t hash_word(std::uint32_t hash, std::uint32_t word) {
+  for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ ((word >> shift) & 0xFF)) * 16777619u;
+  return hash;
+}
+
+/// FNV-1a (Fowler, Noll, Vo) over everything but the lines of documentation.
+constexpr std::uint32_t schema_hash(std::span<const ParameterInfo> rows) {
+  std::uint32_t hash = 2166136261u;
+  for (const ParameterInfo& row : rows) {
+    hash = hash_word(hash, row.id);
+    hash = hash_bytes(hash_bytes(hash_bytes(hash, row.name), row.unit), row.linear_unit);
+    hash = hash_word(hash, static_cast<std::uint32_t>(row.scope) | static_cast<std::uint32_t>(row.type) << 8 |
+                               static_cast<std::uint32_t>(row.change) << 16);
+    for (const float value : {row.minimum, row.maximum, row.initial})
+      hash = hash_word(hash, std::bit_cast<std::uint32_t>(value));
+  }
+  return hash;
+}
+
+}  // namespace parameter_rows
+
+/// Equal hashes mean equal tables: names, ids, units, types, ranges and initial values.
+inline constexpr std::uint32_t kSchemaHash = parameter_rows::schema_hash(kParameters);
+
+}  // namespace firmware

@@ -1,0 +1,15 @@
+// The parameters' documentation, made from their table.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace host {
+
+/// A Markdown page with one table a group: firmware/app/parameters/README.md.
+std::string parameter_page();
+
+/// The same as data: format "axis-parameter-table/1".
+nlohmann::json parameter_table_json();
+
+}  // namespace host

@@ -1,0 +1,215 @@
+// The table of parameters: identity, ranges, and that every one of them does something.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "firmware/app/parameters/parameter_check.hpp"
+#include "firmware/core/axis.hpp"
+#include "hal/pc/simulated_axis.hpp"
+#include "tests/firmware/app/paper_values.hpp"
+
+namespace {
+
+using firmware::ParameterKey;
+using firmware::ParameterValues;
+using firmware::SetProblem;
+using firmware::SetProblemKind;
+using firmware_test::kPaperX;
+using firmware_test::paper_values;
+using firmware_test::place_named;
+using firmware_test::set;
+
+sim::DriveDescription machine() {
+  sim::DriveDescription drive;
+  drive.data.amplifier_gain_A_per_V = kPaperX.amplifier_gain_A_per_V;
+  drive.data.torque_constant_Nm_per_A = firmware_test::kMotorConstant_Nm_per_A;
+  drive.data.lead = firmware_test::kLead_mm_per_rad;
+  drive.data.dac_resolution_V = firmware_test::kDacResolution_V;
+  drive.data.encoder_resolution = firmware_test::kEncoderResolution_mm;
+  drive.data.tach_noise_variance = 0.0;
+  drive.effects = {{"inertia", {{"J", kPaperX.inertia_kg_m2}}, {}, {}},
+                   {"viscous", {{"B", kPaperX.viscous_Nm_s_per_rad}}, {}, {}}};
+  return drive;
+}
+
+/// Everything that the machine notices of a set: whether it is refused, and every word put out in both directions of
+/// motion, with limits and saturation reached.
+template <typename Scalar>
+std::pair<SetProblem, std::vector<std::int32_t>> behaviour(const ParameterValues& values) {
+  const SetProblem problem = firmware::check<Scalar>(values);
+  std::vector<std::int32_t> words;
+  if (problem.kind != SetProblemKind::none || !values.axis(0).get<"drive.fitted">()) return {problem, words};
+  sim::Plant plant(machine(), 1);
+  hal::pc::SimulatedAxis wires(plant);
+  firmware::Axis<Scalar, hal::pc::SimulatedAxis> axis(wires);
+  EXPECT_EQ(axis.configure(firmware::axis_parameters<Scalar>(values.axis(0))), firmware::ParameterError::none);
+  for (int k = 0; k < 500; ++k) {
+    if (k == 5) {
+      EXPECT_TRUE(axis.enable());
+    }
+    if (k == 10) axis.jog(Scalar(0.05F));  // crawls below the blending speed
+    if (k == 40) axis.jog(Scalar(1000));
+    if (k == 200) axis.jog(Scalar(-0.05F));
+    if (k == 300) axis.jog(Scalar(-1000));
+    words.push_back(axis.step().dac_code);
+    plant.advance(1e-3);
+  }
+  return {problem, words};
+}
+
+float changed(const firmware::ParameterRule& rule, float value) {
+  if (rule.type == firmware::ParameterType::toggle) return 1.0F - value;
+  if (rule.type == firmware::ParameterType::whole) return value + 1.0F;
+  const float up = value == 0.0F ? 0.1F : 1.1F * value;
+  return up <= rule.maximum ? up : 0.9F * value;
+}
+
+template <typename Scalar>
+class Parameters : public testing::Test {};
+using Scalars = testing::Types<float, firmware::FixedPoint>;
+TYPED_TEST_SUITE(Parameters, Scalars);
+
+TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
+  ParameterValues values = paper_values();
+  set(values, "x.limits.velocity", 80);   // reached by the jogs
+  set(values, "x.drive.dac_limit", 3.0);  // reached while they accelerate
+  const auto before = behaviour<TypeParam>(values);
+  ASSERT_EQ(before.first, SetProblem{});
+  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+    if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
+    ParameterValues other = values;
+    other.set(place, changed(firmware::rule_at(place), values.at(place)));
+    EXPECT_NE(behaviour<TypeParam>(other), before) << firmware::kParameters[firmware::row_at(place)].name;
+  }
+}
+
+TYPED_TEST(Parameters, ASlowerControlRateIsTakenTogetherWithItsPeriod) {
+  ParameterValues values = paper_values();
+  set(values, "control.rate", 500);
+  EXPECT_EQ(firmware::check<TypeParam>(values),
+            (SetProblem{SetProblemKind::rate_disagrees, firmware::key_at(place_named("x.drive.sample_period"))}));
+  set(values, "x.drive.sample_period", 1.0 / 500);
+  EXPECT_EQ(firmware::check<TypeParam>(values), SetProblem{});
+}
+
+TYPED_TEST(Parameters, InitialValuesFitNoAxisAndAreAdmissible) {
+  const ParameterValues initial;
+  EXPECT_EQ(firmware::check<TypeParam>(initial), SetProblem{});
+  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis)
+    EXPECT_FALSE(initial.axis(axis).get<"drive.fitted">());
+}
+
+TYPED_TEST(Parameters, AnAxisThatIsFittedButNotDesignedIsRefused) {
+  ParameterValues values;
+  set(values, "y.drive.fitted", 1);
+  EXPECT_EQ(firmware::check<TypeParam>(values),
+            (SetProblem{SetProblemKind::refused_by_core, firmware::key_at(place_named("y.model.a12"))}));
+}
+
+TYPED_TEST(Parameters, ValuesBeyondTheirRangeAreNamed) {
+  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+    const firmware::ParameterRule& rule = firmware::rule_at(place);
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (const auto& [value, kind] :
+         {std::pair{rule.maximum * 1.01F + 1.0F, SetProblemKind::above_maximum},
+          std::pair{rule.minimum - std::abs(rule.minimum) * 0.01F - 1e-12F, SetProblemKind::below_minimum},
+          std::pair{infinity, SetProblemKind::not_a_number}, std::pair{-infinity, SetProblemKind::not_a_number},
+          std::pair{std::numeric_limits<float>::quiet_NaN(), SetProblemKind::not_a_number}}) {
+      ParameterValues values = paper_values();
+      values.set(place, value);
+      EXPECT_EQ(firmware::check<TypeParam>(values), (SetProblem{kind, firmware::key_at(place)})) << place;
+    }
+  }
+}
+
+TEST(ParameterTable, WholeNumbersAndSwitchesTakeNoFractions) {
+  ParameterValues values;
+  set(values, "control.rate", 1000.5);
+  EXPECT_EQ(firmware::check<float>(values).kind, SetProblemKind::not_whole);
+  set(values, "control.rate", 1000);
+  set(values, "x.drive.fitted", 0.5);
+  EXPECT_EQ(firmware::check<float>(values).kind, SetProblemKind::not_whole);
+}
+
+TEST(ParameterTable, KeysAndPlacesAreOneToOne) {
+  for (std::size_t place = 0; place < firmware::kParameterCount; ++place)
+    EXPECT_EQ(firmware::place_of(firmware::key_at(place)), place);
+  EXPECT_EQ(firmware::place_of(ParameterKey{0}), std::nullopt);
+  EXPECT_EQ(firmware::place_of(ParameterKey::of_board(0xFFF)), std::nullopt);
+  EXPECT_EQ(firmware::place_of(ParameterKey::of_axis(0, 1)), std::nullopt) << "control.rate belongs to the board";
+  EXPECT_EQ(firmware::place_of(ParameterKey::of_board(64)), std::nullopt) << "kalman.k11 belongs to an axis";
+  EXPECT_EQ(firmware::place_of(ParameterKey::of_axis(firmware::kAxisCount, 64)), std::nullopt);
+}
+
+/// As released; a row may go, but its id never means anything else.
+TEST(ParameterTable, IdsAreFrozen) {
+  const std::pair<std::uint16_t, const char*> kReleased[] = {
+      {1, "control.rate"},
+      {16, "drive.fitted"},
+      {17, "drive.sample_period"},
+      {18, "drive.lead"},
+      {19, "drive.encoder_resolution"},
+      {20, "drive.dac_resolution"},
+      {21, "drive.dac_limit"},
+      {22, "drive.effort_per_volt"},
+      {32, "tachometer.fitted"},
+      {33, "tachometer.gain"},
+      {34, "tachometer.offset"},
+      {48, "model.a12"},
+      {49, "model.a22"},
+      {50, "model.b1"},
+      {51, "model.b2"},
+      {64, "kalman.k11"},
+      {65, "kalman.k12"},
+      {66, "kalman.k21"},
+      {67, "kalman.k22"},
+      {68, "kalman.k31"},
+      {69, "kalman.k32"},
+      {80, "feedback.k1"},
+      {81, "feedback.k2"},
+      {82, "feedback.cancel_disturbance"},
+      {96, "feedforward.zero_phase"},
+      {97, "feedforward.friction"},
+      {112, "friction.static_positive"},
+      {113, "friction.coulomb_positive"},
+      {114, "friction.viscous_positive"},
+      {115, "friction.omega1_positive"},
+      {116, "friction.omega2_positive"},
+      {117, "friction.static_negative"},
+      {118, "friction.coulomb_negative"},
+      {119, "friction.viscous_negative"},
+      {120, "friction.omega1_negative"},
+      {121, "friction.omega2_negative"},
+      {122, "friction.blend"},
+      {128, "limits.velocity"},
+      {129, "limits.acceleration"},
+      {130, "limits.jerk"},
+  };
+  for (const auto& [id, name] : kReleased)
+    for (const firmware::ParameterInfo& row : firmware::kParameters)
+      EXPECT_EQ(row.id == id, row.name == name) << row.id << " " << row.name;
+}
+
+TEST(ParameterTable, SchemaHashSeesEveryFieldButTheDocumentation) {
+  using firmware::ParameterInfo;
+  const auto hash_after = [](auto change) {
+    std::vector<ParameterInfo> rows(firmware::kParameters.begin(), firmware::kParameters.end());
+    change(rows[20]);
+    return firmware::parameter_rows::schema_hash(rows);
+  };
+  EXPECT_EQ(hash_after([](ParameterInfo& row) { row.doc = "in other words"; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.id = 4000; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.name = "other"; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.unit = "kV"; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.type = firmware::ParameterType::whole; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.scope = firmware::ParameterScope::board; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.change = firmware::ParameterChange::any_time; }),
+            firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.minimum = -1e9F; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.maximum = 1e9F; }), firmware::kSchemaHash);
+  EXPECT_NE(hash_after([](ParameterInfo& row) { row.initial = 0.125F; }), firmware::kSchemaHash);
+}
+
+}  // namespace
