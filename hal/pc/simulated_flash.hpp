@@ -1,12 +1,27 @@
-// Parameter flash in memory, with the microcontroller's rules: ones become zeros, only an erase brings them back.
+// Parameter flash in memory, with the microcontroller's rules: ones become zeros, only an erase brings them back. Power
+// can be cut at any operation.
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <random>
 #include <vector>
 
 #include "hal/flash.hpp"
 
 namespace hal::pc {
+
+/// Thrown by the operation during which power goes. Not an error of the program: nothing but a test catches it.
+struct PowerCut {};
+
+/// What the cut operation leaves of its word (program) or its sector (erase).
+enum class TornState : std::uint8_t {
+  untouched,  ///< as it was before
+  complete,   ///< as it should have become
+  partial,    ///< some of the bits that should have changed
+  prefix,     ///< erase: the first half done, then some bits; program: the low half of the word
+};
 
 class SimulatedFlash {
  public:
@@ -33,19 +48,56 @@ class SimulatedFlash {
       if (!std::equal(wanted, wanted + program_size_, cell,
                       [](std::byte want, std::byte have) { return (want & ~have) == std::byte{0}; }))
         return FlashResult::not_erased;
-      std::copy_n(wanted, program_size_, cell);
+      change({cell, program_size_}, {wanted, program_size_});
     }
     return FlashResult::ok;
   }
 
   FlashResult erase(std::size_t sector) {
     if (sector >= sectors_.size()) return FlashResult::out_of_range;
-    std::fill(sectors_[sector].begin(), sectors_[sector].end(), kErased);
+    change(sectors_[sector], std::vector<std::byte>(sector_size(), kErased));
     return FlashResult::ok;
   }
 
+  /// Power goes during the operation after `operations` more: one erase of a sector, or one unit programmed.
+  void cut_power_after(std::size_t operations, TornState torn, std::uint32_t seed) {
+    cut_ = Cut{operations_ + operations, torn, seed};
+  }
+  void restore_power() { cut_.reset(); }
+
+  /// Erases and programmed units so far.
+  std::size_t operations() const { return operations_; }
+
+  /// All of it, sector after sector: to keep in a file, and to spoil on purpose.
+  std::vector<std::vector<std::byte>>& contents() { return sectors_; }
+
  private:
+  struct Cut {
+    std::size_t operation;
+    TornState torn;
+    std::uint32_t seed;
+  };
+
   static constexpr std::byte kErased{0xFF};
+
+  void change(std::span<std::byte> cells, std::span<const std::byte> wanted) {
+    const bool cut = cut_ && cut_->operation == operations_;
+    ++operations_;
+    if (!cut) {
+      std::ranges::copy(wanted, cells.begin());
+      return;
+    }
+    std::mt19937 chance(cut_->seed);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const bool done = cut_->torn == TornState::complete || (cut_->torn == TornState::prefix && i < cells.size() / 2);
+      std::byte mask = done ? std::byte{0xFF} : std::byte{0};
+      if (cut_->torn == TornState::partial ||
+          (cut_->torn == TornState::prefix && !done && cells.size() > program_size_))
+        mask = static_cast<std::byte>(chance() & 0xFF);
+      cells[i] = (cells[i] & ~mask) | (wanted[i] & mask);
+    }
+    throw PowerCut{};
+  }
 
   bool contains(std::size_t sector, std::size_t offset, std::size_t size) const {
     return sector < sectors_.size() && offset <= sector_size() && size <= sector_size() - offset;
@@ -53,6 +105,8 @@ class SimulatedFlash {
 
   std::vector<std::vector<std::byte>> sectors_;
   std::size_t program_size_;
+  std::size_t operations_ = 0;
+  std::optional<Cut> cut_;
 };
 
 static_assert(Flash<SimulatedFlash>);

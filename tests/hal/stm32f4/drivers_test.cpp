@@ -195,8 +195,23 @@ TEST(Watchdog, StartsBeforeItIsConfiguredAndStaysWithinItsCounter) {
   watchdog.start(50);
   EXPECT_EQ(registers.RLR, 100u);  // 32 kHz / 16 = 2 ticks a millisecond
   EXPECT_EQ(registers.KR, 0xAAAAu);
-  watchdog.start(10'000);
+  EXPECT_EQ(registers.PR, 2u) << "divider 16, table 107";
+  watchdog.start(100'000);
   EXPECT_EQ(registers.RLR, 0xFFFu);
+}
+
+/// 32 kHz / 256: an eighth of a tick a millisecond. At 47 kHz, the fastest that the oscillator may run, 4 s are 2.7 s.
+TEST(Watchdog, AllowsForTheEraseOfASectorAndThenIsQuickAgain) {
+  IndependentWatchdog registers{};
+  Watchdog watchdog(registers);
+  watchdog.start(50);
+  watchdog.allow(4000);
+  EXPECT_EQ(registers.PR, 6u) << "divider 256";
+  EXPECT_EQ(registers.RLR, 500u);
+  EXPECT_EQ(registers.KR, 0xAAAAu) << "fed: the new time-out counts from now";
+  watchdog.allow(50);
+  EXPECT_EQ(registers.PR, 2u);
+  EXPECT_EQ(registers.RLR, 100u);
 }
 
 }  // namespace

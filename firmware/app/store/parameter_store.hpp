@@ -1,0 +1,206 @@
+// Parameters in flash: two slots, of which one always holds a whole set.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include "firmware/app/crc32.hpp"
+#include "firmware/app/parameters/parameter_values.hpp"
+#include "firmware/app/store/stored_set.hpp"
+#include "hal/flash.hpp"
+
+namespace firmware {
+
+/// What start-up found. Numbers are permanent. Drives may run with empty (no axis is fitted then), loaded and migrated.
+enum class StoreState : std::uint8_t {
+  empty = 0,       ///< nothing was ever saved: initial values
+  loaded = 1,      ///< the newest set, as it was saved
+  migrated = 2,    ///< saved under another table, and every value found its place
+  incomplete = 3,  ///< some values fit this table no more; they stay readable until the next save
+  damaged = 4,     ///< the newest set is there, but not as it was written
+};
+
+enum class SaveResult : std::uint8_t { saved = 0, flash_failed = 1, not_verified = 2 };
+
+struct StoreReport {
+  StoreState state = StoreState::empty;
+  std::uint32_t sequence = 0;     ///< of the set in use; 0 without one
+  std::uint32_t schema_hash = 0;  ///< that it was saved under
+  std::uint32_t erases = 0;       ///< of both sectors together; each endures 10,000 (STM32F405 datasheet, table 42)
+  std::uint16_t not_migrated = 0;
+};
+
+/// A save erases the slot beside the newest set, writes entries and header there, reads them back, and only then
+/// programs the mark that makes them valid; last it marks the older set as superseded. So at any power cut the newest
+/// valid set is the old or the new one, and a superseded set without a successor betrays damage that no power cut
+/// explains: it is never put in place of what the user saved last.
+template <hal::Flash Flash>
+class ParameterStore {
+ public:
+  explicit constexpr ParameterStore(Flash& flash) : flash_(flash) {}
+
+  /// Call once at start-up. Sets in `values` what the store holds; with damaged, or empty, `values` are left alone.
+  StoreReport load(ParameterValues& values) {
+    examine();
+    report_ = {};
+    report_.erases = most_erases();
+    if (!newest_) {
+      report_.state = is_untouched() ? StoreState::empty : StoreState::damaged;
+      return report_;
+    }
+    const Slot& slot = slots_[*newest_];
+    report_.sequence = slot.header.sequence;
+    report_.schema_hash = slot.header.schema_hash;
+    if (slot.marks.superseded != kNotProgrammed) {
+      report_.state = StoreState::damaged;
+      return report_;
+    }
+    supersede_other();
+    take_over_entries(values);
+    const bool same_table = slot.header.schema_hash == kSchemaHash;
+    report_.state = report_.not_migrated != 0 ? StoreState::incomplete
+                    : same_table              ? StoreState::loaded
+                                              : StoreState::migrated;
+    return report_;
+  }
+
+  /// Stalls the processor for as long as an erase lasts: never while a drive is enabled, and with a watchdog that
+  /// allows for it. After anything but saved the store holds what it held.
+  SaveResult save(const ParameterValues& values) {
+    examine();
+    const std::size_t target = newest_ ? 1 - *newest_ : 0;
+    StoredHeader header{
+        kStoreMagic, kSchemaHash, highest_sequence() + 1, kParameterCount * sizeof(StoredEntry), most_erases() + 1, 0};
+    if (flash_.erase(target) != hal::FlashResult::ok) return SaveResult::flash_failed;
+    Crc32 crc;
+    crc.add(bytes_of(header).first(offsetof(StoredHeader, crc)));
+    for (std::size_t place = 0; place < kParameterCount; ++place) {
+      const StoredEntry entry{key_at(place).code, 0, std::bit_cast<std::uint32_t>(values.at(place))};
+      crc.add(bytes_of(entry));
+      if (!program(target, kEntriesOffset + place * sizeof entry, entry)) return SaveResult::flash_failed;
+    }
+    header.crc = crc.value();
+    if (!program(target, 0, header)) return SaveResult::flash_failed;
+    if (read_back_differs(target, header, values)) return SaveResult::not_verified;
+    if (!program(target, kMarksOffset + offsetof(StoredMarks, valid), kValidMark)) return SaveResult::flash_failed;
+    examine();
+    if (newest_ != target) return SaveResult::not_verified;
+    supersede_other();
+    report_ = {StoreState::loaded, header.sequence, header.schema_hash, header.erases, 0};
+    return SaveResult::saved;
+  }
+
+  const StoreReport& report() const { return report_; }
+
+  /// The entries of the newest valid set as they lie in flash, for a backup that keeps what this table does not know.
+  std::size_t entry_count() const { return newest_ ? slots_[*newest_].header.length / sizeof(StoredEntry) : 0; }
+  std::optional<StoredEntry> entry(std::size_t index) {
+    if (index >= entry_count()) return std::nullopt;
+    return read_at<StoredEntry>(*newest_, kEntriesOffset + index * sizeof(StoredEntry));
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 2;
+
+  struct Slot {
+    StoredHeader header{};
+    StoredMarks marks{};
+    bool whole = false;  ///< header and entries agree with the checksum
+    bool valid() const { return whole && marks.valid == kValidMark; }
+  };
+
+  template <typename T>
+  static std::span<const std::byte> bytes_of(const T& value) {
+    return std::as_bytes(std::span(&value, 1));
+  }
+
+  template <typename T>
+  T read_at(std::size_t slot, std::size_t offset) const {
+    T value{};
+    flash_.read(slot, offset, std::as_writable_bytes(std::span(&value, 1)));
+    return value;
+  }
+
+  template <typename T>
+  bool program(std::size_t slot, std::size_t offset, const T& value) {
+    return flash_.program(slot, offset, bytes_of(value)) == hal::FlashResult::ok;
+  }
+
+  void examine() {
+    newest_.reset();
+    for (std::size_t i = 0; i < kSlots; ++i) {
+      Slot& slot = slots_[i];
+      slot = {read_at<StoredHeader>(i, 0), read_at<StoredMarks>(i, kMarksOffset), false};
+      slot.whole = has_right_length(slot.header) && crc_of(i) == slot.header.crc;
+      if (slot.valid() && (!newest_ || slot.header.sequence > slots_[*newest_].header.sequence)) newest_ = i;
+    }
+  }
+
+  bool has_right_length(const StoredHeader& header) const {
+    return header.magic == kStoreMagic && header.length % sizeof(StoredEntry) == 0 &&
+           header.length <= flash_.sector_size() - kEntriesOffset;
+  }
+
+  std::uint32_t crc_of(std::size_t slot) const {
+    Crc32 crc;
+    crc.add(bytes_of(slots_[slot].header).first(offsetof(StoredHeader, crc)));
+    for (std::size_t offset = 0; offset < slots_[slot].header.length; offset += sizeof(StoredEntry))
+      crc.add(bytes_of(read_at<StoredEntry>(slot, kEntriesOffset + offset)));
+    return crc.value();
+  }
+
+  /// Nothing was ever made valid: each slot is blank, or the very first save was cut short.
+  bool is_untouched() const {
+    return std::ranges::none_of(slots_, [](const Slot& slot) {
+      return slot.marks.valid == kValidMark || slot.marks.superseded != kNotProgrammed;
+    });
+  }
+
+  std::uint32_t highest_sequence() const { return highest(&StoredHeader::sequence); }
+  std::uint32_t most_erases() const { return highest(&StoredHeader::erases); }
+  /// Of the slots whose header can be believed.
+  std::uint32_t highest(std::uint32_t StoredHeader::*field) const {
+    std::uint32_t most = 0;
+    for (const Slot& slot : slots_)
+      if (slot.whole) most = std::max(most, slot.header.*field);
+    return most;
+  }
+
+  bool read_back_differs(std::size_t slot, const StoredHeader& header, const ParameterValues& values) const {
+    if (!std::ranges::equal(bytes_of(read_at<StoredHeader>(slot, 0)), bytes_of(header))) return true;
+    for (std::size_t place = 0; place < kParameterCount; ++place) {
+      const auto entry = read_at<StoredEntry>(slot, kEntriesOffset + place * sizeof(StoredEntry));
+      if (entry.key != key_at(place).code || entry.value_bits != std::bit_cast<std::uint32_t>(values.at(place)))
+        return true;
+    }
+    return false;
+  }
+
+  void supersede_other() {
+    const std::size_t other = 1 - *newest_;
+    if (!slots_[other].valid() || slots_[other].marks.superseded != kNotProgrammed) return;
+    program(other, kMarksOffset + offsetof(StoredMarks, superseded), std::uint32_t{0});
+  }
+
+  void take_over_entries(ParameterValues& values) {
+    for (std::size_t i = 0; i < entry_count(); ++i) {
+      const StoredEntry stored = *entry(i);
+      const auto place = place_of({stored.key});
+      const auto value = std::bit_cast<float>(stored.value_bits);
+      if (place && check_value(rule_at(*place), value) == ValueProblem::none)
+        values.set(*place, value);
+      else
+        ++report_.not_migrated;
+    }
+  }
+
+  Flash& flash_;
+  std::array<Slot, kSlots> slots_{};
+  std::optional<std::size_t> newest_;
+  StoreReport report_{};
+};
+
+}  // namespace firmware
