@@ -1,7 +1,9 @@
 #!/bin/sh
-# stack_depth.sh FOLDER LIMIT ROOT...
+# stack_depth.sh FOLDER LIMIT ROOT... [via:NAME...] [absent:NAME...]
 # Worst-case stack of each ROOT function (part of its name) from the call graphs (*.ci) that the compiler left below
 # FOLDER (-fcallgraph-info=su). Fails above LIMIT bytes, on recursion, on frames of unknown size and on a missing root.
+# A call through a pointer may reach every function with a NAME of via: in its name; without one it is a fault. absent:
+# names a weak function that nobody defines: it is called only if it exists.
 # Control interrupt and background share the stack, so the depths of the roots and an exception frame each are added.
 set -eu
 folder=$1 limit=$2
@@ -25,19 +27,40 @@ find "$folder" -name '*.ci' -exec cat {} + | awk -v limit="$limit" -v roots="$*"
     source = field("sourcename"); target = field("targetname")
     if (!((source, target) in seen)) { seen[source, target] = 1; callee[source, ++callees[source]] = target }
   }
-  # Our function at the end of a recursion is a fault; the compiler cannot see behind pointers, which we do not use.
+  # What the compiler does not see the inside of: block operations and integer division, which use little or no stack.
+  function is_library(f) { return f ~ /^(mem(cpy|set|move|cmp)|__aeabi_[a-z0-9_]+|__builtin_[a-z_]+)$/ }
+  function complain(text) { print text > "/dev/stderr"; broken = 1 }
   function depth(f,   i, most, d) {
     if (f in known) return known[f]
-    if (f in open) { print "recursion through " f > "/dev/stderr"; broken = 1; return 0 }
+    if ((is_library(f) || f in absent) && !(f in frame)) return known[f] = 0
+    if (f == "__indirect_call") return known[f] = through_pointers()
+    if (!(f in frame)) complain("no call graph of " f)
+    if (f in open) { complain("recursion through " f); return 0 }
     open[f] = 1
-    if (f in unbounded) { print "frame of unknown size: " f > "/dev/stderr"; broken = 1 }
+    if (f in unbounded) complain("frame of unknown size: " f)
     most = 0
     for (i = 1; i <= callees[f]; i++) { d = depth(callee[f, i]); if (d > most) most = d }
     delete open[f]
     return known[f] = most + frame[f]
   }
+  function through_pointers(   i, f, found, most, d) {
+    most = 0
+    for (i = 1; i <= pointed; i++) {
+      found = 0
+      for (f in frame) if (index(f, behind_pointer[i])) { found = 1; d = depth(f); if (d > most) most = d }
+      if (!found) complain("no function " behind_pointer[i] " in the call graph")
+    }
+    if (!pointed) complain("a call through a pointer, to nobody knows where")
+    return most
+  }
   END {
-    n = split(roots, wanted, " ")
+    words = split(roots, word, " ")
+    n = 0
+    for (i = 1; i <= words; i++) {
+      if (sub(/^via:/, "", word[i])) behind_pointer[++pointed] = word[i]
+      else if (sub(/^absent:/, "", word[i])) absent[word[i]] = 1
+      else wanted[++n] = word[i]
+    }
     exception_frame = 108  # with FPU registers and alignment: ARMv7-M ARM, B1.5.7
     for (i = 1; i <= n; i++) {
       worst = -1

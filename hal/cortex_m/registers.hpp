@@ -71,8 +71,12 @@ struct InterruptController {
 inline InterruptController& interrupt_controller() { return at_address<InterruptController>(0xE000E100); }
 
 /// `priority`: 0 is the most urgent; the chip implements the upper 4 of 8 bits (RM0090, section 12.1.1).
-inline void enable_interrupt(std::uint32_t number, std::uint8_t priority) {
+inline void set_interrupt_priority(std::uint32_t number, std::uint8_t priority) {
   interrupt_controller().IPR[number] = static_cast<std::uint8_t>(priority << 4);
+}
+
+inline void enable_interrupt(std::uint32_t number, std::uint8_t priority) {
+  set_interrupt_priority(number, priority);
   interrupt_controller().ISER[number / 32] = 1u << (number % 32);
 }
 

@@ -147,6 +147,21 @@ struct IndependentWatchdog {
 };
 inline IndependentWatchdog& independent_watchdog() { return at_address<IndependentWatchdog>(0x40003000); }
 
+/// Full-speed USB, section 34.16.2: its global registers as far as TinyUSB leaves them to us.
+struct OtgFsGlobal {
+  std::uint32_t reserved0[14];
+  Register GCCFG;
+
+  static constexpr std::uint32_t kNoVbusSensing = 1u << 21;
+};
+inline OtgFsGlobal& otg_fs_global() { return at_address<OtgFsGlobal>(0x50000000); }
+
+/// Unique device identifier, section 39.1: 96 bits, the least significant first.
+struct UniqueIdentifier {
+  std::uint32_t words[3];
+};
+inline const UniqueIdentifier& unique_identifier() { return at_address<const UniqueIdentifier>(0x1FFF7A10); }
+
 /// Interrupt numbers, table 62.
 inline constexpr std::uint32_t kDma2Stream0Interrupt = 56;
 inline constexpr std::uint32_t kOtgFsInterrupt = 67;

@@ -9,7 +9,8 @@ using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): this fil
 namespace {
 
 // Alternate functions: STM32F405 datasheet, table 9.
-constexpr std::uint32_t kTimer2Function = 1, kTimer5Function = 2, kSpi1Function = 5, kUsart1Function = 7;
+constexpr std::uint32_t kTimer2Function = 1, kTimer5Function = 2, kSpi1Function = 5, kUsart1Function = 7,
+                        kUsbFunction = 10;
 
 void connect_pins() {
   pins::dac_not_clear().make_output(false);  // the converter's own way to 0 V, whatever it holds
@@ -23,6 +24,8 @@ void connect_pins() {
     pin.make_alternate(kSpi1Function);
   pins::serial_out().make_alternate(kUsart1Function);
   pins::serial_in().make_alternate(kUsart1Function, Pull::up);
+  pins::usb_minus().make_alternate(kUsbFunction);
+  pins::usb_plus().make_alternate(kUsbFunction);
   pins::tachometer_x().make_analogue();
   pins::tachometer_y().make_analogue();
   pins::led_running().make_output(false);
@@ -60,6 +63,14 @@ void Board::start_control(std::uint32_t rate_Hz) {
   timer.CR2 = Timer::kTriggerOnUpdate;
   timer.EGR = Timer::kUpdate;
   timer.CR1 = Timer::kEnable;
+}
+
+bool Board::start_usb() {
+  constexpr std::uint8_t kPriority = 6;
+  power_usb_controller(rcc(), otg_fs_global());
+  hal::cortex_m::set_interrupt_priority(kOtgFsInterrupt, kPriority);
+  const auto serial_number = serial_number_text(unique_identifier());
+  return usb_.start({serial_number.data(), serial_number.size()});
 }
 
 void Board::acknowledge_control() {

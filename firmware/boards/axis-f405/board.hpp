@@ -11,7 +11,9 @@
 #include "hal/stm32f4/spi_port.hpp"
 #include "hal/stm32f4/tachometer_adc.hpp"
 #include "hal/stm32f4/usart_port.hpp"
+#include "hal/stm32f4/usb_controller.hpp"
 #include "hal/stm32f4/watchdog.hpp"
+#include "hal/tinyusb/hid_port.hpp"
 
 namespace firmware::boards {
 
@@ -54,12 +56,15 @@ class Board {
 
   /// Converts the tachometers and calls the control interrupt at this rate, 250 Hz to 20 kHz.
   void start_control(std::uint32_t rate_Hz);
+  /// Shows the board to the computer at its other end. False when the controller does not answer.
+  bool start_usb();
   /// First thing in the control interrupt.
   void acknowledge_control();
 
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
   hal::stm32f4::StopInput& emergency_stop() { return stop_; }
   hal::stm32f4::UsartPort& serial() { return serial_; }
+  hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::Watchdog& watchdog() { return watchdog_; }
   void show(bool running, bool fault);
 
@@ -81,6 +86,7 @@ class Board {
                   {pins::positive_end_y(), pins::negative_end_y(), pins::home_y()}};
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
   hal::stm32f4::UsartPort serial_{hal::stm32f4::usart1()};
+  hal::tinyusb::HidPort usb_;
   hal::stm32f4::Watchdog watchdog_{hal::stm32f4::independent_watchdog()};
 };
 

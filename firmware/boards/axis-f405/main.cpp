@@ -60,6 +60,8 @@ extern "C" void control_interrupt() {
   last.supervisor_rounds = liveness.supervisor_rounds();
 }
 
+extern "C" void usb_interrupt() { firmware::boards::board().usb().handle_interrupt(); }
+
 extern "C" [[noreturn]] void run_board() {
   using namespace firmware::boards;
   const bool periphery_works = board().start();
@@ -73,9 +75,11 @@ extern "C" [[noreturn]] void run_board() {
   survival_record().watchdog_armed = 1;
   board().start_control(kControlRate_Hz);
   board().watchdog().start(kWatchdog_ms);
+  if (!board().start_usb()) TextWriter(board().serial()) << "periphery: the USB controller does not answer\n";
   for (;;) {
     supervise();
     if (liveness.may_feed()) board().watchdog().feed();
+    board().usb().poll();
     serve(last_run, image);
   }
 }

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace guest_test {
 
@@ -74,7 +75,8 @@ Cp2112::Cp2112(std::uint8_t pulled_up) : pulled_up_(pulled_up) {
   if (device_ < 0 || stop_event_ < 0) throw std::runtime_error(std::string("/dev/uhid: ") + std::strerror(errno));
   uhid_event create{};
   create.type = UHID_CREATE2;
-  std::strcpy(reinterpret_cast<char*>(create.u.create2.name), "CP2112");
+  constexpr std::string_view kName = "CP2112";
+  std::copy(kName.begin(), kName.end(), create.u.create2.name);
   create.u.create2.rd_size = kReportDescriptor.size();
   std::copy(kReportDescriptor.begin(), kReportDescriptor.end(), create.u.create2.rd_data);
   create.u.create2.bus = 3;  // USB: linux/input.h

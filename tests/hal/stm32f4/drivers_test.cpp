@@ -11,6 +11,7 @@
 #include "hal/stm32f4/spi_port.hpp"
 #include "hal/stm32f4/tachometer_adc.hpp"
 #include "hal/stm32f4/usart_port.hpp"
+#include "hal/stm32f4/usb_controller.hpp"
 #include "hal/stm32f4/watchdog.hpp"
 
 namespace {
@@ -212,6 +213,22 @@ TEST(Watchdog, AllowsForTheEraseOfASectorAndThenIsQuickAgain) {
   watchdog.allow(50);
   EXPECT_EQ(registers.PR, 2u);
   EXPECT_EQ(registers.RLR, 100u);
+}
+
+TEST(UsbController, IsClockedAndConnectedWithoutVbus) {
+  Rcc rcc{};
+  hal::stm32f4::OtgFsGlobal controller{};
+  rcc.AHB2ENR = 1u;
+  hal::stm32f4::power_usb_controller(rcc, controller);
+  EXPECT_EQ(rcc.AHB2ENR, 1u | 1u << 7);
+  EXPECT_EQ(controller.GCCFG, 1u << 21);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(&controller.GCCFG) - reinterpret_cast<std::uintptr_t>(&controller), 0x38u);
+}
+
+TEST(UsbController, MakesTheChipsIdentifierItsSerialNumber) {
+  const hal::stm32f4::UniqueIdentifier identifier{{0x89ABCDEF, 0x01234567, 0x00FEDCBA}};
+  const auto text = hal::stm32f4::serial_number_text(identifier);
+  EXPECT_EQ(std::string(text.begin(), text.end()), "00FEDCBA0123456789ABCDEF");
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+# TinyUSB's device stack, compiled where Debian's package of its sources lies. Its warnings are its own affair.
+include_guard()
+axis_newer_package(tinyusb-source TINYUSB_PACKAGE REQUIRED)
+set(TINYUSB "${TINYUSB_PACKAGE}/usr/src/tinyusb/src")
+set(TINYUSB_SOURCES "${TINYUSB}/tusb.c" "${TINYUSB}/common/tusb_fifo.c" "${TINYUSB}/device/usbd.c"
+    "${TINYUSB}/device/usbd_control.c")
+# Its driver for the controller of the STM32F4.
+set(TINYUSB_DWC2_SOURCES "${TINYUSB}/portable/synopsys/dwc2/dcd_dwc2.c" "${TINYUSB}/portable/synopsys/dwc2/dwc2_common.c")
+file(GLOB HID_FUNCTION_SOURCES CONFIGURE_DEPENDS "${AXIS_ROOT}/hal/tinyusb/*.cpp")
+
+# axis_usb_device(TARGET MCU [SOURCE...]): adds the stack, the HID function and SOURCEs of a controller driver.
+function(axis_usb_device TARGET MCU)
+  set(C_SOURCES ${TINYUSB_SOURCES} ${ARGN})
+  list(FILTER C_SOURCES INCLUDE REGEX "\\.c$")
+  set_source_files_properties(${C_SOURCES} PROPERTIES COMPILE_OPTIONS "-w;-ffunction-sections")
+  target_sources(${TARGET} PRIVATE ${TINYUSB_SOURCES} ${HID_FUNCTION_SOURCES} ${ARGN})
+  target_include_directories(${TARGET} PRIVATE "${AXIS_ROOT}/hal/tinyusb")
+  target_include_directories(${TARGET} SYSTEM PRIVATE "${TINYUSB}")
+  target_link_options(${TARGET} PRIVATE -Wl,--gc-sections)  # its delays would need a clock; nothing calls them
+  target_compile_definitions(${TARGET} PRIVATE CFG_TUSB_MCU=${MCU})
+endfunction()
