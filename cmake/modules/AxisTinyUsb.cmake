@@ -16,6 +16,6 @@ function(axis_usb_device TARGET MCU)
   target_sources(${TARGET} PRIVATE ${TINYUSB_SOURCES} ${HID_FUNCTION_SOURCES} ${ARGN})
   target_include_directories(${TARGET} PRIVATE "${AXIS_ROOT}/hal/tinyusb")
   target_include_directories(${TARGET} SYSTEM PRIVATE "${TINYUSB}")
-  target_link_options(${TARGET} PRIVATE -Wl,--gc-sections)  # its delays would need a clock; nothing calls them
+  target_link_options(${TARGET} PUBLIC -Wl,--gc-sections)  # its delays would need a clock; nothing calls them
   target_compile_definitions(${TARGET} PRIVATE CFG_TUSB_MCU=${MCU})
 endfunction()
