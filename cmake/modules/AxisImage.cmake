@@ -24,7 +24,7 @@ set(CPU_FLAGS_m0plus -mcpu=cortex-m0plus -mthumb)
 # Contraction is off on every machine: with it, a multiplication and an addition round once here and twice elsewhere.
 add_library(axis_target_flags INTERFACE)
 target_link_libraries(axis_target_flags INTERFACE axis_core_flags)
-target_compile_options(axis_target_flags INTERFACE -O3 -g -ffp-contract=off -fno-exceptions -fno-rtti
+target_compile_options(axis_target_flags INTERFACE -O3 -fno-schedule-insns -g -ffp-contract=off -fno-exceptions -fno-rtti
   -fno-threadsafe-statics -fno-use-cxa-atexit -ffunction-sections -fdata-sections -fno-common -fstack-usage
   -fcallgraph-info=su)
 target_link_options(axis_target_flags INTERFACE -nostartfiles --specs=nano.specs --specs=nosys.specs -Wl,--gc-sections

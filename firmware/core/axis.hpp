@@ -89,6 +89,11 @@ class Axis {
   /// Slows down to standstill within the limits.
   constexpr void stop() { generator_.stop(); }
 
+  /// The same after step_with(): takes the reference over from the interpolator.
+  constexpr void stop_interpolated() {
+    if (generator_.at_rest()) generator_.stop_from(preview_.newest());
+  }
+
   /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
     return plan_move(target - preview_.leading(), limits_);
@@ -121,6 +126,9 @@ class Axis {
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
   constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
 
+  /// Opens the loop because of a fault that somebody else found.
+  constexpr void trip(AxisFault fault) { fail(fault); }
+
  private:
   using Traits = ScalarTraits<Scalar>;
 
@@ -128,31 +136,31 @@ class Axis {
     const hal::EncoderReading encoder = hal_.encoder().read();
     if (!encoder.valid) return fail(AxisFault::encoder_invalid);
     if (!is_synchronised_) {
-      estimator_.reset(counter_.extend(encoder.counts));
+      telemetry_.estimate = estimator_.at_rest(counter_.extend(encoder.counts));
       preview_.reset(CountPosition::at(counter_.counts()));
       model_input_V_ = Scalar(0);
       is_synchronised_ = true;
     }
-    telemetry_.encoder_counts = counter_.extend(encoder.counts);
+    telemetry_.encoder_travel = counter_.advance(encoder.counts);
+    telemetry_.encoder_counts = counter_.counts();
     if (parameters_.tachometer_fitted) {
       const hal::TachometerReading tachometer = hal_.tachometer().read();
       if (!tachometer.valid) return fail(AxisFault::tachometer_invalid);
       telemetry_.tachometer_velocity =
           Traits::times(tachometer.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
-      estimator_.update(model_input_V_, telemetry_.encoder_counts, telemetry_.tachometer_velocity);
+      estimator_.update(telemetry_.estimate, model_input_V_, telemetry_.encoder_counts, telemetry_.tachometer_velocity);
     } else {
-      estimator_.update(model_input_V_, telemetry_.encoder_counts);
+      estimator_.update(telemetry_.estimate, model_input_V_, telemetry_.encoder_counts);
     }
-    telemetry_.estimate = estimator_.estimate();
     return true;
   }
 
   constexpr void control() {
-    const AxisEstimate<Scalar>& estimate = estimator_.estimate();
+    const AxisEstimate<Scalar>& estimate = telemetry_.estimate;
     telemetry_.reference = preview_.position();
     telemetry_.reference_velocity = preview_.velocity(0);
     telemetry_.position_error =
-        counts_from<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution -
+        counts_near<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution -
         estimate.offset;
     telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
     Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity +
@@ -160,7 +168,9 @@ class Axis {
     if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
     telemetry_.control_V = control_V;
     if (Traits::is_nan(control_V)) {
-      fail(AxisFault::control_signal_not_a_number);
+      fail(Traits::is_nan(estimate.offset + estimate.velocity + estimate.disturbance)
+               ? AxisFault::state_not_a_number
+               : AxisFault::control_signal_not_a_number);
       return;
     }
     const DacWord<Scalar> word = dac_(control_V);

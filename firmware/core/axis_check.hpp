@@ -83,4 +83,22 @@ constexpr ParameterError check(const AxisParameters<Scalar>& p) {
   return ParameterError::none;
 }
 
+/// Likewise for the monitors; every one of them must have a threshold.
+template <typename Scalar>
+constexpr ParameterError check_monitors(const AxisParameters<Scalar>& p) {
+  using parameter_check::is_positive;
+  const MonitorLimits<Scalar>& m = p.monitors;
+  const auto is_share = [](Scalar value) { return value >= Scalar(0) && ScalarTraits<Scalar>::is_finite(value); };
+  if (!is_positive(m.following_error_floor) || !is_share(m.following_error_per_velocity))
+    return ParameterError::following_error;
+  if (!is_positive(m.disagreement_floor) || !is_share(m.disagreement_share) || m.disagreement_share > Scalar(1) ||
+      !is_positive(m.encoder_jump) || !(m.encoder_jump > m.disagreement_floor))
+    return ParameterError::disagreement;
+  if (!is_positive(m.overspeed) || !(m.overspeed > p.velocity_limit / p.lead)) return ParameterError::overspeed;
+  if (!is_positive(m.polarity_command_V)) return ParameterError::polarity_command;
+  if (m.travel_min_counts >= m.travel_max_counts) return ParameterError::travel;
+  if (m.saturation_samples <= 0 || m.capture_stride <= 0) return ParameterError::saturation_time;
+  return ParameterError::none;
+}
+
 }  // namespace firmware

@@ -1,17 +1,36 @@
-// What stops an axis from inside its control law. Numbers are permanent.
+// What stops an axis. Numbers are permanent: a fault keeps its number for ever, and a number is never given again.
 #pragma once
 
 #include <cstdint>
 
 namespace firmware {
 
+/// Causes and remedies: supervision/fault_table.hpp.
 enum class AxisFault : std::uint8_t {
   none = 0,
-  encoder_invalid = 1,     ///< the encoder reported an invalid reading
-  tachometer_invalid = 2,  ///< the tachometer reported an invalid reading although one is fitted
+  encoder_invalid = 1,
+  tachometer_invalid = 2,
   control_signal_not_a_number = 3,
   dac_write_failed = 4,
-  parameters_missing = 5  ///< enable was asked for before parameters were accepted
+  parameters_missing = 5,  ///< enable was asked for before parameters were accepted
+  following_error = 6,
+  encoder_tachometer_disagreement = 7,
+  encoder_jump = 8,
+  feedback_polarity = 9,
+  overspeed = 10,
+  travel_limit = 11,
+  limit_switch_positive = 12,
+  limit_switch_negative = 13,
+  saturation_too_long = 14,
+  drive_fault = 15,
+  emergency_stop = 16,
+  state_not_a_number = 17,
+  control_overrun = 18,
+  host_heartbeat_lost = 19,
+  parameter_store_damaged = 20,
+  supply_low = 21,
+  reference_out_of_limits = 22,
+  other_axis_stopped = 23,
 };
 
 }  // namespace firmware

@@ -7,6 +7,7 @@
 #include "firmware/core/friction_feedforward.hpp"
 #include "firmware/core/kalman_estimator.hpp"
 #include "firmware/core/reference_feedforward.hpp"
+#include "firmware/core/supervision/monitor_limits.hpp"
 
 namespace firmware {
 
@@ -32,6 +33,8 @@ struct AxisParameters {
   bool disturbance_cancellation_on = false;
   bool zero_phase_feedforward_on = false;  ///< off: the reference velocity alone, eqs. (50) and (52)
 
+  MonitorLimits<Scalar> monitors{};  ///< for SupervisedAxis; Axis alone has no monitors
+
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
   Scalar jerk_limit{};          ///< mm/s^3 (m/s^3)
@@ -39,22 +42,28 @@ struct AxisParameters {
 
 enum class ParameterError : std::uint8_t {
   none = 0,
-  sample_period = 1,          ///< not above 0
-  lead = 2,                   ///< not above 0
-  encoder_resolution = 3,     ///< not above 0
-  dac_resolution = 4,         ///< not above 0
-  dac_limit = 5,              ///< below 2 or above 2^23 steps of the converter
-  tachometer_gain = 6,        ///< gain zero, or gain or offset not finite, although a tachometer is fitted
-  drive_model = 7,            ///< Ad12, Bd1 or Bd2 not above 0, or Ad22 outside (0, 1]
-  kalman_gain = 8,            ///< not finite
-  state_feedback = 9,         ///< not finite
-  friction_curve = 10,        ///< a magnitude below 0, or not finite
-  friction_blend = 11,        ///< not above 0 although friction feed-forward is on
-  velocity_limit = 12,        ///< not above 0, or outside the references' range (motion_limits.hpp)
-  acceleration_limit = 13,    ///< likewise
-  jerk_limit = 14,            ///< likewise
-  jerk_time = 15,             ///< acceleration limit / jerk limit too long
-  controller_is_enabled = 16  ///< parameters change only while the axis is disabled
+  sample_period = 1,           ///< not above 0
+  lead = 2,                    ///< not above 0
+  encoder_resolution = 3,      ///< not above 0
+  dac_resolution = 4,          ///< not above 0
+  dac_limit = 5,               ///< below 2 or above 2^23 steps of the converter
+  tachometer_gain = 6,         ///< gain zero, or gain or offset not finite, although a tachometer is fitted
+  drive_model = 7,             ///< Ad12, Bd1 or Bd2 not above 0, or Ad22 outside (0, 1]
+  kalman_gain = 8,             ///< not finite
+  state_feedback = 9,          ///< not finite
+  friction_curve = 10,         ///< a magnitude below 0, or not finite
+  friction_blend = 11,         ///< not above 0 although friction feed-forward is on
+  velocity_limit = 12,         ///< not above 0, or outside the references' range (motion_limits.hpp)
+  acceleration_limit = 13,     ///< likewise
+  jerk_limit = 14,             ///< likewise
+  jerk_time = 15,              ///< acceleration limit / jerk limit too long
+  controller_is_enabled = 16,  ///< parameters change only while the axis is disabled
+  following_error = 17,        ///< floor not above 0, or share below 0
+  disagreement = 18,           ///< floor not above 0, share outside 0..1, or jump not above the floor
+  overspeed = 19,              ///< not above the velocity limit
+  polarity_command = 20,       ///< not above 0
+  travel = 21,                 ///< minimum not below maximum
+  saturation_time = 22,        ///< or the capture's stride not above 0
 };
 
 }  // namespace firmware

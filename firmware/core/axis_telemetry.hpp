@@ -9,18 +9,24 @@
 
 namespace firmware {
 
-/// Plain data, filled anew by every step; lengths in mm (m), velocities in rad/s (m/s).
+/// The part that a capture keeps. Lengths in mm (m), velocities in rad/s (m/s).
 template <typename Scalar>
-struct AxisTelemetry {
-  std::int64_t encoder_counts = 0;
+struct AxisSample {
+  AxisEstimate<Scalar> estimate{};  ///< x_hat with the encoder's counts, w_hat, d_hat (V)
   Scalar tachometer_velocity{};     ///< calibrated reading; 0 without a tachometer
-  CountPosition reference{};        ///< xref(k), counts
   Scalar reference_velocity{};      ///< wref(k), eq. (52)
   Scalar position_error{};          ///< xref(k) - x_hat(k)
-  AxisEstimate<Scalar> estimate{};  ///< x_hat, w_hat, d_hat (V)
+  std::int32_t dac_code = 0;        ///< what the converter was given
+};
+
+/// Plain data, filled anew by every step.
+template <typename Scalar>
+struct AxisTelemetry : AxisSample<Scalar> {
+  std::int64_t encoder_counts = 0;
+  std::int32_t encoder_travel = 0;  ///< counts since the last sample
+  CountPosition reference{};        ///< xref(k), counts
   Scalar friction_V{};              ///< friction feed-forward contained in the control signal
   Scalar control_V{};               ///< u(k) before limits and rounding
-  std::int32_t dac_code = 0;        ///< what the converter was given
   bool saturated = false;           ///< u(k) was beyond the converter's range
   bool enabled = false;
   AxisFault fault = AxisFault::none;

@@ -42,12 +42,18 @@ struct CountPosition {
 /// Distance from a whole count to a position, counts, as a scalar. Beyond 2^31 counts it stays at that limit.
 template <typename Scalar>
 constexpr Scalar counts_from(std::int64_t origin, const CountPosition& position) {
-  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
-  std::int64_t whole = position.counts - origin;
-  if (whole > kMost) whole = kMost;
-  if (whole < -kMost) whole = -kMost;
-  return ScalarTraits<Scalar>::from_integer(static_cast<std::int32_t>(whole)) +
-         ScalarTraits<Scalar>::from_increment(position.fraction);
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  const std::int64_t distance = position.counts - origin;
+  auto whole = static_cast<std::int32_t>(distance);
+  if (whole != distance) whole = distance < 0 ? -kMost : kMost;
+  return ScalarTraits<Scalar>::from_integer(whole) + ScalarTraits<Scalar>::from_fraction(position.fraction);
+}
+
+/// The same for a position nearer than 2^31 counts.
+template <typename Scalar>
+constexpr Scalar counts_near(std::int64_t origin, const CountPosition& position) {
+  return ScalarTraits<Scalar>::from_integer(static_cast<std::int32_t>(position.counts - origin)) +
+         ScalarTraits<Scalar>::from_fraction(position.fraction);
 }
 
 /// Extends a counter that wraps at 2^32 to 64 bits, from a first reading in -2^31..2^31-1. Right while it moves less
@@ -55,8 +61,15 @@ constexpr Scalar counts_from(std::int64_t origin, const CountPosition& position)
 class CountExtender {
  public:
   constexpr std::int64_t extend(std::uint32_t reading) {
-    counts_ += static_cast<std::int32_t>(reading - static_cast<std::uint32_t>(counts_));
+    advance(reading);
     return counts_;
+  }
+
+  /// The same; returns the travel since the last reading.
+  constexpr std::int32_t advance(std::uint32_t reading) {
+    const auto travel = static_cast<std::int32_t>(reading - static_cast<std::uint32_t>(counts_));
+    counts_ += travel;
+    return travel;
   }
 
   constexpr std::int64_t counts() const { return counts_; }

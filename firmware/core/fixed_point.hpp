@@ -118,6 +118,7 @@ struct ScalarTraits<Fixed<fraction_bits>> {
   static constexpr std::int32_t truncate(Scalar value) { return value.raw() / (std::int32_t{1} << fraction_bits); }
 
   static constexpr bool is_nan(Scalar) { return false; }
+  static constexpr Scalar magnitude(Scalar value) { return value.raw() < 0 ? Scalar{} - value : value; }
 
   /// A value at a limit of the range stands for one that did not fit.
   static constexpr bool is_finite(Scalar value) {
@@ -132,6 +133,8 @@ struct ScalarTraits<Fixed<fraction_bits>> {
     constexpr int kShift = kFractionBits - fraction_bits;
     return Scalar::from_raw(Scalar::saturate((increment + (std::int64_t{1} << (kShift - 1))) >> kShift));
   }
+
+  static constexpr Scalar from_fraction(std::int64_t fraction) { return from_increment(fraction); }
 
   static constexpr std::int64_t to_increment(Scalar counts) {
     return std::int64_t{counts.raw()} << (kFractionBits - fraction_bits);

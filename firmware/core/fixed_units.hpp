@@ -66,6 +66,18 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.friction_feedforward_on = p.friction_feedforward_on;
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
   q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;
+  const MonitorLimits<Real>& m = p.monitors;
+  q.monitors = {fixed(m.following_error_floor / unit.length),
+                fixed(m.following_error_per_velocity * unit.velocity / unit.length),
+                fixed(m.disagreement_floor / unit.velocity),
+                fixed(m.disagreement_share),
+                fixed(m.encoder_jump / unit.velocity),
+                fixed(m.overspeed / unit.velocity),
+                fixed(m.polarity_command_V / unit.volts),
+                m.travel_min_counts,
+                m.travel_max_counts,
+                m.saturation_samples,
+                m.capture_stride};
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
   q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);
   q.jerk_limit = fixed(p.jerk_limit / unit.travel_velocity * unit.time_s * unit.time_s);

@@ -26,14 +26,14 @@ class JogProfile {
   /// velocity.
   constexpr void take_over(Increment velocity) {
     velocity_ = target_ = velocity;
-    step_ = 0;
+    level();
     settling_ = true;
   }
 
   /// Standing, from now on.
   constexpr void reset() {
     velocity_ = target_ = 0;
-    step_ = 0;
+    level();
     settling_ = false;
   }
 
@@ -56,8 +56,15 @@ class JogProfile {
       return velocity_;
     }
     const bool upward = missing >= 0;
-    step_ = upward ? best_step(step_, amount) : -best_step(-step_, amount);
-    velocity_ += acceleration_step_ * step_;
+    if (step_ == 0) upward_ = upward;
+    if (upward_ != upward) {
+      step_less();  // still leads away from the target
+    } else if (step_ < most_steps_ && next_run_out_ <= amount) {
+      step_more();
+    } else if (run_out_ > amount) {
+      step_less();
+    }
+    velocity_ += upward_ ? acceleration_ : -acceleration_;
     return velocity_;
   }
 
@@ -67,20 +74,32 @@ class JogProfile {
   constexpr Increment velocity() const { return velocity_; }
 
  private:
-  /// Velocity added while the step falls from n to 0, one a sample, n included.
-  constexpr Increment run_out(std::int32_t n) const { return acceleration_step_ * ((std::int64_t{n} * (n + 1)) >> 1); }
-
-  /// The next step towards a velocity that lies `amount` ahead; a step below 0 still leads away from it.
-  constexpr std::int32_t best_step(std::int32_t step, Increment amount) const {
-    if (step < 0) return step + 1;
-    if (step < most_steps_ && run_out(step + 1) <= amount) return step + 1;
-    return run_out(step) <= amount ? step : step - 1;
+  constexpr void level() {
+    step_ = 0;
+    acceleration_ = run_out_ = 0;
+    next_run_out_ = acceleration_step_;
+  }
+  constexpr void step_more() {
+    ++step_;
+    acceleration_ += acceleration_step_;
+    run_out_ = next_run_out_;
+    next_run_out_ += acceleration_ + acceleration_step_;
+  }
+  constexpr void step_less() {
+    --step_;
+    next_run_out_ = run_out_;
+    run_out_ -= acceleration_;
+    acceleration_ -= acceleration_step_;
   }
 
   Increment velocity_limit_ = 0;
   Increment acceleration_step_ = 1;
   std::int32_t most_steps_ = 1;  // below 2^30: so many steps of at least 16 units, and their sum, pass check()
-  std::int32_t step_ = 0;
+  std::int32_t step_ = 0;        ///< >= 0; which way, says upward_
+  Increment acceleration_ = 0;   ///< acceleration_step_ * step_
+  Increment run_out_ = 0;        ///< velocity added while the step falls to 0, one a sample, the present one included
+  Increment next_run_out_ = 1;   ///< the same with one step more
+  bool upward_ = true;
   Increment velocity_ = 0;
   Increment target_ = 0;
   bool settling_ = false;

@@ -36,21 +36,22 @@ class KalmanEstimator {
   }
 
   /// Standing at the given reading, without disturbance.
-  constexpr void reset(std::int64_t encoder_counts) { estimate_ = {encoder_counts, Scalar(0), Scalar(0), Scalar(0)}; }
+  static constexpr AxisEstimate<Scalar> at_rest(std::int64_t encoder_counts) {
+    return {encoder_counts, Scalar(0), Scalar(0), Scalar(0)};
+  }
 
   /// Eq. (43), written as prediction and innovation, which is the same sum. `input`: u(k-1), V, what the drive was
   /// given since the last call. `velocity`: tachometer, rad/s (m/s).
-  constexpr void update(Scalar input, std::int64_t encoder_counts, Scalar velocity) {
-    const Prediction predicted = predict(input, encoder_counts);
-    correct(predicted, encoder_counts, velocity - predicted.velocity);
+  constexpr void update(AxisEstimate<Scalar>& estimate, Scalar input, std::int64_t encoder_counts,
+                        Scalar velocity) const {
+    const Prediction predicted = predict(estimate, input, encoder_counts);
+    correct(estimate, predicted, encoder_counts, velocity - predicted.velocity);
   }
 
   /// The same for a drive without tachometer.
-  constexpr void update(Scalar input, std::int64_t encoder_counts) {
-    correct(predict(input, encoder_counts), encoder_counts, Scalar(0));
+  constexpr void update(AxisEstimate<Scalar>& estimate, Scalar input, std::int64_t encoder_counts) const {
+    correct(estimate, predict(estimate, input, encoder_counts), encoder_counts, Scalar(0));
   }
-
-  constexpr const AxisEstimate<Scalar>& estimate() const { return estimate_; }
 
  private:
   struct Prediction {
@@ -58,27 +59,26 @@ class KalmanEstimator {
     Scalar velocity;
   };
 
-  constexpr Prediction predict(Scalar input, std::int64_t encoder_counts) const {
-    const Scalar net_input = input - estimate_.disturbance;
-    const auto travel = static_cast<std::int32_t>(encoder_counts - estimate_.anchor_counts);
+  constexpr Prediction predict(const AxisEstimate<Scalar>& estimate, Scalar input, std::int64_t encoder_counts) const {
+    const Scalar net_input = input - estimate.disturbance;
+    const auto travel = static_cast<std::int32_t>(encoder_counts - estimate.anchor_counts);
     const Scalar measured = ScalarTraits<Scalar>::times(travel, count_length_);
-    return {estimate_.offset + drive_.Ad12 * estimate_.velocity + drive_.Bd1 * net_input - measured,
-            drive_.Ad22 * estimate_.velocity + drive_.Bd2 * net_input};
+    return {estimate.offset + drive_.Ad12 * estimate.velocity + drive_.Bd1 * net_input - measured,
+            drive_.Ad22 * estimate.velocity + drive_.Bd2 * net_input};
   }
 
-  constexpr void correct(const Prediction& predicted, std::int64_t encoder_counts, Scalar velocity_innovation) {
+  constexpr void correct(AxisEstimate<Scalar>& estimate, const Prediction& predicted, std::int64_t encoder_counts,
+                         Scalar velocity_innovation) const {
     const Scalar position_innovation = Scalar(0) - predicted.offset;
-    estimate_.anchor_counts = encoder_counts;
-    estimate_.offset = predicted.offset + gain_[0][0] * position_innovation + gain_[0][1] * velocity_innovation;
-    estimate_.velocity = predicted.velocity + gain_[1][0] * position_innovation + gain_[1][1] * velocity_innovation;
-    estimate_.disturbance =
-        estimate_.disturbance + gain_[2][0] * position_innovation + gain_[2][1] * velocity_innovation;
+    estimate.anchor_counts = encoder_counts;
+    estimate.offset = predicted.offset + gain_[0][0] * position_innovation + gain_[0][1] * velocity_innovation;
+    estimate.velocity = predicted.velocity + gain_[1][0] * position_innovation + gain_[1][1] * velocity_innovation;
+    estimate.disturbance = estimate.disturbance + gain_[2][0] * position_innovation + gain_[2][1] * velocity_innovation;
   }
 
   DiscreteDrive<Scalar> drive_{};
   KalmanGain<Scalar> gain_{};
   Scalar count_length_{};
-  AxisEstimate<Scalar> estimate_{};
 };
 
 }  // namespace firmware

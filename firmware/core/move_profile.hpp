@@ -13,14 +13,15 @@ class MoveProfile {
  public:
   constexpr void start(const MovePlan& plan) {
     plan_ = plan;
+    measure();
     elapsed_ = 0;
     velocity_ = acceleration_ = last_ = 0;
   }
 
-  constexpr bool is_done() const { return elapsed_ >= plan_.samples(); }
+  constexpr bool is_done() const { return elapsed_ >= samples_; }
 
   /// True while the velocity changes according to a jerk; false in the steady stretch and before and after the move.
-  constexpr bool is_accelerating() const { return !is_done() && pulse_sample() < pulse_samples(); }
+  constexpr bool is_accelerating() const { return !is_done() && pulse_sample() < pulse_samples_; }
 
   constexpr bool is_slowing_down() const { return elapsed_ >= plan_.N1; }
 
@@ -30,16 +31,17 @@ class MoveProfile {
   /// Lets the acceleration run out from where it is now. Ask is_accelerating() for the end of it.
   constexpr void cut_acceleration() {
     const std::int32_t executed = pulse_sample();
-    if (executed >= pulse_samples()) return;
+    if (executed >= pulse_samples_) return;
     if (plan_.N3 > executed) plan_.N3 = executed;
     if (plan_.N2 > executed) plan_.N2 = executed;
+    measure();
   }
 
   constexpr Increment next() {
     if (is_done()) return 0;
     const std::int32_t sample = pulse_sample();
     if (sample == 0) acceleration_ = 0;
-    if (sample < pulse_samples()) {
+    if (sample < pulse_samples_) {
       if (sample < plan_.N3) acceleration_ += jerk_at(sample);
       if (sample >= plan_.N2) acceleration_ -= jerk_at(sample - plan_.N2);
       const Increment change = acceleration_ + (sample < plan_.acceleration_remainder ? 1 : 0);
@@ -52,14 +54,19 @@ class MoveProfile {
   }
 
  private:
+  constexpr void measure() {
+    samples_ = plan_.samples();
+    pulse_samples_ = plan_.N2 + plan_.N3 - 1;
+  }
   constexpr std::int32_t pulse_sample() const { return is_slowing_down() ? elapsed_ - plan_.N1 : elapsed_; }
-  constexpr std::int32_t pulse_samples() const { return plan_.N2 + plan_.N3 - 1; }
   constexpr Increment jerk_at(std::int32_t sample) const {
     return plan_.jerk + (sample < plan_.jerk_remainder ? 1 : 0);
   }
 
   MovePlan plan_{};
   std::int32_t elapsed_ = 0;
+  std::int32_t samples_ = 0;
+  std::int32_t pulse_samples_ = 0;
   Increment velocity_ = 0;
   Increment acceleration_ = 0;
   Increment last_ = 0;

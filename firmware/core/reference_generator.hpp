@@ -46,6 +46,15 @@ class ReferenceGenerator {
     jog(0);
   }
 
+  /// Slows down to standstill from a motion that somebody else made: `velocity` is its travel in the last sample. Its
+  /// acceleration ends at once.
+  constexpr void stop_from(Increment velocity) {
+    jog_.take_over(velocity);
+    jog_.set_target(0);
+    pending_jog_ = 0;
+    mode_ = MotionMode::jog;
+  }
+
   /// Only from rest; returns false otherwise, and nothing changes.
   constexpr bool start(const MovePlan& plan) {
     if (!at_rest()) return false;

@@ -17,14 +17,13 @@ class ReferencePreview {
   constexpr void configure(Scalar velocity_per_count) { velocity_per_count_ = velocity_per_count; }
 
   constexpr void reset(const CountPosition& position) {
-    position_ = leading_ = position;
+    position_ = position;
     increments_ = {};
     velocities_ = {};
   }
 
   /// Takes the newest increment of the reference, and makes the one from kPreviewSamples ago the present one.
   constexpr void push(Increment newest) {
-    leading_.advance(newest);
     for (int i = 0; i < kPreviewSamples; ++i) {
       increments_[i] = increments_[i + 1];
       velocities_[i] = velocities_[i + 1];
@@ -35,7 +34,13 @@ class ReferencePreview {
   }
 
   constexpr const CountPosition& position() const { return position_; }  ///< xref(k)
-  constexpr const CountPosition& leading() const { return leading_; }    ///< xref(k + kPreviewSamples)
+  /// xref(k + kPreviewSamples)
+  constexpr CountPosition leading() const {
+    CountPosition leading = position_;
+    for (int i = 1; i <= kPreviewSamples; ++i) leading.advance(increments_[i]);
+    return leading;
+  }
+  constexpr Increment newest() const { return increments_[kPreviewSamples]; }  ///< of leading() in the last sample
   /// wref(k + ahead) by eq. (52), rad/s (m/s), 0 <= ahead <= kPreviewSamples.
   constexpr Scalar velocity(int ahead) const { return velocities_[ahead]; }
   constexpr Scalar weighted_sum(const ReferenceFeedforward<Scalar>& feedforward) const {
@@ -46,7 +51,6 @@ class ReferencePreview {
 
  private:
   CountPosition position_{};
-  CountPosition leading_{};
   std::array<Increment, kPreviewSamples + 1> increments_{};
   std::array<Scalar, kPreviewSamples + 1> velocities_{};
   Scalar velocity_per_count_{};

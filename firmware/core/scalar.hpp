@@ -36,7 +36,13 @@ struct ScalarTraits<Real> {
   /// Toward zero. |value| < 2^31; outside that range machines differ, so callers limit first.
   static constexpr std::int32_t truncate(Real value) { return static_cast<std::int32_t>(value); }
 
-  static constexpr bool is_nan(Real value) { return !(value <= Real(0)) && !(value > Real(0)); }
+  static constexpr bool is_nan(Real value) { return !(value == value); }
+  static constexpr Real magnitude(Real value) {
+    if constexpr (sizeof(Real) == sizeof(float))
+      return __builtin_fabsf(value);
+    else
+      return __builtin_fabs(value);
+  }
   static constexpr bool is_finite(Real value) { return !is_nan(value * Real(0)); }
 
   /// value * 2^-exponent, 0 <= exponent < 127.
@@ -52,6 +58,12 @@ struct ScalarTraits<Real> {
     const auto high = static_cast<std::int32_t>(increment >> 32);
     const auto low = static_cast<std::uint32_t>(increment);
     return static_cast<Real>(high) * kHighUnit + static_cast<Real>(low) * kLowUnit;
+  }
+
+  /// A position's fraction of a count, 0 <= fraction < 2^48, as counts; what lies below 2^-31 counts is left out.
+  static constexpr Real from_fraction(std::int64_t fraction) {
+    constexpr Real kUnit = Real(1) / Real(std::int64_t{1} << 31);
+    return static_cast<Real>(static_cast<std::int32_t>(fraction >> (kFractionBits - 31))) * kUnit;
   }
 
   /// Counts as an increment, toward zero. |counts| < 2^15. In three pieces, each exact: a conversion to 64 bits is a

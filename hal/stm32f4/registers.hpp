@@ -35,7 +35,8 @@ struct Rcc {
   static constexpr std::uint32_t kGpioA = 1u << 0, kGpioB = 1u << 1, kGpioC = 1u << 2, kCcm = 1u << 20,
                                  kDma2 = 1u << 22;  // AHB1ENR, 7.3.10
   static constexpr std::uint32_t kOtgFs = 1u << 7;  // AHB2ENR, 7.3.11
-  static constexpr std::uint32_t kTim2 = 1u << 0, kTim3 = 1u << 1, kTim5 = 1u << 3, kPower = 1u << 28;      // APB1ENR
+  static constexpr std::uint32_t kTim2 = 1u << 0, kTim3 = 1u << 1, kTim4 = 1u << 2, kTim5 = 1u << 3,
+                                 kPower = 1u << 28;                                                         // APB1ENR
   static constexpr std::uint32_t kUsart1 = 1u << 4, kAdc1 = 1u << 8, kSpi1 = 1u << 12, kSyscfg = 1u << 14;  // APB2ENR
   static constexpr std::uint32_t kRemoveResetFlags = 1u << 24;  // CSR, 7.3.21
   static constexpr std::uint32_t kBrownOutReset = 1u << 25, kPinReset = 1u << 26, kPowerReset = 1u << 27,
@@ -47,7 +48,9 @@ inline Rcc& rcc() { return at_address<Rcc>(0x40023800); }
 /// Power control, section 5.4.
 struct Power {
   Register CR, CSR;
-  static constexpr std::uint32_t kScale1 = 1u << 14;  // CR.VOS: full speed
+  static constexpr std::uint32_t kScale1 = 1u << 14;                         // CR.VOS: full speed
+  static constexpr std::uint32_t kDetector = 1u << 4, kDetect2V9 = 7u << 5;  // CR.PVDE and CR.PLS, 5.4.1
+  static constexpr std::uint32_t kBelowThreshold = 1u << 2;                  // CSR.PVDO, 5.4.2
 };
 inline Power& power() { return at_address<Power>(0x40007000); }
 
@@ -89,6 +92,7 @@ struct Timer {
 };
 inline Timer& timer2() { return at_address<Timer>(0x40000000); }
 inline Timer& timer3() { return at_address<Timer>(0x40000400); }
+inline Timer& timer4() { return at_address<Timer>(0x40000800); }
 inline Timer& timer5() { return at_address<Timer>(0x40000C00); }
 
 /// Serial peripheral interface, section 28.5.

@@ -365,7 +365,7 @@ TEST(AxisFault, AControlSignalThatIsNotANumberNeverReachesTheConverter) {
     axis.step();
     drive.advance();
   }
-  EXPECT_EQ(axis.telemetry().fault, AxisFault::control_signal_not_a_number);
+  EXPECT_EQ(axis.telemetry().fault, AxisFault::state_not_a_number);
   EXPECT_EQ(drive.command_V, 0.0);
   EXPECT_FALSE(drive.drive_enable().on);
 }

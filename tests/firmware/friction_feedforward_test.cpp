@@ -50,10 +50,11 @@ class FrictionFeedforward : public testing::TestWithParam<const PaperAxis*> {
 INSTANTIATE_TEST_SUITE_P(PaperAxes, FrictionFeedforward, testing::Values(&kPaperX, &kPaperY));
 
 TEST_P(FrictionFeedforward, IsEquation19InBothDirections) {
+  constexpr double kTolerance_V = 20.0 / 65536.0 / 30.0;  // a thirtieth of a step of the converter
   for (int i = 0; i <= 2000; ++i) {
     const double w = blend * std::pow(800.0, i / 2000.0);  // up to 160 rad/s
-    ASSERT_NEAR(static_cast<double>(friction(static_cast<float>(w))), equation_19_V(*GetParam(), 0, w), 1e-6) << w;
-    ASSERT_NEAR(static_cast<double>(friction(static_cast<float>(-w))), -equation_19_V(*GetParam(), 1, w), 1e-6) << w;
+    ASSERT_NEAR(static_cast<double>(friction(static_cast<float>(w))), equation_19_V(*GetParam(), 0, w), kTolerance_V);
+    ASSERT_NEAR(static_cast<double>(friction(static_cast<float>(-w))), -equation_19_V(*GetParam(), 1, w), kTolerance_V);
   }
 }
 

@@ -42,7 +42,7 @@ double worst_difference(const PaperAxis& axis, std::int64_t start_counts) {
   const auto p = firmware_test::parameters_of<Scalar>(axis);
   firmware::KalmanEstimator<Scalar> estimator;
   estimator.configure(p.drive, p.Kobs, p.encoder_resolution);
-  estimator.reset(start_counts);
+  auto estimate = estimator.at_rest(start_counts);
   MatrixEstimator reference(axis);
 
   std::mt19937_64 random(7);
@@ -54,17 +54,16 @@ double worst_difference(const PaperAxis& axis, std::int64_t start_counts) {
     const auto u = static_cast<Scalar>(2.0 * unit(random));
     const auto w = static_cast<Scalar>(60.0 * std::cos(phase) + 0.2 * unit(random));
     counts = static_cast<std::int64_t>(std::floor(6000.0 * std::sin(phase)));
-    estimator.update(u, start_counts + counts, w);
+    estimator.update(estimate, u, start_counts + counts, w);
     reference.update(static_cast<double>(u), static_cast<double>(counts) * kEncoderResolution_mm,
                      static_cast<double>(w));
-    const auto& estimate = estimator.estimate();
     const Eigen::Vector3d ours(static_cast<double>(estimate.anchor_counts - start_counts) * kEncoderResolution_mm +
                                    static_cast<double>(estimate.offset),
                                static_cast<double>(estimate.velocity), static_cast<double>(estimate.disturbance));
     worst = worst.cwiseMax((ours - reference.state).cwiseAbs());
     size = size.cwiseMax(reference.state.cwiseAbs());
   }
-  EXPECT_EQ(estimator.estimate().anchor_counts, start_counts + counts);
+  EXPECT_EQ(estimate.anchor_counts, start_counts + counts);
   return worst.cwiseQuotient(size).maxCoeff();
 }
 
@@ -89,14 +88,15 @@ TEST(KalmanEstimatorWithoutTachometer, NeedsNoVelocityReading) {
   firmware::KalmanEstimator<float> with_zero_column;
   for (auto& row : p.Kobs) row[1] = 0.0f;
   with_zero_column.configure(p.drive, p.Kobs, p.encoder_resolution);
+  auto without = without_reading.at_rest(0), with_zero = without;
   for (std::int64_t k = 0; k < 1000; ++k) {
-    without_reading.update(0.3f, 2 * k);
-    with_zero_column.update(0.3f, 2 * k, 1000.0f);
+    without_reading.update(without, 0.3f, 2 * k);
+    with_zero_column.update(with_zero, 0.3f, 2 * k, 1000.0f);
   }
-  EXPECT_EQ(without_reading.estimate().velocity, with_zero_column.estimate().velocity);
-  EXPECT_EQ(without_reading.estimate().disturbance, with_zero_column.estimate().disturbance);
+  EXPECT_EQ(without.velocity, with_zero.velocity);
+  EXPECT_EQ(without.disturbance, with_zero.disturbance);
   // 2 counts a millisecond: 2 * dx / (lead Ts)
-  EXPECT_NEAR(static_cast<double>(without_reading.estimate().velocity),
+  EXPECT_NEAR(static_cast<double>(without.velocity),
               2.0 * kEncoderResolution_mm / firmware_test::kLead_mm_per_rad / 1e-3, 0.01);
 }
 

@@ -90,6 +90,8 @@ constexpr firmware::AxisParameters<Scalar> parameters_of(const PaperAxis& axis) 
   p.velocity_limit = scalar(250.0);
   p.acceleration_limit = scalar(2000.0);  // section 4
   p.jerk_limit = scalar(50000.0);         // section 4
+  p.monitors = firmware::default_monitor_limits(p.velocity_limit, p.lead, p.encoder_resolution, p.sample_period_s,
+                                                p.dac_limit_V);
   return p;
 }
 

@@ -43,7 +43,7 @@ TYPED_TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
       least = std::min(least, counts);
       most = std::max(most, counts);
       enabled += reply.axis[axis].enable_line;
-      EXPECT_EQ(reply.axis[axis].flags >> 8, 0u) << "a fault in period " << reply.number;
+      EXPECT_EQ((reply.axis[axis].flags >> 8) & 0xFFu, 0u) << "a fault in period " << reply.number;
       EXPECT_EQ(reply.axis[axis].flags & 1u, 0u) << "axis " << axis << " refuses the order of period " << reply.number;
     }
     EXPECT_GT(most - least, 40'000) << "encoder counts travelled by axis " << axis;

@@ -9,6 +9,30 @@ namespace firmware {
 
 namespace axis_values {
 
+/// Travel as encoder counts; beyond what 32 bits hold, the last that they do.
+constexpr std::int64_t whole_counts(float travel, float encoder_resolution) {
+  constexpr float kMost = 2147483520.0F;  // the largest float below 2^31
+  const float counts = travel / encoder_resolution;
+  return static_cast<std::int32_t>(counts > kMost ? kMost : (counts < -kMost ? -kMost : counts));
+}
+
+constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
+  const float samples_a_second = 1.0F / v.get<"drive.sample_period">();
+  MonitorLimits<float> m;
+  m.following_error_floor = v.get<"monitor.following_error">();
+  m.following_error_per_velocity = v.get<"monitor.following_error_per_speed">();
+  m.disagreement_floor = v.get<"monitor.disagreement">();
+  m.disagreement_share = v.get<"monitor.disagreement_share">();
+  m.encoder_jump = v.get<"monitor.encoder_jump">();
+  m.overspeed = v.get<"monitor.overspeed">();
+  m.polarity_command_V = v.get<"monitor.polarity_command">();
+  m.travel_min_counts = whole_counts(v.get<"monitor.travel_min">(), v.get<"drive.encoder_resolution">());
+  m.travel_max_counts = whole_counts(v.get<"monitor.travel_max">(), v.get<"drive.encoder_resolution">());
+  m.saturation_samples = static_cast<std::int32_t>(v.get<"monitor.saturation_time">() * samples_a_second + 0.5F);
+  m.capture_stride = capture_stride(samples_a_second);
+  return m;
+}
+
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   const float volts_per_effort = 1.0F / v.get<"drive.effort_per_volt">();
   AxisParameters<float> p;
@@ -40,6 +64,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.velocity_limit = v.get<"limits.velocity">();
   p.acceleration_limit = v.get<"limits.acceleration">();
   p.jerk_limit = v.get<"limits.jerk">();
+  p.monitors = monitor_limits(v);
   return p;
 }
 

@@ -60,6 +60,18 @@ constexpr std::uint16_t id_behind(ParameterError error) {
     case ParameterError::jerk_limit:
     case ParameterError::jerk_time:
       return id_of<"limits.jerk">();
+    case ParameterError::following_error:
+      return id_of<"monitor.following_error">();
+    case ParameterError::disagreement:
+      return id_of<"monitor.disagreement">();
+    case ParameterError::overspeed:
+      return id_of<"monitor.overspeed">();
+    case ParameterError::polarity_command:
+      return id_of<"monitor.polarity_command">();
+    case ParameterError::travel:
+      return id_of<"monitor.travel_max">();
+    case ParameterError::saturation_time:
+      return id_of<"monitor.saturation_time">();
     case ParameterError::none:
     case ParameterError::sample_period:
     case ParameterError::controller_is_enabled:
@@ -78,7 +90,9 @@ constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis)
   const float periods = v.get<"drive.sample_period">() * static_cast<float>(values.get<"control.rate">());
   if (periods < 1.0F - kPeriodTolerance || periods > 1.0F + kPeriodTolerance)
     return {SetProblemKind::rate_disagrees, ParameterKey::of_axis(axis, id_of<"drive.sample_period">())};
-  const ParameterError error = check(axis_parameters<Scalar>(v));
+  const AxisParameters<Scalar> parameters = axis_parameters<Scalar>(v);
+  ParameterError error = check(parameters);
+  if (error == ParameterError::none) error = check_monitors(parameters);
   if (error == ParameterError::none) return {};
   return {SetProblemKind::refused_by_core, ParameterKey::of_axis(axis, id_behind(error))};
 }

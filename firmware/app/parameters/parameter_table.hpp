@@ -97,6 +97,25 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {128, axis, "limits.velocity", real, "mm/s", "m/s", 1e-6F, 1e6F, 250, while_disabled, "of references"},
     {129, axis, "limits.acceleration", real, "mm/s^2", "m/s^2", 1e-6F, 1e8F, 2000, while_disabled, "of references"},
     {130, axis, "limits.jerk", real, "mm/s^3", "m/s^3", 1e-6F, 1e10F, 50000, while_disabled, "of references"},
+
+    // Thresholds: firmware/core/supervision/monitor_limits.hpp. None can be switched off.
+    {144, axis, "monitor.following_error", real, "mm", "m", 1e-9F, 1e4F, 0.5F, while_disabled,
+     "largest following error at standstill"},
+    {145, axis, "monitor.following_error_per_speed", real, "mm/(rad/s)", "m/(m/s)", 0, 1e3F, 0.005F, while_disabled,
+     "what the speed of the reference adds to it"},
+    {146, axis, "monitor.disagreement", real, "rad/s", "m/s", 1e-9F, 1e4F, 10, while_disabled,
+     "largest difference of encoder and tachometer at standstill"},
+    {147, axis, "monitor.disagreement_share", real, "1", "1", 0, 1, 0.1F, while_disabled,
+     "share of the speed that is added to it"},
+    {148, axis, "monitor.encoder_jump", real, "rad/s", "m/s", 1e-9F, 1e4F, 62.5F, while_disabled,
+     "largest such difference in one sample"},
+    {149, axis, "monitor.overspeed", real, "rad/s", "m/s", 1e-9F, 1e4F, 300, while_disabled, "largest speed"},
+    {150, axis, "monitor.polarity_command", real, "V", "V", 1e-3F, 1e3F, 3, while_disabled,
+     "command beyond which the drive must not accelerate against it"},
+    {151, axis, "monitor.travel_min", real, "mm", "m", -1e6F, 1e6F, -1e5F, while_disabled, "end of travel"},
+    {152, axis, "monitor.travel_max", real, "mm", "m", -1e6F, 1e6F, 1e5F, while_disabled, "end of travel"},
+    {153, axis, "monitor.saturation_time", real, "s", "s", 1e-3F, 10, 0.1F, while_disabled,
+     "longest time at the D/A converter's limit"},
 });
 
 }  // namespace parameter_rows

@@ -39,11 +39,13 @@ bool Board::start() {
   clock.AHB1ENR = clock.AHB1ENR | Rcc::kGpioA | Rcc::kGpioB | Rcc::kGpioC | Rcc::kDma2;
   connect_pins();
   const bool clocks_run = start_clocks(clock, power(), flash_interface());
-  clock.APB1ENR = clock.APB1ENR | Rcc::kTim2 | Rcc::kTim3 | Rcc::kTim5;
+  clock.APB1ENR = clock.APB1ENR | Rcc::kTim2 | Rcc::kTim3 | Rcc::kTim4 | Rcc::kTim5;
   clock.APB2ENR = clock.APB2ENR | Rcc::kUsart1 | Rcc::kAdc1 | Rcc::kSpi1;
   constexpr std::uint32_t kResetClock_Hz = 16'000'000;
   serial_.start(clocks_run ? kApb2Clock_Hz : kResetClock_Hz, 115200);
   stop_.start();
+  supply_.start();
+  clock_.start(kApb1TimerClock_Hz);
   x_.start();
   y_.start();
   spi_.start();

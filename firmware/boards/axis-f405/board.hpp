@@ -8,7 +8,9 @@
 #include "hal/stm32f4/clock_tree.hpp"
 #include "hal/stm32f4/drive_lines.hpp"
 #include "hal/stm32f4/encoder_timer.hpp"
+#include "hal/stm32f4/microsecond_clock.hpp"
 #include "hal/stm32f4/spi_port.hpp"
+#include "hal/stm32f4/supply_detector.hpp"
 #include "hal/stm32f4/tachometer_adc.hpp"
 #include "hal/stm32f4/usart_port.hpp"
 #include "hal/stm32f4/usb_controller.hpp"
@@ -63,6 +65,8 @@ class Board {
 
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
   hal::stm32f4::StopInput& emergency_stop() { return stop_; }
+  hal::stm32f4::SupplyDetector& supply() { return supply_; }
+  hal::stm32f4::MicrosecondClock& clock() { return clock_; }
   hal::stm32f4::UsartPort& serial() { return serial_; }
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::Watchdog& watchdog() { return watchdog_; }
@@ -85,6 +89,8 @@ class Board {
                   {pins::enable_y(), pins::drive_fault_y()},
                   {pins::positive_end_y(), pins::negative_end_y(), pins::home_y()}};
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
+  hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
+  hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer4()};
   hal::stm32f4::UsartPort serial_{hal::stm32f4::usart1()};
   hal::tinyusb::HidPort usb_;
   hal::stm32f4::Watchdog watchdog_{hal::stm32f4::independent_watchdog()};

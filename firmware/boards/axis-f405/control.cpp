@@ -1,16 +1,19 @@
 #include "firmware/boards/axis-f405/control.hpp"
 
 #include <array>
+#include <atomic>
 
 namespace firmware::boards {
 
 namespace {
 
-using BoardAxis = Axis<BoardScalar, BoardAxisHal>;
+using Axes = AxisGroup<BoardScalar, BoardAxisHal>;
 
 Board the_board;
 // The control law's data lie in the core-coupled memory, which no DMA ever makes wait.
-[[gnu::section(".ccm")]] std::array<BoardAxis, kAxes> axes{BoardAxis(the_board.axis(0)), BoardAxis(the_board.axis(1))};
+[[gnu::section(".ccm")]] Axes axes(the_board.axis(0), the_board.axis(1));
+
+std::atomic<bool> store_is_damaged = false;
 
 class ControlShutOut {
  public:
@@ -32,7 +35,7 @@ void remember(std::size_t index) {
   last.encoder_counts = telemetry.encoder_counts;
   last.dac_code = telemetry.dac_code;
   last.enabled = telemetry.enabled ? 1 : 0;
-  last.fault = static_cast<std::uint32_t>(telemetry.fault);
+  last.fault = static_cast<std::uint32_t>(axes[index].fault());
 }
 
 }  // namespace
@@ -41,18 +44,18 @@ Board& board() { return the_board; }
 
 ParameterError configure_axis(std::size_t axis, const AxisParameters<BoardScalar>& parameters) {
   const ControlShutOut guard;
+  axes.board().configure(BoardWatch::default_limits(kControlPeriod_s));
   return axes[axis].configure(parameters);
 }
 
 bool enable_axis(std::size_t axis) {
   const ControlShutOut guard;
-  if (the_board.emergency_stop().is_pressed() || the_board.axis(axis).drive_enable().is_faulted()) return false;
   return axes[axis].enable();
 }
 
-void disable_axis(std::size_t axis) {
+bool disable_axis(std::size_t axis) {
   const ControlShutOut guard;
-  axes[axis].disable();
+  return axes[axis].disable();
 }
 
 bool jog_axis(std::size_t axis, BoardScalar velocity) {
@@ -65,9 +68,22 @@ void stop_axis(std::size_t axis) {
   axes[axis].stop();
 }
 
-void clear_axis_fault(std::size_t axis) {
+bool clear_axis_fault(std::size_t axis) {
   const ControlShutOut guard;
-  axes[axis].clear_fault();
+  return axes[axis].clear_fault();
+}
+
+SupervisorState axis_state(std::size_t axis) { return axes[axis].state(); }
+AxisFault axis_fault(std::size_t axis) { return axes[axis].fault(); }
+
+void host_commands_motion(bool commands) {
+  const ControlShutOut guard;
+  axes.board().host_commands(commands);
+}
+
+void host_heard() {
+  const ControlShutOut guard;
+  axes.board().host_heard();
 }
 
 AxisTelemetry<BoardScalar> axis_telemetry(std::size_t axis) {
@@ -86,14 +102,12 @@ bool move_axis(std::size_t axis, std::int64_t target_counts) {
   return planned.error == MovePlanError::none && axes[axis].start(planned.plan);
 }
 
+void report_damaged_store() { store_is_damaged = true; }
+
 void control_period() {
-  const bool stopped = the_board.emergency_stop().is_pressed();
-  for (std::size_t i = 0; i < kAxes; ++i) {
-    const bool must_stop = stopped || the_board.axis(i).drive_enable().is_faulted();
-    if (must_stop && axes[i].telemetry().enabled) axes[i].disable();
-    axes[i].step();
-    remember(i);
-  }
+  axes.step({the_board.clock().now_us(), the_board.emergency_stop().is_pressed(), the_board.supply().is_low(),
+             store_is_damaged});
+  for (std::size_t i = 0; i < kAxes; ++i) remember(i);
 }
 
 }  // namespace firmware::boards

@@ -17,7 +17,7 @@ constinit Liveness liveness;
 /// Shows the state of the axes; what acts on them runs in the control interrupt.
 void supervise() {
   bool fault = board().emergency_stop().is_pressed();
-  for (std::size_t i = 0; i < kAxes; ++i) fault = fault || axis_telemetry(i).fault != AxisFault::none;
+  for (std::size_t i = 0; i < kAxes; ++i) fault = fault || axis_fault(i) != AxisFault::none;
   board().show(true, fault);
   liveness.supervisor_ran();
 }

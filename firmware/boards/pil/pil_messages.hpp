@@ -11,16 +11,18 @@ inline constexpr std::size_t kPilAxes = 2;
 enum class PilCommand : std::uint32_t {
   none = 0,
   enable = 1,
-  disable = 2,
-  jog = 3,   ///< operand_low: the bits of a velocity in the board's scalar
-  move = 4,  ///< operand: target, encoder counts
+  disable = 2,  ///< slows down first
+  jog = 3,      ///< operand_low: the bits of a velocity in the board's scalar
+  move = 4,     ///< operand: target, encoder counts
   stop = 5,
+  clear_fault = 6,
 };
 
 struct PilAxisRequest {
   std::uint32_t encoder_counts = 0;
   std::int32_t tachometer_code = 0;
   std::uint32_t tachometer_valid = 0;
+  std::uint32_t lines = 0;  ///< bit 0 positive end, 1 negative end, 2 home, 3 drive fault
   PilCommand command = PilCommand::none;
   std::uint32_t operand_low = 0;
   std::uint32_t operand_high = 0;
@@ -29,6 +31,8 @@ struct PilAxisRequest {
 /// One control period's readings and commands. The last request of a run has the number kPilEnd and gets no reply.
 struct PilRequest {
   std::uint32_t number = 0;
+  std::uint32_t now_us = 0;
+  std::uint32_t board = 0;  ///< bit 0 emergency stop, 1 supply low, 2 parameter store damaged
   std::array<PilAxisRequest, kPilAxes> axis{};
 };
 inline constexpr std::uint32_t kPilEnd = 0xFFFFFFFF;
@@ -38,11 +42,14 @@ struct PilAxisReply {
   std::int32_t dac_code = 0;
   std::uint32_t dac_writes = 0;
   std::uint32_t enable_line = 0;
-  std::uint32_t flags = 0;  ///< bit 0 command refused, 1 saturated, 2 enabled, 3 at rest; bits 8 to 15 AxisFault
+  std::uint32_t flags =
+      0;  ///< bit 0 command refused, 1 saturated, 2 enabled, 3 at rest; bits 8 to 15 AxisFault, 16 to 18 state
   std::array<std::uint32_t, 2> encoder_counts{}, anchor_counts{}, reference_counts{}, reference_fraction{};
   std::uint32_t tachometer_velocity = 0;
   std::uint32_t offset = 0, velocity = 0, disturbance = 0;
   std::uint32_t reference_velocity = 0, position_error = 0, friction_V = 0, control_V = 0;
+  std::uint32_t following_high_water = 0;
+  std::uint32_t captured = 0;  ///< rows that the capture holds
 
   bool operator==(const PilAxisReply&) const = default;
 };
@@ -54,7 +61,7 @@ struct PilReply {
   bool operator==(const PilReply&) const = default;
 };
 
-static_assert(sizeof(PilRequest) == 52 && sizeof(PilReply) == 164, "the same layout on both computers");
+static_assert(sizeof(PilRequest) == 68 && sizeof(PilReply) == 180, "the same layout on both computers");
 
 /// Answer to the parameters: one ParameterError an axis.
 struct PilConfigured {

@@ -7,7 +7,7 @@
 
 #include "firmware/boards/pil/pil_messages.hpp"
 #include "firmware/boards/pil/value_axis.hpp"
-#include "firmware/core/axis.hpp"
+#include "firmware/core/supervision/axis_group.hpp"
 
 namespace firmware::boards {
 
@@ -21,30 +21,36 @@ class PilStation {
   constexpr PilConfigured configure(const Parameters& parameters) {
     PilConfigured result;
     for (std::size_t i = 0; i < kPilAxes; ++i)
-      result.error[i] = static_cast<std::uint32_t>(axis_[i].configure(parameters[i]));
+      result.error[i] = static_cast<std::uint32_t>(axes_[i].configure(parameters[i]));
+    axes_.board().configure(BoardWatch::default_limits(kPilPeriod_s));
     return result;
   }
 
   constexpr PilReply step(const PilRequest& request) {
     PilReply reply;
     reply.number = request.number;
+    std::array<bool, kPilAxes> accepted{};
     for (std::size_t i = 0; i < kPilAxes; ++i) {
       read_in(request.axis[i], io_[i]);
-      const bool accepted = obey(request.axis[i], axis_[i]);
-      axis_[i].step();
-      reply.axis[i] = write_out(axis_[i], io_[i], accepted);
+      accepted[i] = obey(request.axis[i], axes_[i]);
     }
+    axes_.step({request.now_us, (request.board & 1u) != 0, (request.board & 2u) != 0, (request.board & 4u) != 0});
+    for (std::size_t i = 0; i < kPilAxes; ++i) reply.axis[i] = write_out(axes_[i], io_[i], accepted[i]);
     return reply;
   }
 
-  const Axis<Scalar, ValueAxis>& axis(std::size_t index) const { return axis_[index]; }
+  const SupervisedAxis<Scalar, ValueAxis>& axis(std::size_t index) const { return axes_[index]; }
 
  private:
-  using BoardAxis = Axis<Scalar, ValueAxis>;
+  using Axes = AxisGroup<Scalar, ValueAxis>;
+  using BoardAxis = typename Axes::BoardAxis;
+  static constexpr float kPilPeriod_s = 0.001f;
 
   static constexpr void read_in(const PilAxisRequest& request, ValueAxis& io) {
     io.encoder().reading = {request.encoder_counts, true};
     io.tachometer().reading = {request.tachometer_code, request.tachometer_valid != 0};
+    io.limits().state = {(request.lines & 1u) != 0, (request.lines & 2u) != 0, (request.lines & 4u) != 0};
+    io.drive_enable().faulted = (request.lines & 8u) != 0;
   }
 
   static constexpr bool obey(const PilAxisRequest& request, BoardAxis& axis) {
@@ -54,8 +60,7 @@ class PilStation {
       case PilCommand::enable:
         return axis.enable();
       case PilCommand::disable:
-        axis.disable();
-        return true;
+        return axis.disable();
       case PilCommand::jog:
         return axis.jog(std::bit_cast<Scalar>(request.operand_low));
       case PilCommand::move: {
@@ -66,6 +71,8 @@ class PilStation {
       case PilCommand::stop:
         axis.stop();
         return true;
+      case PilCommand::clear_fault:
+        return axis.clear_fault();
     }
     return false;
   }
@@ -84,7 +91,8 @@ class PilStation {
     reply.dac_writes = io.dac().writes;
     reply.enable_line = io.drive_enable().on ? 1 : 0;
     reply.flags = (accepted ? 0u : 1u) | (seen.saturated ? 2u : 0u) | (seen.enabled ? 4u : 0u) |
-                  (axis.is_at_rest() ? 8u : 0u) | static_cast<std::uint32_t>(seen.fault) << 8;
+                  (axis.is_at_rest() ? 8u : 0u) | static_cast<std::uint32_t>(axis.fault()) << 8 |
+                  static_cast<std::uint32_t>(axis.state()) << 16;
     reply.encoder_counts = halves(seen.encoder_counts);
     reply.anchor_counts = halves(seen.estimate.anchor_counts);
     reply.reference_counts = halves(seen.reference.counts);
@@ -97,11 +105,13 @@ class PilStation {
     reply.position_error = bits(seen.position_error);
     reply.friction_V = bits(seen.friction_V);
     reply.control_V = bits(seen.control_V);
+    reply.following_high_water = bits(axis.monitors().high_water());
+    reply.captured = static_cast<std::uint32_t>(axis.capture().size());
     return reply;
   }
 
   std::array<ValueAxis, kPilAxes> io_{};
-  std::array<BoardAxis, kPilAxes> axis_{BoardAxis(io_[0]), BoardAxis(io_[1])};
+  Axes axes_{io_[0], io_[1]};
 };
 
 }  // namespace firmware::boards

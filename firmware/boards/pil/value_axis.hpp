@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "hal/axis_hal.hpp"
+#include "hal/limit_inputs.hpp"
 
 namespace firmware::boards {
 
@@ -28,20 +29,27 @@ class ValueAxis {
   };
   struct Enable {
     bool on = false;
+    bool faulted = false;
     void set(bool value) { on = value; }
-    bool is_faulted() { return false; }
+    bool is_faulted() const { return faulted; }
+  };
+  struct Limits {
+    hal::LimitState state;
+    hal::LimitState read() const { return state; }
   };
 
   Encoder& encoder() { return encoder_; }
   Tachometer& tachometer() { return tachometer_; }
   Dac& dac() { return dac_; }
   Enable& drive_enable() { return enable_; }
+  Limits& limits() { return limits_; }
 
  private:
   Encoder encoder_;
   Tachometer tachometer_;
   Dac dac_;
   Enable enable_;
+  Limits limits_;
 };
 static_assert(hal::AxisHal<ValueAxis>);
 

@@ -46,7 +46,7 @@ void remember(const PilReply& reply) {
     last.axis[i].encoder_counts = telemetry.encoder_counts;
     last.axis[i].dac_code = reply.axis[i].dac_code;
     last.axis[i].enabled = telemetry.enabled ? 1 : 0;
-    last.axis[i].fault = static_cast<std::uint32_t>(telemetry.fault);
+    last.axis[i].fault = static_cast<std::uint32_t>(station.axis(i).fault());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "firmware/core/axis.hpp"
 #include "hal/pc/simulated_axis.hpp"
 #include "tests/firmware/app/paper_values.hpp"
+#include "tests/firmware/app/trip_points.hpp"
 
 namespace {
 
@@ -34,8 +35,8 @@ sim::DriveDescription machine() {
   return drive;
 }
 
-/// Everything that the machine notices of a set: whether it is refused, and every word put out in both directions of
-/// motion, with limits and saturation reached.
+/// Everything that the machine notices of a set: whether it is refused, every word put out in both directions of
+/// motion, with limits and saturation reached, and where the monitors trip.
 template <typename Scalar>
 std::pair<SetProblem, std::vector<std::int32_t>> behaviour(const ParameterValues& values) {
   const SetProblem problem = firmware::check<Scalar>(values);
@@ -56,6 +57,8 @@ std::pair<SetProblem, std::vector<std::int32_t>> behaviour(const ParameterValues
     words.push_back(axis.step().dac_code);
     plant.advance(1e-3);
   }
+  const auto trips = firmware_test::trip_points(firmware::axis_parameters<Scalar>(values.axis(0)));
+  words.insert(words.end(), trips.begin(), trips.end());
   return {problem, words};
 }
 

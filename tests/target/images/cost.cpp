@@ -4,8 +4,8 @@
 
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/pil/value_axis.hpp"
-#include "firmware/core/axis.hpp"
 #include "firmware/core/fixed_units.hpp"
+#include "firmware/core/supervision/axis_group.hpp"
 #include "tests/firmware/paper_axes.hpp"
 #include "tests/target/images/instruction_counter.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 using namespace target_image;
 using firmware::boards::ValueAxis;
 using Scalar = AXIS_COST_SCALAR;
-using BoardAxis = firmware::Axis<Scalar, ValueAxis>;
+using Axes = firmware::AxisGroup<Scalar, ValueAxis>;
 
 template <typename T>
 constexpr firmware::AxisParameters<T> in_scalar(const firmware_test::PaperAxis& axis) {
@@ -41,7 +41,8 @@ constexpr std::array kParameters{with_everything_on(firmware_test::kPaperX),
                                  with_everything_on(firmware_test::kPaperY)};
 
 std::array<ValueAxis, 2> io;
-[[gnu::section(".ccm")]] std::array<BoardAxis, 2> axes{BoardAxis(io[0]), BoardAxis(io[1])};
+[[gnu::section(".ccm")]] Axes axes(io[0], io[1]);
+std::uint32_t now_us = 0;
 
 std::uint32_t random_state = 1;
 std::int32_t random_code() {  // minimal standard generator's low-cost cousin: quality is of no matter here
@@ -49,25 +50,45 @@ std::int32_t random_code() {  // minimal standard generator's low-cost cousin: q
   return static_cast<std::int32_t>(random_state >> 24) - 128;
 }
 
-/// The encoder follows the reference within a few counts, the tachometer reports noise around it.
+/// Eq. (7) without friction, in float whatever the scalar: what the axes drive between two counted steps.
+struct Drive {
+  const firmware_test::PaperAxis& axis;
+  std::int32_t counts = 0;
+  float fraction_mm = 0.0f, velocity_rad_s = 0.0f;
+
+  void advance(std::int32_t dac_code) {
+    const float u = static_cast<float>(dac_code) * static_cast<float>(firmware_test::kDacResolution_V);
+    fraction_mm += static_cast<float>(axis.Ad12) * velocity_rad_s + static_cast<float>(axis.Bd1) * u;
+    velocity_rad_s = static_cast<float>(axis.Ad22) * velocity_rad_s + static_cast<float>(axis.Bd2) * u;
+    constexpr auto kCount_mm = static_cast<float>(firmware_test::kEncoderResolution_mm);
+    const auto passed = static_cast<std::int32_t>(fraction_mm / kCount_mm);
+    counts += passed;
+    fraction_mm -= static_cast<float>(passed) * kCount_mm;
+  }
+};
+std::array drives{Drive{firmware_test::kPaperX}, Drive{firmware_test::kPaperY}};
+
+/// One period of the drive, and its readings, with the tachometer's noise.
 void bring_readings(std::size_t axis) {
-  const auto counts = static_cast<std::int32_t>(axes[axis].telemetry().reference.counts);
-  io[axis].encoder().reading = {static_cast<std::uint32_t>(counts + random_code() / 32), true};
-  io[axis].tachometer().reading = {random_code(), true};
+  Drive& drive = drives[axis];
+  drive.advance(io[axis].dac().code);
+  io[axis].encoder().reading = {static_cast<std::uint32_t>(drive.counts), true};
+  constexpr auto kCodesPerVelocity = static_cast<float>(1.0 / firmware_test::kTachometerResolution_rad_s);
+  const auto code = static_cast<std::int32_t>(drive.velocity_rad_s * kCodesPerVelocity);
+  io[axis].tachometer().reading = {code + random_code() / 8, true};
 }
 
-[[gnu::noinline]] void step_one(BoardAxis& axis) { axis.step(); }
-[[gnu::noinline]] void step_both() {
-  for (BoardAxis& axis : axes) axis.step();
-}
+[[gnu::noinline]] void step_one(std::size_t axis) { axes[axis].step(); }
+[[gnu::noinline]] void step_both() { axes.step({now_us += 1000, false, false, false}); }
 
 struct EstimatorAndFeedback {
   firmware::KalmanEstimator<Scalar> estimator;
+  firmware::AxisEstimate<Scalar> estimate{};
   Scalar Kc1{}, Kc2{}, u{};
 
   [[gnu::noinline]] void step(std::int64_t counts, Scalar velocity, Scalar reference) {
-    estimator.update(u, counts, velocity);
-    u = Kc1 * (reference - estimator.estimate().offset) - Kc2 * estimator.estimate().velocity;
+    estimator.update(estimate, u, counts, velocity);
+    u = Kc1 * (reference - estimate.offset) - Kc2 * estimate.velocity;
   }
 };
 
@@ -75,7 +96,6 @@ void count_estimator_and_feedback() {
   EstimatorAndFeedback loop;
   const auto& p = kParameters[0];
   loop.estimator.configure(p.drive, p.Kobs, p.encoder_resolution);
-  loop.estimator.reset(0);
   loop.Kc1 = p.Kc[0];
   loop.Kc2 = p.Kc[1];
   Cost cost;
@@ -88,18 +108,21 @@ void count_estimator_and_feedback() {
 }
 
 void start_motion() {
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    axes[i].configure(kParameters[i]);
-    bring_readings(i);
-    axes[i].step();
-    axes[i].enable();
+  for (std::size_t i = 0; i < Axes::kAxes; ++i) axes[i].configure(kParameters[i]);
+  for (int period = 0; period <= firmware::kSelfTestSamples; ++period) {
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) {
+      bring_readings(i);
+      axes[i].step();
+    }
   }
+  for (std::size_t i = 0; i < Axes::kAxes; ++i) axes[i].enable();
 }
 
 /// Every way the reference can move: standing, a jog, a cut, a move.
 void command(int period) {
   constexpr auto kMove = 12'000;
-  for (BoardAxis& axis : axes) {
+  for (std::size_t i = 0; i < Axes::kAxes; ++i) {
+    Axes::BoardAxis& axis = axes[i];
     if (period == 50) axis.jog(kParameters[0].velocity_limit);
     if (period == 700) axis.stop();
     if (period == 1200) axis.start(axis.plan_move_to(firmware::CountPosition::at(kMove)).plan);
@@ -113,10 +136,10 @@ void count_steps() {
   Cost one, both;
   for (int period = 0; period < 3000; ++period) {
     command(period);
-    for (std::size_t i = 0; i < axes.size(); ++i) bring_readings(i);
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
     if (period % 2 == 0) {
-      one.add(count([] { step_one(axes[0]); }));
-      axes[1].step();
+      one.add(count([] { step_one(0); }));
+      step_one(1);
     } else {
       both.add(count([] { step_both(); }));
     }

@@ -17,7 +17,7 @@ using firmware::boards::PilCommand;
 
 const std::vector<Order>& orders() {
   static const std::vector<Order> all{
-      {5, 0, PilCommand::enable, 0},         {5, 1, PilCommand::enable, 0},
+      {60, 0, PilCommand::enable, 0},        {60, 1, PilCommand::enable, 0},
       {100, 0, PilCommand::move, 40'000},    {150, 1, PilCommand::move, -25'000},
       {1'400, 0, PilCommand::move, 39'990},  {1'500, 1, PilCommand::move, -24'999},
       {1'900, 0, PilCommand::jog, 250},      {2'000, 1, PilCommand::jog, -250},
@@ -28,7 +28,7 @@ const std::vector<Order>& orders() {
       {4'800, 1, PilCommand::move, 10'000},  {5'200, 0, PilCommand::jog, 0.5},
       {6'500, 1, PilCommand::disable, 0},    {6'700, 1, PilCommand::enable, 0},
       {6'800, 1, PilCommand::jog, 200},      {6'900, 0, PilCommand::jog, -0.5},
-      {7'000, 1, PilCommand::disable, 0},  // in motion: the table coasts
+      {7'000, 1, PilCommand::disable, 0},  // in motion: it slows down first
       {7'600, 1, PilCommand::enable, 0},     {7'700, 1, PilCommand::move, 0},
       {7'900, 0, PilCommand::stop, 0},       {8'200, 0, PilCommand::move, 0},
       {9'700, 0, PilCommand::move, 1},       {9'700, 1, PilCommand::stop, 0},
@@ -47,6 +47,7 @@ Plants::Plants() {
 firmware::boards::PilRequest Plants::read(std::uint32_t period) {
   firmware::boards::PilRequest request;
   request.number = period;
+  request.now_us = 1000 * period;
   for (std::size_t i = 0; i < connector_.size(); ++i) {
     const hal::TachometerReading tachometer = connector_[i]->tachometer().read();
     request.axis[i].encoder_counts = connector_[i]->encoder().read().counts;

@@ -1,0 +1,60 @@
+// The axes of a board, which start on their own and stop together.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "firmware/core/supervision/board_watch.hpp"
+#include "firmware/core/supervision/supervised_axis.hpp"
+
+namespace firmware {
+
+template <typename Scalar, SupervisedHal Hal>
+class AxisGroup {
+ public:
+  static constexpr std::size_t kAxes = 2;
+  using BoardAxis = SupervisedAxis<Scalar, Hal>;
+
+  constexpr AxisGroup(Hal& first, Hal& second) : axes_{BoardAxis(first), BoardAxis(second)} {}
+
+  constexpr BoardAxis& operator[](std::size_t index) { return axes_[index]; }
+  constexpr const BoardAxis& operator[](std::size_t index) const { return axes_[index]; }
+  constexpr BoardWatch& board() { return board_; }
+
+  /// One control period; each axis follows its own reference.
+  constexpr void step(const BoardInputs& inputs) {
+    const AxisFault outer = board_.watch(inputs, outputs_on());
+    for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer)); });
+  }
+
+  /// One control period; an interpolator leads both axes.
+  constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
+    const AxisFault outer = board_.watch(inputs, outputs_on());
+    for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer)); });
+  }
+
+  constexpr bool outputs_on() const { return outputs_are_on(axes_[0].state()) || outputs_are_on(axes_[1].state()); }
+
+ private:
+  /// A fault of one axis stops the other; its own and the board's faults come first.
+  constexpr AxisFault fault_for(std::size_t index, AxisFault outer) {
+    if (outer != AxisFault::none || !must_stop_[index]) return outer;
+    must_stop_[index] = false;
+    return AxisFault::other_axis_stopped;
+  }
+
+  template <typename Step>
+  constexpr void settle(std::size_t index, Step step) {
+    const bool had_fault = axes_[index].fault() != AxisFault::none;
+    step();
+    const std::size_t other = 1 - index;
+    if (!had_fault && axes_[index].fault() != AxisFault::none && outputs_are_on(axes_[other].state()))
+      must_stop_[other] = true;
+  }
+
+  BoardWatch board_;
+  std::array<BoardAxis, kAxes> axes_;
+  std::array<bool, kAxes> must_stop_{};
+};
+
+}  // namespace firmware

@@ -1,0 +1,67 @@
+// Watches what belongs to the whole board: stop circuit, supply, time, host, parameter store.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/axis_fault.hpp"
+
+namespace firmware {
+
+/// What a board knows at the beginning of a control period.
+struct BoardInputs {
+  std::uint32_t now_us = 0;  ///< of a hal::Clock
+  bool emergency_stop = false;
+  bool supply_low = false;
+  bool store_damaged = false;
+};
+
+struct BoardLimits {
+  std::uint32_t control_period_us = 1000;
+  std::uint32_t longest_period_us = 1500;  ///< from one control period to the next
+  std::int32_t heartbeat_samples = 100;    ///< longest silence of a host that commands motion
+};
+
+class BoardWatch {
+ public:
+  /// Half a period late is an overrun; silence of 0.1 s is a lost host (ten of its 10 ms cycles).
+  static constexpr BoardLimits default_limits(float sample_period_s) {
+    const auto period_us = static_cast<std::uint32_t>(sample_period_s * 1e6f + 0.5f);
+    return {period_us, period_us + period_us / 2, static_cast<std::int32_t>(0.1f / sample_period_s + 0.5f)};
+  }
+
+  constexpr void configure(const BoardLimits& limits) {
+    limits_ = limits;
+    is_primed_ = false;
+  }
+
+  /// The host commands motion from now on, or lets go of it.
+  constexpr void host_commands(bool commands) {
+    host_commands_ = commands;
+    silent_samples_ = 0;
+  }
+  constexpr void host_heard() { silent_samples_ = 0; }
+
+  /// The worst fault of this period. Silence matters only while `outputs_on`.
+  constexpr AxisFault watch(const BoardInputs& inputs, bool outputs_on) {
+    const bool late = is_primed_ && inputs.now_us - last_us_ > limits_.longest_period_us;
+    last_us_ = inputs.now_us;
+    is_primed_ = true;
+    if (inputs.emergency_stop) return AxisFault::emergency_stop;
+    if (inputs.supply_low) return AxisFault::supply_low;
+    if (late) return AxisFault::control_overrun;
+    if (inputs.store_damaged) return AxisFault::parameter_store_damaged;
+    if (!outputs_on || !host_commands_) return AxisFault::none;
+    if (silent_samples_ >= limits_.heartbeat_samples) return AxisFault::host_heartbeat_lost;
+    ++silent_samples_;
+    return AxisFault::none;
+  }
+
+ private:
+  BoardLimits limits_{};
+  std::uint32_t last_us_ = 0;
+  std::int32_t silent_samples_ = 0;
+  bool host_commands_ = false;
+  bool is_primed_ = false;
+};
+
+}  // namespace firmware

@@ -1,0 +1,205 @@
+// One axis as a board runs it: the control law, the monitors that watch it, its states and its capture.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/axis.hpp"
+#include "firmware/core/supervision/axis_monitors.hpp"
+#include "firmware/core/supervision/capture_ring.hpp"
+#include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+
+namespace firmware {
+
+/// An axis's hardware and its switches.
+template <typename T>
+concept SupervisedHal = hal::AxisHal<T> && requires(T& axis) {
+  requires hal::LimitInputs<std::remove_reference_t<decltype(axis.limits())>>;
+};
+
+/// What holds the motion back without being a fault.
+struct LimitingReasons {
+  bool saturated = false;         ///< the D/A converter is at its limit
+  bool velocity_limited = false;  ///< a jog asked for more than the velocity limit, and got that limit
+};
+
+template <typename Scalar, SupervisedHal Hal>
+class SupervisedAxis {
+ public:
+  explicit constexpr SupervisedAxis(Hal& hal) : hal_(hal), axis_(hal) {}
+
+  /// Takes new parameters and begins the self-test, or says what is wrong and keeps the old. Only while the outputs are
+  /// off.
+  constexpr ParameterError configure(const AxisParameters<Scalar>& parameters) {
+    if (outputs_are_on(state_)) return ParameterError::controller_is_enabled;
+    ParameterError error = check_monitors(parameters);
+    if (error == ParameterError::none) error = axis_.configure(parameters);
+    if (error != ParameterError::none) return error;
+    monitors_.configure(parameters);
+    const Increment velocity = motion_limits(parameters).velocity;
+    fastest_ = velocity + (velocity >> 4);  // rounding of a path at its limit is no fault
+    capture_.configure(parameters.monitors.capture_stride);
+    begin_self_test();
+    happen(SupervisorEvent::configured);
+    return error;
+  }
+
+  // What comes of a request shows in the next control period. False where the state does not allow it.
+  constexpr bool enable() { return state_ == SupervisorState::ready && request(SupervisorEvent::enable_request); }
+  /// Slows down, then drops the enable.
+  constexpr bool disable() { return state_ == SupervisorState::enabled && request(SupervisorEvent::disable_request); }
+  /// Forgets fault and capture; the self-test decides what comes next.
+  constexpr bool clear_fault() {
+    if (state_ != SupervisorState::fault) return false;
+    fault_ = AxisFault::none;
+    axis_.clear_fault();
+    capture_.restart();
+    begin_self_test();
+    happen(SupervisorEvent::clear_request);
+    return true;
+  }
+
+  /// As of Axis, while the state is enabled; false otherwise.
+  constexpr bool jog(Scalar velocity) {
+    if (state_ != SupervisorState::enabled) return false;
+    limiting_.velocity_limited =
+        velocity > axis_.parameters().velocity_limit || velocity < Scalar(0) - axis_.parameters().velocity_limit;
+    return axis_.jog(velocity);
+  }
+  constexpr bool start(const MovePlan& plan) { return state_ == SupervisorState::enabled && axis_.start(plan); }
+  constexpr MovePlanResult plan_move_to(const CountPosition& target) const { return axis_.plan_move_to(target); }
+  constexpr void stop() { axis_.stop(); }
+
+  /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
+  constexpr void step(AxisFault outer = AxisFault::none) {
+    axis_.step();
+    supervise(outer);
+  }
+
+  /// One control period with an interpolator's increment; a stopping axis goes its own way.
+  constexpr void step_with(Increment increment, AxisFault outer = AxisFault::none) {
+    if (state_ != SupervisorState::enabled) return step(outer);
+    is_interpolated_ = true;
+    axis_.step_with(increment);
+    const Increment travel = increment < 0 ? -increment : increment;
+    const bool is_too_fast = travel > fastest_ && outer == AxisFault::none;
+    supervise(is_too_fast ? AxisFault::reference_out_of_limits : outer);
+  }
+
+  constexpr SupervisorState state() const { return state_; }
+  /// The first fault since the last clear_fault().
+  constexpr AxisFault fault() const { return fault_; }
+  constexpr LimitingReasons limiting() const { return {axis_.telemetry().saturated, limiting_.velocity_limited}; }
+  constexpr bool is_at_rest() const { return axis_.is_at_rest(); }
+  constexpr const AxisTelemetry<Scalar>& telemetry() const { return axis_.telemetry(); }
+  constexpr const AxisParameters<Scalar>& parameters() const { return axis_.parameters(); }
+  constexpr const AxisMonitors<Scalar>& monitors() const { return monitors_; }
+  constexpr const CaptureRing<Scalar>& capture() const { return capture_; }
+  constexpr Hal& hal() { return hal_; }
+
+ private:
+  static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
+  static constexpr std::int32_t kStandingSamples = 20;
+
+  constexpr bool request(SupervisorEvent event) {
+    requests_ = requests_ | event;
+    return true;
+  }
+
+  constexpr void happen(SupervisorEvent event) { enter(next_state(state_, event | event, fault_ != AxisFault::none)); }
+
+  constexpr void begin_self_test() {
+    monitors_.restart();
+    self_test_samples_ = 0;
+  }
+
+  constexpr void supervise(AxisFault outer) {
+    const AxisTelemetry<Scalar>& seen = axis_.telemetry();
+    const AxisFault found = watch(seen, outer);
+    if (found == AxisFault::none) {
+      capture_.take(seen);
+      if (state_ == SupervisorState::enabled && requests_ == 0) return;
+    }
+    advance(found);
+  }
+
+  constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, AxisFault outer) {
+    if (outer != AxisFault::none) return outer;
+    if (seen.fault != AxisFault::none) return seen.fault;
+    if (hal_.drive_enable().is_faulted()) return AxisFault::drive_fault;
+    const AxisFault sensors = monitors_.watch_sensors(seen);
+    if (sensors != AxisFault::none) return sensors;
+    if (!seen.enabled) return monitors_.watch_rest(seen);
+    const AxisFault motion = monitors_.watch_motion(seen);
+    return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
+  }
+
+  /// What is rare: faults, requests, and all states but a closed loop that simply runs.
+  [[gnu::noinline]] constexpr void advance(AxisFault found) {
+    SupervisorEvents events = requests_;
+    requests_ = 0;
+    if (state_ == SupervisorState::off && events == 0) return;
+    if (found != AxisFault::none) {
+      if (fault_ == AxisFault::none) latch(found);
+      events = events | (reaction_to(found) == FaultReaction::ramp_stop ? SupervisorEvent::ramp_fault
+                                                                        : SupervisorEvent::drop_fault);
+    }
+    if (state_ == SupervisorState::self_test && ++self_test_samples_ >= kSelfTestSamples)
+      events = events | SupervisorEvent::test_passed;
+    if (state_ == SupervisorState::stopping && has_stopped()) events = events | SupervisorEvent::standing;
+    if (events != 0) enter(next_state(state_, events, fault_ != AxisFault::none));
+  }
+
+  constexpr void latch(AxisFault found) {
+    fault_ = found;
+    capture_.freeze(axis_.telemetry());
+  }
+
+  constexpr bool has_stopped() {
+    if (!axis_.is_at_rest()) {
+      settling_samples_ = standing_samples_ = 0;
+      return false;
+    }
+    const bool moves = axis_.telemetry().encoder_counts != standing_at_;
+    standing_at_ = axis_.telemetry().encoder_counts;
+    standing_samples_ = moves ? 0 : standing_samples_ + 1;
+    return standing_samples_ >= kStandingSamples || ++settling_samples_ >= kLongestSettling;
+  }
+
+  constexpr void enter(SupervisorState next) {
+    if (next == state_) return;
+    state_ = next;
+    if (next == SupervisorState::enabled && !axis_.enable()) {
+      latch(axis_.telemetry().fault);
+      state_ = SupervisorState::fault;
+    }
+    if (next == SupervisorState::stopping) {
+      if (is_interpolated_)
+        axis_.stop_interpolated();
+      else
+        axis_.stop();
+      settling_samples_ = standing_samples_ = 0;
+    }
+    if (!outputs_are_on(state_)) {
+      is_interpolated_ = limiting_.velocity_limited = false;
+      if (axis_.telemetry().enabled) axis_.disable();
+    }
+  }
+
+  Hal& hal_;
+  Axis<Scalar, Hal> axis_;
+  AxisMonitors<Scalar> monitors_;
+  CaptureRing<Scalar> capture_;
+  SupervisorState state_ = SupervisorState::off;
+  SupervisorEvents requests_ = 0;
+  AxisFault fault_ = AxisFault::none;
+  LimitingReasons limiting_{};
+  bool is_interpolated_ = false;
+  Increment fastest_ = 0;
+  std::int64_t standing_at_ = 0;
+  std::int32_t self_test_samples_ = 0;
+  std::int32_t settling_samples_ = 0;
+  std::int32_t standing_samples_ = 0;
+};
+
+}  // namespace firmware

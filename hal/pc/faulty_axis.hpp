@@ -1,0 +1,162 @@
+// One axis of the simulated board whose sensors, wires and converter can be broken at any sample.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+#include "hal/pc/simulated_axis.hpp"
+
+namespace hal::pc {
+
+/// What is broken now. All at once is possible; zero and false are sound.
+struct AxisDefects {
+  bool encoder_dead = false;          ///< its wires are cut: the counter stands still, and nobody notices
+  bool encoder_reported_bad = false;  ///< the same, but the input's monitor notices
+  bool encoder_swapped = false;       ///< both channels are interchanged: it counts the other way
+  std::int32_t encoder_noise = 0;     ///< counts, evenly spread over +-noise at every reading
+  std::int32_t encoder_lost = 0;      ///< counts that have gone missing
+  bool tachometer_dead = false;       ///< reads 0
+  bool tachometer_reversed = false;
+  std::int32_t tachometer_offset = 0;  ///< codes
+  bool motor_reversed = false;         ///< its leads are swapped
+  bool dac_stuck = false;              ///< stays at dac_stuck_code
+  std::int32_t dac_stuck_code = 0;
+  bool blocked = false;        ///< nothing moves
+  bool drive_faulted = false;  ///< the amplifier gives no current, and says so
+  bool positive_end_reached = false;
+  bool negative_end_reached = false;
+};
+
+/// Satisfies AxisHal, with limits(). Defects may change at any time.
+class FaultyAxis {
+ public:
+  FaultyAxis(sim::Plant& plant, const AxisWiring& wiring, std::uint64_t seed)
+      : plant_(plant), sound_(plant, wiring), noise_(seed) {}
+  FaultyAxis(const FaultyAxis&) = delete;
+  FaultyAxis& operator=(const FaultyAxis&) = delete;
+
+  AxisDefects defects;
+
+  class Encoder {
+   public:
+    explicit Encoder(FaultyAxis& axis) : axis_(axis) {}
+    EncoderReading read() {
+      const AxisDefects& d = axis_.defects;
+      if (d.encoder_reported_bad) return {};
+      const std::int64_t truth = axis_.plant_.encoder_counts();
+      const std::int64_t travel = d.encoder_dead ? 0 : (d.encoder_swapped ? last_truth_ - truth : truth - last_truth_);
+      last_truth_ = truth;
+      counted_ += travel;
+      std::int64_t reading = counted_ - d.encoder_lost;
+      if (d.encoder_noise != 0)
+        reading += std::uniform_int_distribution<std::int32_t>(-d.encoder_noise, d.encoder_noise)(axis_.noise_);
+      return {static_cast<std::uint32_t>(reading), true};
+    }
+
+   private:
+    FaultyAxis& axis_;
+    std::int64_t last_truth_ = 0;
+    std::int64_t counted_ = 0;
+  };
+
+  class Tachometer {
+   public:
+    explicit Tachometer(FaultyAxis& axis) : axis_(axis) {}
+    TachometerReading read() {
+      TachometerReading reading = axis_.sound_.tachometer().read();
+      if (axis_.defects.tachometer_dead) reading.code = 0;
+      if (axis_.defects.tachometer_reversed) reading.code = -reading.code;
+      reading.code += axis_.defects.tachometer_offset;
+      return reading;
+    }
+
+   private:
+    FaultyAxis& axis_;
+  };
+
+  class Dac {
+   public:
+    explicit Dac(FaultyAxis& axis) : axis_(axis) {}
+    bool write(std::int32_t code) {
+      commanded_ = code;
+      const AxisDefects& d = axis_.defects;
+      const std::int32_t put_out = d.dac_stuck ? d.dac_stuck_code : code;
+      return axis_.sound_.dac().write(d.motor_reversed ? -put_out : put_out);
+    }
+    std::int32_t commanded() const { return commanded_; }
+
+   private:
+    FaultyAxis& axis_;
+    std::int32_t commanded_ = 0;
+  };
+
+  class Enable {
+   public:
+    explicit Enable(FaultyAxis& axis) : axis_(axis) {}
+    void set(bool on) {
+      is_on_ = on;
+      apply();
+    }
+    bool is_faulted() { return axis_.defects.drive_faulted; }
+    bool is_on() const { return is_on_; }
+    void apply() { axis_.sound_.drive_enable().set(is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted); }
+
+   private:
+    FaultyAxis& axis_;
+    bool is_on_ = false;
+  };
+
+  class Limits {
+   public:
+    explicit Limits(FaultyAxis& axis) : axis_(axis) {}
+    LimitState read() {
+      LimitState state = axis_.sound_.limits().read();
+      state.positive_end = state.positive_end || axis_.defects.positive_end_reached;
+      state.negative_end = state.negative_end || axis_.defects.negative_end_reached;
+      return state;
+    }
+
+   private:
+    FaultyAxis& axis_;
+  };
+
+  Encoder& encoder() { return encoder_; }
+  Tachometer& tachometer() { return tachometer_; }
+  Dac& dac() { return dac_; }
+  Enable& drive_enable() { return enable_; }
+  Limits& limits() { return limits_; }
+
+  /// The amplifier's supply, or the stop relay's contact in its enable line.
+  void set_powered(bool powered) {
+    is_powered_ = powered;
+    enable_.apply();
+  }
+
+  /// Lets the machine run, with the defects that act on it.
+  void advance(double duration_s) {
+    enable_.apply();
+    if (defects.dac_stuck) dac_.write(dac_.commanded());
+    const double x = plant_.truth().x;
+    plant_.advance(duration_s);
+    if (defects.blocked) {
+      plant_.truth().x = plant_.truth().load_x = x;
+      plant_.truth().w = plant_.truth().load_w = 0.0;
+    }
+  }
+
+ private:
+  sim::Plant& plant_;
+  SimulatedAxis sound_;
+  std::mt19937_64 noise_;
+  bool is_powered_ = true;
+  Encoder encoder_{*this};
+  Tachometer tachometer_{*this};
+  Dac dac_{*this};
+  Enable enable_{*this};
+  Limits limits_{*this};
+};
+
+static_assert(AxisHal<FaultyAxis>);
+static_assert(LimitInputs<FaultyAxis::Limits>);
+
+}  // namespace hal::pc

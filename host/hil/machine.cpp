@@ -1,0 +1,73 @@
+#include "host/hil/machine.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+std::unique_ptr<sim::Plant> make_plant(const MachineAxis& axis, std::uint64_t seed) {
+  return std::make_unique<sim::Plant>(axis.drive, seed);
+}
+
+}  // namespace
+
+Machine::Machine(const std::array<MachineAxis, kMachineAxes>& axes, std::uint64_t seed)
+    : period_s_(axes[0].drive.data.sample_period_s),
+      plants_{make_plant(axes[0], 2 * seed), make_plant(axes[1], 2 * seed + 1)},
+      wires_{std::make_unique<hal::pc::FaultyAxis>(*plants_[0], axes[0].wiring, 2 * seed),
+             std::make_unique<hal::pc::FaultyAxis>(*plants_[1], axes[1].wiring, 2 * seed + 1)},
+      axes_(*wires_[0], *wires_[1]) {
+  axes_.board().configure(firmware::BoardWatch::default_limits(static_cast<float>(period_s_)));
+  axes_.board().host_commands(true);
+  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    const auto error = axes_[i].configure(axes[i].parameters);
+    if (error != firmware::ParameterError::none) {
+      throw Failure(ExitCode::bad_input, fmt::format("axis {} rejects its parameters (parameter error {})",
+                                                     kAxisNames[i], static_cast<int>(error)));
+    }
+  }
+}
+
+firmware::BoardInputs Machine::inputs() {
+  if (!defects.host_silent) axes_.board().host_heard();
+  for (auto& wires : wires_) wires->set_powered(!defects.emergency_stop && !defects.power_lost);
+  return {clock_.now_us(), defects.emergency_stop, defects.power_lost, defects.store_damaged};
+}
+
+void Machine::run_plants() {
+  for (auto& wires : wires_) wires->advance(period_s_);
+  clock_.advance_us(static_cast<std::uint32_t>(std::lround(1e6 * period_s_)));
+  ++samples_;
+}
+
+void Machine::step() {
+  axes_.step(inputs());
+  run_plants();
+}
+
+void Machine::step_with(const std::array<firmware::Increment, kMachineAxes>& increments) {
+  axes_.step_with(increments, inputs());
+  run_plants();
+}
+
+void Machine::lose_periods(int periods) {
+  for (int i = 0; i < periods; ++i) run_plants();
+}
+
+void Machine::enable() {
+  for (int k = 0; k <= firmware::kSelfTestSamples; ++k) step();
+  for (std::size_t i = 0; i < kMachineAxes; ++i) axes_[i].enable();
+  step();
+  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    if (axes_[i].state() == firmware::SupervisorState::enabled) continue;
+    throw Failure(ExitCode::device_fault, fmt::format("axis {} cannot be enabled: {}", kAxisNames[i],
+                                                      firmware::fault_info(axes_[i].fault()).cause));
+  }
+}
+
+}  // namespace host

@@ -1,0 +1,78 @@
+// Two simulated drives behind the simulated board, and the firmware's axes closing their loops, sample by sample.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "firmware/core/supervision/axis_group.hpp"
+#include "hal/pc/faulty_axis.hpp"
+#include "hal/pc/simulated_panel.hpp"
+#include "sim/plant.hpp"
+
+namespace host {
+
+inline constexpr std::size_t kMachineAxes = 2;
+using MachineGroup = firmware::AxisGroup<float, hal::pc::FaultyAxis>;
+
+/// One axis of a machine: the drive as it is, and what its controller is told.
+struct MachineAxis {
+  sim::DriveDescription drive;
+  firmware::AxisParameters<float> parameters;
+  hal::pc::AxisWiring wiring{};
+};
+
+/// What can go wrong with the board itself.
+struct BoardDefects {
+  bool emergency_stop = false;  ///< the stop circuit is open; it also takes the enable lines away in hardware
+  bool power_lost = false;      ///< amplifiers without power; the board's supply sinks below its threshold
+  bool store_damaged = false;
+  bool host_silent = false;  ///< no heart-beat any more
+};
+
+/// Deterministic: equal arguments and calls give equal bits. Not copyable, because the axes refer to their hardware.
+class Machine {
+ public:
+  /// `seed` fixes the noise of all sensors. Throws Failure(bad_input) naming the axis whose parameters are refused.
+  Machine(const std::array<MachineAxis, kMachineAxes>& axes, std::uint64_t seed);
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  /// One control period, then the machine runs until the next.
+  void step();
+  void step_with(const std::array<firmware::Increment, kMachineAxes>& increments);
+
+  /// The control interrupt fails to come for as many periods; the machine runs on with the last words.
+  void lose_periods(int periods);
+
+  /// Runs the self-test, then enables both axes. Throws Failure(device_fault) where an axis does not become enabled.
+  void enable();
+
+  MachineGroup& axes() { return axes_; }
+  const MachineGroup& axes() const { return axes_; }
+  hal::pc::FaultyAxis& wires(std::size_t axis) { return *wires_[axis]; }
+  const sim::Plant& plant(std::size_t axis) const { return *plants_[axis]; }
+  double sample_period_s() const { return period_s_; }
+  /// Since the machine was made.
+  std::uint64_t samples() const { return samples_; }
+
+  BoardDefects defects;
+
+ private:
+  firmware::BoardInputs inputs();
+  void run_plants();
+
+  double period_s_;
+  std::array<std::unique_ptr<sim::Plant>, kMachineAxes> plants_;
+  std::array<std::unique_ptr<hal::pc::FaultyAxis>, kMachineAxes> wires_;
+  MachineGroup axes_;
+  hal::pc::SimulatedClock clock_;
+  std::uint64_t samples_ = 0;
+};
+
+/// "x" and "y": how messages, records and scenario files call the axes.
+inline constexpr std::array<std::string_view, kMachineAxes> kAxisNames{"x", "y"};
+
+}  // namespace host

@@ -1,0 +1,78 @@
+// Where each monitor of an axis trips, found by raising what it watches little by little.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "firmware/core/supervision/axis_monitors.hpp"
+
+namespace firmware_test {
+
+/// One number a monitor: the step of a geometric ramp at which it trips first, or how many samples it bears.
+template <typename Scalar>
+std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& parameters) {
+  using Telemetry = firmware::AxisTelemetry<Scalar>;
+  using Monitors = firmware::AxisMonitors<Scalar>;
+  struct Switches {
+    hal::LimitState read() const { return {}; }
+  } switches;
+
+  const auto first_trip = [&](int samples, auto&& set, auto&& watch) {
+    float level = 1e-3f;
+    std::int32_t step = 0;
+    for (; step < 2000 && level < 1e9f; ++step, level *= 1.02f) {
+      Monitors monitors;
+      monitors.configure(parameters);
+      Telemetry seen;
+      set(seen, level);
+      for (int k = 0; k < samples; ++k)
+        if (watch(monitors, seen) != firmware::AxisFault::none) return step;
+    }
+    return step;
+  };
+  const auto motion = [](Monitors& monitors, const Telemetry& seen) { return monitors.watch_motion(seen); };
+  const auto sensors = [](Monitors& monitors, const Telemetry& seen) { return monitors.watch_sensors(seen); };
+  const auto travel = [&](Monitors& monitors, const Telemetry& seen) { return monitors.watch_travel(seen, switches); };
+  const auto tachometer = [](Telemetry& seen, float level) { seen.tachometer_velocity = Scalar(level); };
+
+  std::vector<std::int32_t> points;
+  points.push_back(first_trip(
+      1, [](Telemetry& seen, float level) { seen.position_error = Scalar(level); }, motion));
+  points.push_back(first_trip(
+      1,
+      [](Telemetry& seen, float level) {
+        seen.reference_velocity = Scalar(100.0f);
+        seen.position_error = Scalar(level);
+      },
+      motion));
+  points.push_back(first_trip(1, tachometer, sensors));
+  points.push_back(first_trip(120, tachometer, sensors));
+  points.push_back(first_trip(
+      1, [](Telemetry& seen, float level) { seen.estimate.velocity = Scalar(level); }, motion));
+  points.push_back(first_trip(
+      firmware::kPolaritySamples,
+      [](Telemetry& seen, float level) {
+        seen.control_V = Scalar(level);
+        seen.estimate.disturbance = Scalar(2.0f * level);
+      },
+      motion));
+  for (const std::int64_t sign : {1, -1}) {
+    points.push_back(first_trip(
+        1,
+        [sign](Telemetry& seen, float level) {
+          seen.reference_velocity = Scalar(static_cast<int>(sign));
+          seen.encoder_counts = sign * static_cast<std::int64_t>(1000.0f * level);
+        },
+        travel));
+  }
+  Monitors monitors;
+  monitors.configure(parameters);
+  Telemetry saturated;
+  saturated.saturated = true;
+  std::int32_t borne = 0;
+  while (borne < 100'000 && monitors.watch_motion(saturated) == firmware::AxisFault::none) ++borne;
+  points.push_back(borne);
+  return points;
+}
+
+}  // namespace firmware_test
