@@ -1,0 +1,34 @@
+#include "host/hil/commissioning.hpp"
+
+#include "hal/pc/simulated_axis.hpp"
+#include "host/identify/friction_identification.hpp"
+#include "host/identify/identification.hpp"
+#include "host/identify/simulated_experiment.hpp"
+
+namespace host {
+
+sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint64_t seed) {
+  constexpr double kStepScaling = 15.0;  // Ku, p. 1499
+  constexpr double kPitch_mm = 10.0;     // Table 1
+  const Record steps =
+      record_open_loop(machine, doublet_series(kStepScaling * kStepUnit_V, machine.data.sample_period_s), seed);
+  sim::DriveDescription data_sheet = machine;
+  data_sheet.effects.clear();
+  const Identification rigid = identify_drive({steps}, data_sheet, IdentificationMethod::sliding_ls);
+  const AxisDesign design = design_axis(rigid.model, {});
+  const auto programme = jogging_programme({kPaperJogSpeeds_mm_s.begin(), kPaperJogSpeeds_mm_s.end()}, kPitch_mm);
+  const Record jogs = record_jogs(machine, design, programme, seed + 1);
+  return identify_friction({jogs}, rigid.model, FrictionMethod::joint).model;
+}
+
+firmware::AxisParameters<float> contouring_parameters(const sim::DriveDescription& model,
+                                                      const CompensationSwitches& switches,
+                                                      const ReferenceLimits& limits) {
+  auto parameters = axis_parameters(model, design_axis(model, {}), hal::pc::AxisWiring{}.tachometer_resolution, limits);
+  parameters.zero_phase_feedforward_on = true;
+  parameters.friction_feedforward_on = switches.friction;
+  parameters.disturbance_cancellation_on = switches.cancellation;
+  return parameters;
+}
+
+}  // namespace host

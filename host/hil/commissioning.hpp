@@ -1,0 +1,26 @@
+// The paper's commissioning of one axis: steps, least squares, design, jogs, friction curve.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/axis_parameters.hpp"
+#include "host/identify/axis_parameters.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// What is identified from experiments on `machine`, whose effects are not looked at: inertia and viscous friction from
+/// open-loop steps at Ku = 15 (p. 1499), the friction curve from jogs at the paper's eleven speeds (section 3.2).
+sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint64_t seed);
+
+struct CompensationSwitches {
+  bool friction = false;
+  bool cancellation = false;
+};
+
+/// Board parameters from a model: pole placement and Kalman filter with the paper's values, ZPETC on.
+firmware::AxisParameters<float> contouring_parameters(const sim::DriveDescription& model,
+                                                      const CompensationSwitches& switches,
+                                                      const ReferenceLimits& limits = {});
+
+}  // namespace host

@@ -1,0 +1,59 @@
+// Paths in the plane, made of lines and arcs, and the references that lead two axes along them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "firmware/core/count_position.hpp"
+
+namespace host {
+
+/// Millimetres, x and y.
+struct PlanePoint {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+/// A straight line (angle 0), or an arc about `centre` that turns by `angle` (rad, positive counter-clockwise).
+struct PathSegment {
+  PlanePoint begin;
+  PlanePoint end;  ///< of a line
+  PlanePoint centre;
+  double angle = 0.0;
+
+  double length() const;
+  PlanePoint at(double distance) const;
+  /// The nearest distance of a point to this piece, >= 0.
+  double distance_to(const PlanePoint& point) const;
+};
+
+class Path {
+ public:
+  /// Starts and ends at the origin; the centre lies at (radius, 0). `turns` full turns, counter-clockwise.
+  static Path circle(double radius_mm, int turns = 1);
+  /// Starts and ends at the origin, the middle of the lower side; corners are quarter circles.
+  /// Throws Failure(bad_input) where the corners do not fit the side.
+  static Path rounded_square(double side_mm, double corner_radius_mm);
+
+  double length() const;
+  PlanePoint at(double distance) const;
+  double distance_to(const PlanePoint& point) const;
+
+ private:
+  std::vector<PathSegment> segments_;
+};
+
+/// Along the path, mm/s, mm/s^2, mm/s^3.
+struct PathLimits {
+  double feed = 170.0;           // the paper, p. 1508
+  double acceleration = 2000.0;  // likewise
+  double jerk = 50'000.0;        // likewise
+};
+
+/// Increments of both axes, sample by sample, from rest to rest: jerk-limited along the path, exact at its end.
+/// Throws Failure(bad_input) for limits outside the references' range.
+std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, const PathLimits& limits,
+                                                            double sample_period_s,
+                                                            const std::array<double, 2>& count_mm);
+
+}  // namespace host
