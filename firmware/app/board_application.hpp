@@ -1,0 +1,295 @@
+// What a board does besides its pins: parameters, axes, capture, store; the same class on every board and on the PC.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "firmware/app/capture_stream.hpp"
+#include "firmware/app/parameters/parameter_check.hpp"
+#include "firmware/app/protocol/messages.hpp"
+#include "firmware/app/store/parameter_store.hpp"
+#include "firmware/core/supervision/axis_group.hpp"
+#include "hal/board.hpp"
+
+namespace firmware {
+
+/// control_period() belongs to the control interrupt, everything else to the background.
+template <typename Scalar, hal::Board Board>
+class BoardApplication {
+ public:
+  using Number = Scalar;
+  using Axes = AxisGroup<Scalar, typename Board::AxisType>;
+  using Store = ParameterStore<std::remove_reference_t<decltype(std::declval<Board&>().parameter_flash())>>;
+  static_assert(Axes::kAxes == kAxisCount);
+
+  explicit BoardApplication(Board& board)
+      : board_(board), store_(board.parameter_flash()), axes_(board.axis(0), board.axis(1)) {}
+
+  /// Before the control interrupt runs: takes the parameters out of the store and hands them to the axes.
+  void start() {
+    store_.load(active_);
+    saved_ = active_;
+    if (store_is_usable() && check<Scalar>(active_).kind != SetProblemKind::none) set_fits_ = false;
+    configure_all();
+  }
+
+  void control_period() {
+    const std::uint32_t now_us = board_.clock().now_us();
+    BoardInputs inputs;
+    inputs.now_us = now_us;
+    inputs.emergency_stop = board_.emergency_stop().is_pressed();
+    inputs.store_damaged = !store_is_usable();
+    axes_.step(inputs);
+    capture_.take(axes_);
+    note_timing(now_us);
+  }
+
+  // Parameters. `staged` is the background's own copy; nothing acts before commit().
+  const ParameterValues& active() const { return active_; }
+  ParameterValues& staged() { return staged_; }
+  bool has_unsaved_changes() const { return !(active_ == saved_); }
+
+  /// Takes the staged set over, as a whole or not at all.
+  Status commit(ProblemPayload& problem) {
+    if (const auto changed = change_that_needs_standstill(); changed < kParameterCount && any_enabled()) {
+      problem = {key_at(changed).code, 0, 0, std::bit_cast<std::uint32_t>(staged_.at(changed))};
+      return Status::drive_enabled;
+    }
+    const SetProblem found = check<Scalar>(staged_);
+    if (found.kind != SetProblemKind::none) {
+      const std::size_t place = place_of(found.key).value_or(0);
+      problem = {found.key.code, static_cast<std::uint8_t>(found.kind), 0,
+                 std::bit_cast<std::uint32_t>(staged_.at(place))};
+      return Status::bad_value;
+    }
+    if (staged_ == active_) return Status::ok;
+    active_ = staged_;
+    set_fits_ = true;
+    configure_all();
+    return Status::ok;
+  }
+
+  /// The control interrupt stands still meanwhile: the outputs are off, and it could not run from stalled flash.
+  Status save() {
+    if (any_enabled()) return Status::drive_enabled;
+    const bool was_usable = store_is_usable();
+    const typename Board::ControlShutOut guard;
+    board_.begin_stall();
+    const SaveResult result = store_.save(active_);
+    board_.end_stall();
+    axes_.board().configure(limits_of_board());  // the pause was no overrun
+    if (result == SaveResult::saved) saved_ = active_;
+    if (!was_usable) configure_all();
+    return result == SaveResult::saved          ? Status::ok
+           : result == SaveResult::not_verified ? Status::not_verified
+                                                : Status::flash_failed;
+  }
+
+  Store& store() { return store_; }
+
+  /// A damaged or half understood set, or one that this firmware's control core refuses, keeps every drive disabled.
+  bool store_is_usable() const {
+    const StoreState state = store_.report().state;
+    return set_fits_ && state != StoreState::damaged && state != StoreState::incomplete;
+  }
+
+  // Motion, from the host.
+  bool is_fitted(std::size_t axis) const { return active_.axis(axis).template get<"drive.fitted">(); }
+
+  Status enable(std::size_t axis) {
+    if (!store_is_usable()) return Status::device_fault;
+    if (!is_fitted(axis)) return Status::not_fitted;
+    const typename Board::ControlShutOut guard;
+    if (axes_[axis].enable() || axes_[axis].state() == SupervisorState::enabled) return Status::ok;
+    return refusal(axis);
+  }
+
+  /// An orderly stop; the enable drops at standstill.
+  void disable(std::size_t axis) {
+    const typename Board::ControlShutOut guard;
+    axes_[axis].disable();
+  }
+
+  void stop() {
+    const typename Board::ControlShutOut guard;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) axes_[axis].stop();
+  }
+
+  /// Velocity in mm/s (m/s).
+  Status jog(std::size_t axis, float velocity) {
+    if (!ScalarTraits<float>::is_finite(velocity)) return Status::malformed;
+    const Scalar wanted = in_core_units(axis, velocity);
+    const typename Board::ControlShutOut guard;
+    if (!axes_[axis].jog(wanted)) return refusal(axis);
+    axes_.board().host_commands(true);
+    return Status::ok;
+  }
+
+  Status move(std::size_t axis, std::int64_t target_counts) {
+    {
+      const typename Board::ControlShutOut guard;
+      if (axes_[axis].state() != SupervisorState::enabled || !axes_[axis].is_at_rest()) return refusal(axis);
+    }
+    // At rest the reference stands still, and only this background can change that.
+    const MovePlanResult planned = axes_[axis].plan_move_to(CountPosition::at(target_counts));
+    if (planned.error != MovePlanError::none) return Status::unreachable;
+    const typename Board::ControlShutOut guard;
+    if (!axes_[axis].start(planned.plan)) return refusal(axis);
+    axes_.board().host_commands(true);
+    return Status::ok;
+  }
+
+  void clear_faults() {
+    const typename Board::ControlShutOut guard;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) axes_[axis].clear_fault();
+  }
+
+  /// Any request proves that the host is there; it need not be there while every axis stands.
+  void host_heard() {
+    const typename Board::ControlShutOut guard;
+    axes_.board().host_heard();
+    bool at_rest = true;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) at_rest = at_rest && axes_[axis].is_at_rest();
+    if (at_rest) axes_.board().host_commands(false);
+  }
+
+  // Capture.
+  void start_capture(const CaptureRequest& request) {
+    const typename Board::ControlShutOut guard;
+    capture_.start(request);
+  }
+  CaptureStream& capture() { return capture_; }
+
+  /// The state of an axis at one instant.
+  AxisStatus axis_status(std::size_t axis) {
+    const typename Board::ControlShutOut guard;
+    const auto& seen = axes_[axis].telemetry();
+    AxisStatus status;
+    status.counts_low = static_cast<std::uint32_t>(seen.encoder_counts);
+    status.counts_high = static_cast<std::int32_t>(seen.encoder_counts >> 32);
+    status.velocity = velocity_of_drive(axis, seen.estimate.velocity);
+    status.state = static_cast<std::uint8_t>(axes_[axis].state());
+    status.fault = static_cast<std::uint8_t>(axes_[axis].fault());
+    const LimitingReasons limiting = axes_[axis].limiting();
+    status.flags = static_cast<std::uint8_t>(
+        (is_fitted(axis) ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
+        (limiting.velocity_limited ? kAxisVelocityLimited : 0) | (axes_[axis].is_at_rest() ? kAxisAtRest : 0));
+    return status;
+  }
+
+  /// A row of what the axis kept when a fault stopped it; false beyond the last.
+  bool fault_row(std::size_t axis, std::size_t row, FaultRowPayload& payload) {
+    const auto& kept = axes_[axis].capture();
+    if (!kept.is_frozen() || row >= kept.size()) return false;
+    const auto& sample = kept.row(row);
+    payload.rows = static_cast<std::uint16_t>(kept.size());
+    payload.every = static_cast<std::uint16_t>(kept.stride());
+    payload.dac_code = static_cast<std::uint32_t>(sample.dac_code);
+    payload.counts = static_cast<std::uint32_t>(sample.estimate.anchor_counts);
+    payload.tachometer_velocity = word_of(sample.tachometer_velocity);
+    payload.reference_velocity = word_of(sample.reference_velocity);
+    payload.position_error = word_of(sample.position_error);
+    payload.velocity_estimate = word_of(sample.estimate.velocity);
+    payload.disturbance = word_of(sample.estimate.disturbance);
+    return true;
+  }
+
+  bool any_enabled() const { return axes_.outputs_on(); }
+  std::uint32_t control_periods() const { return control_periods_; }
+
+  TimingPayload timing() {
+    const typename Board::ControlShutOut guard;
+    return timing_;
+  }
+  void begin_timing_anew() {
+    const typename Board::ControlShutOut guard;
+    timing_ = {};
+  }
+
+  Board& board() { return board_; }
+  Axes& axes() { return axes_; }
+
+ private:
+  static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
+
+  BoardLimits limits_of_board() const {
+    return BoardWatch::default_limits(1.0F / static_cast<float>(active_.template get<"control.rate">()));
+  }
+
+  void configure_all() {
+    const typename Board::ControlShutOut guard;
+    board_.set_control_rate(static_cast<std::uint32_t>(active_.template get<"control.rate">()));
+    axes_.board().configure(limits_of_board());
+    if (!store_is_usable()) return;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
+  }
+
+  /// kParameterCount when there is none.
+  std::size_t change_that_needs_standstill() const {
+    for (std::size_t place = 0; place < kParameterCount; ++place) {
+      const bool changed =
+          std::bit_cast<std::uint32_t>(active_.at(place)) != std::bit_cast<std::uint32_t>(staged_.at(place));
+      if (changed && rule_at(place).change == ParameterChange::while_disabled) return place;
+    }
+    return kParameterCount;
+  }
+
+  Status refusal(std::size_t axis) const {
+    return axes_[axis].state() == SupervisorState::fault ? Status::device_fault : Status::wrong_state;
+  }
+
+  FixedUnits<float> units(std::size_t axis) const {
+    return FixedUnits<float>(axis_parameters<float>(active_.axis(axis)));
+  }
+
+  Scalar in_core_units(std::size_t axis, float travel_velocity) const {
+    if constexpr (kIsFloat)
+      return travel_velocity;
+    else
+      return Scalar::from(travel_velocity / units(axis).travel_velocity);
+  }
+
+  float velocity_of_drive(std::size_t axis, Scalar velocity) const {
+    if constexpr (kIsFloat)
+      return velocity;
+    else
+      return static_cast<float>(velocity.raw()) / static_cast<float>(Scalar(1).raw()) * units(axis).velocity;
+  }
+
+  static std::uint32_t word_of(Scalar value) {
+    if constexpr (kIsFloat)
+      return std::bit_cast<std::uint32_t>(value);
+    else
+      return static_cast<std::uint32_t>(value.raw());
+  }
+
+  void note_timing(std::uint32_t began_us) {
+    if (timing_.periods > 0) {
+      const std::uint32_t interval = began_us - last_period_us_;
+      timing_.shortest_us = timing_.periods == 1 ? interval : std::min(timing_.shortest_us, interval);
+      timing_.longest_us = std::max(timing_.longest_us, interval);
+    }
+    last_period_us_ = began_us;
+    timing_.busiest_us = std::max(timing_.busiest_us, board_.clock().now_us() - began_us);
+    timing_.periods = timing_.periods + 1;
+    control_periods_ = control_periods_ + 1;
+  }
+
+  Board& board_;
+  Store store_;
+  Axes axes_;
+  CaptureStream capture_;
+  ParameterValues active_;
+  ParameterValues staged_;
+  ParameterValues saved_;
+  bool set_fits_ = true;
+  TimingPayload timing_{};
+  std::uint32_t last_period_us_ = 0;
+  volatile std::uint32_t control_periods_ = 0;  // written in the interrupt, read in the background
+};
+
+}  // namespace firmware

@@ -1,0 +1,241 @@
+// Requests, replies and their payloads. Little-endian, each struct as it lies in the report from byte 8 on: README.md.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace firmware {
+
+inline constexpr std::size_t kPayloadSize = 52;
+
+/// Numbers are permanent. A reply has the request's number with the highest bit set.
+enum class MessageType : std::uint8_t {
+  identify = 0x01,
+  status = 0x02,
+  timing = 0x03,
+  read_values = 0x10,
+  begin_staging = 0x11,
+  stage = 0x12,
+  commit = 0x13,
+  save = 0x14,
+  read_stored = 0x15,
+  enable = 0x20,
+  disable = 0x21,
+  stop = 0x22,
+  jog = 0x23,
+  move = 0x24,
+  clear_faults = 0x25,
+  heartbeat = 0x26,
+  start_capture = 0x30,
+  stop_capture = 0x31,
+  read_fault_capture = 0x32,
+  restart = 0x3E,
+  samples = 0x70,   ///< from the board, unasked, while a capture runs
+  rejected = 0x7F,  ///< from the board: a report that could not be decoded
+};
+
+inline constexpr std::uint8_t kReplyBit = 0x80;
+
+constexpr MessageType reply_to(MessageType request) {
+  return static_cast<MessageType>(static_cast<std::uint8_t>(request) | kReplyBit);
+}
+
+/// Numbers are permanent.
+enum class Status : std::uint8_t {
+  ok = 0,
+  unknown_request = 1,
+  malformed = 2,          ///< the payload has not the request's length, or names an axis that is not there
+  damaged = 3,            ///< checksum or length of the report
+  wrong_version = 4,      ///< of the protocol
+  bad_value = 5,          ///< ProblemPayload says which and why
+  unknown_parameter = 6,  ///< ProblemPayload says which
+  drive_enabled = 7,      ///< refused while a drive is enabled; ProblemPayload may say which parameter
+  set_differs = 8,        ///< the staged set is not the one that was to be committed
+  wrong_state = 9,        ///< the axis is not in a state that allows this
+  not_fitted = 10,
+  flash_failed = 11,
+  not_verified = 12,  ///< the saved set read back differently; the old one holds
+  unreachable = 13,   ///< a move that cannot be planned
+  device_fault = 14,  ///< a fault is latched: read the status
+  no_such_row = 15,
+};
+
+struct IdentityPayload {
+  std::uint32_t schema_hash = 0;
+  std::uint16_t parameter_count = 0;
+  std::uint8_t axis_count = 0;
+  std::uint8_t fixed_point = 0;
+  std::array<char, 16> board{};
+  std::array<char, 16> version{};
+  std::array<char, 12> git_hash{};  ///< its first characters; may lack the zero at the end
+};
+static_assert(sizeof(IdentityPayload) == kPayloadSize);
+
+struct AxisStatus {
+  std::uint32_t counts_low = 0;
+  std::int32_t counts_high = 0;
+  float velocity = 0;  ///< estimated, rad/s (m/s)
+  std::uint8_t state = 0;
+  std::uint8_t fault = 0;
+  std::uint8_t flags = 0;  ///< kAxis…
+  std::uint8_t reserved = 0;
+
+  constexpr std::int64_t counts() const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
+                                     counts_low);
+  }
+};
+inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8;
+
+struct StatusPayload {
+  std::uint32_t control_periods = 0;
+  std::uint32_t store_sequence = 0;
+  std::uint32_t store_erases = 0;
+  std::uint16_t not_migrated = 0;
+  std::uint8_t store_state = 0;
+  std::uint8_t reset_cause = 0;
+  std::uint8_t flags = 0;  ///< kBoard…
+  std::uint8_t reserved = 0;
+  std::uint16_t resets = 0;
+  std::array<AxisStatus, 2> axis{};
+};
+static_assert(sizeof(StatusPayload) == kPayloadSize);
+inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8;
+
+/// Since start-up, or since the last request that asked to begin anew.
+struct TimingPayload {
+  std::uint32_t periods = 0;
+  std::uint32_t shortest_us = 0;  ///< from one control period to the next
+  std::uint32_t longest_us = 0;
+  std::uint32_t busiest_us = 0;  ///< longest work of a control period
+  std::uint32_t reports = 0;
+  std::uint32_t rejected_reports = 0;
+  std::uint32_t stack_used = 0;
+  std::uint32_t stack_size = 0;
+};
+
+struct TimingRequest {
+  std::uint8_t begin_anew = 0;
+};
+
+inline constexpr std::size_t kValuesPerReport = 8;
+
+/// Values by key. As reply to read_values and read_stored: from place `first` on; a count below kValuesPerReport ends
+/// the set.
+struct ValuesPayload {
+  std::uint16_t first = 0;
+  std::uint8_t count = 0;
+  std::uint8_t reserved = 0;
+  std::array<std::uint16_t, kValuesPerReport> key{};
+  std::array<std::uint32_t, kValuesPerReport> bits{};
+};
+static_assert(sizeof(ValuesPayload) == kPayloadSize);
+
+enum class ValueSet : std::uint8_t { active = 0, staged = 1, initial = 2 };
+
+struct ReadRequest {
+  std::uint16_t first = 0;
+  ValueSet set = ValueSet::active;  ///< read_values only
+  std::uint8_t reserved = 0;
+};
+
+struct BeginRequest {
+  ValueSet from = ValueSet::active;
+};
+
+/// CRC-32 over the values of all places in the table's order, four bytes each.
+struct CommitRequest {
+  std::uint32_t crc = 0;
+};
+
+struct ProblemPayload {
+  std::uint16_t key = 0;
+  std::uint8_t kind = 0;  ///< SetProblemKind
+  std::uint8_t reserved = 0;
+  std::uint32_t bits = 0;
+};
+
+struct AxesRequest {
+  std::uint8_t mask = 0;  ///< bit 0: the first axis
+};
+
+struct JogRequest {
+  std::uint8_t axis = 0;
+  std::array<std::uint8_t, 3> reserved{};
+  float velocity = 0;  ///< mm/s (m/s)
+};
+
+struct MoveRequest {
+  std::uint8_t axis = 0;
+  std::array<std::uint8_t, 3> reserved{};
+  std::uint32_t counts_low = 0;
+  std::int32_t counts_high = 0;
+
+  static constexpr MoveRequest to(std::uint8_t axis, std::int64_t counts) {
+    return {axis, {}, static_cast<std::uint32_t>(counts), static_cast<std::int32_t>(counts >> 32)};
+  }
+  constexpr std::int64_t counts() const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
+                                     counts_low);
+  }
+};
+
+/// What a captured row may hold of one axis; a word of 32 bits each. "Scalar": the bits of a float, or the raw number
+/// of a fixed-point board (fixed_units.hpp).
+enum class Channel : std::uint8_t {
+  dac_code = 0,
+  counts = 1,               ///< low word of the encoder's counts
+  tachometer_velocity = 2,  ///< scalar, rad/s (m/s)
+  reference = 3,            ///< 1/256 counts, low word
+  reference_velocity = 4,   ///< scalar, rad/s (m/s)
+  position_error = 5,       ///< scalar, mm (m): xref - x_hat
+  velocity_estimate = 6,    ///< scalar, rad/s (m/s)
+  disturbance = 7,          ///< scalar, V
+  friction = 8,             ///< scalar, V
+  control = 9,              ///< scalar, V: before limits and rounding
+  flags = 10,               ///< state, then fault << 8, then saturated << 16
+};
+inline constexpr std::size_t kChannels = 11;
+inline constexpr std::size_t kWordsPerReport = 12;
+
+struct CaptureRequest {
+  std::array<std::uint16_t, 2> channels{};  ///< for each axis: bit n is channel n; up to kWordsPerReport in all
+  std::uint16_t every = 1;                  ///< control periods from one row to the next, at least 1
+  std::uint16_t reserved = 0;
+};
+
+struct CaptureReply {
+  std::uint32_t rows = 0;     ///< taken since the capture was started
+  std::uint32_t dropped = 0;  ///< of these, for want of room: the host did not fetch them in time
+};
+
+/// Rows of a capture, unasked. Every row taken has a number, also one that had to be dropped: numbers tell what is
+/// lost.
+struct SamplesPayload {
+  std::uint32_t first_row = 0;
+  std::array<std::uint32_t, kWordsPerReport> word{};
+};
+static_assert(sizeof(SamplesPayload) == kPayloadSize);
+
+struct FaultRowRequest {
+  std::uint8_t axis = 0;
+  std::uint8_t reserved = 0;
+  std::uint16_t row = 0;  ///< 0 the oldest
+};
+
+/// One row of what an axis kept when a fault stopped it; scalars and words as in Channel.
+struct FaultRowPayload {
+  std::uint16_t rows = 0;   ///< that there are
+  std::uint16_t every = 0;  ///< control periods from one row to the next
+  std::uint32_t dac_code = 0;
+  std::uint32_t counts = 0;
+  std::uint32_t tachometer_velocity = 0;
+  std::uint32_t reference_velocity = 0;
+  std::uint32_t position_error = 0;
+  std::uint32_t velocity_estimate = 0;
+  std::uint32_t disturbance = 0;
+};
+
+}  // namespace firmware

@@ -1,0 +1,85 @@
+// The envelope of every report: version, type, sequence number, status, length, checksum. Bytes: README.md.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+#include "firmware/app/crc32.hpp"
+#include "firmware/app/protocol/messages.hpp"
+#include "hal/usb_hid.hpp"
+
+namespace firmware {
+
+inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kPayloadOffset = 8;
+inline constexpr std::size_t kCrcOffset = hal::kHidReportSize - sizeof(std::uint32_t);
+static_assert(kCrcOffset - kPayloadOffset == kPayloadSize);
+
+/// A report's contents. Bytes of the payload beyond `length` are 0.
+struct Message {
+  MessageType type = MessageType::identify;
+  Status status = Status::ok;
+  std::uint16_t sequence = 0;
+  std::uint8_t length = 0;
+  std::array<std::byte, kPayloadSize> payload{};
+
+  template <typename Payload>
+  void put(const Payload& value) {
+    static_assert(std::is_trivially_copyable_v<Payload> && sizeof(Payload) <= kPayloadSize);
+    std::memcpy(payload.data(), &value, sizeof value);
+    length = sizeof value;
+  }
+
+  /// False, and `value` untouched, if the payload has another length.
+  template <typename Payload>
+  bool get(Payload& value) const {
+    static_assert(std::is_trivially_copyable_v<Payload> && sizeof(Payload) <= kPayloadSize);
+    if (length != sizeof value) return false;
+    std::memcpy(&value, payload.data(), sizeof value);
+    return true;
+  }
+
+  bool operator==(const Message&) const = default;
+};
+
+enum class DecodeProblem : std::uint8_t { none, wrong_version, wrong_length, wrong_crc };
+
+inline hal::HidReport encode(const Message& message) {
+  hal::HidReport report{};
+  report[0] = std::byte{kProtocolVersion};
+  report[1] = static_cast<std::byte>(message.type);
+  report[2] = static_cast<std::byte>(message.sequence & 0xFF);
+  report[3] = static_cast<std::byte>(message.sequence >> 8);
+  report[4] = static_cast<std::byte>(message.status);
+  report[5] = static_cast<std::byte>(message.length);
+  std::memcpy(report.data() + kPayloadOffset, message.payload.data(),
+              std::min<std::size_t>(message.length, kPayloadSize));
+  const std::uint32_t crc = crc32(std::span(report).first(kCrcOffset));
+  std::memcpy(report.data() + kCrcOffset, &crc, sizeof crc);
+  return report;
+}
+
+/// Any 64 bytes. The checksum is looked at first: of a report that was damaged nothing can be believed.
+inline DecodeProblem decode(const hal::HidReport& report, Message& message) {
+  std::uint32_t crc = 0;
+  std::memcpy(&crc, report.data() + kCrcOffset, sizeof crc);
+  if (crc32(std::span(report).first(kCrcOffset)) != crc) return DecodeProblem::wrong_crc;
+  if (report[0] != std::byte{kProtocolVersion}) return DecodeProblem::wrong_version;
+  const auto length = std::to_integer<std::uint8_t>(report[5]);
+  if (length > kPayloadSize) return DecodeProblem::wrong_length;
+  message = {};
+  message.type = static_cast<MessageType>(report[1]);
+  message.sequence =
+      static_cast<std::uint16_t>(std::to_integer<unsigned>(report[2]) | std::to_integer<unsigned>(report[3]) << 8);
+  message.status = static_cast<Status>(report[4]);
+  message.length = length;
+  std::memcpy(message.payload.data(), report.data() + kPayloadOffset, length);
+  return DecodeProblem::none;
+}
+
+}  // namespace firmware

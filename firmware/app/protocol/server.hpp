@@ -1,0 +1,331 @@
+// The board's end of the protocol: one request, one reply; samples in between.
+#pragma once
+
+#include <array>
+#include <bit>
+
+#include "firmware/app/board_application.hpp"
+#include "firmware/app/image_header.hpp"
+#include "firmware/app/parameters/set_crc.hpp"
+#include "firmware/app/protocol/report.hpp"
+
+namespace firmware {
+
+/// What only the board's start-up knows.
+struct BootFacts {
+  std::uint8_t reset_cause = 0;  ///< boards/image/survival_record.hpp
+  std::uint16_t resets = 0;      ///< since power came on
+  bool simulated = false;
+};
+
+struct StackUse {
+  std::uint32_t used = 0, size = 0;
+};
+
+template <typename Application>
+class ProtocolServer {
+ public:
+  ProtocolServer(Application& application, const ImageHeader& image, const BootFacts& boot)
+      : app_(application), image_(image), boot_(boot) {}
+
+  /// A round of the background: at most one report in and one out. Never waits.
+  template <hal::UsbHid Usb>
+  void poll(Usb& usb, const StackUse& stack = {}) {
+    stack_ = stack;
+    if (!usb.is_configured()) {
+      reply_waits_ = false;
+      app_.capture().stop();
+      return;
+    }
+    hal::HidReport report;
+    if (!reply_waits_ && usb.receive(report)) {
+      reply_ = answer(report);
+      reply_waits_ = true;
+    }
+    if (reply_waits_) {
+      reply_waits_ = !usb.send(reply_);
+    } else if (restart_wanted_) {
+      restart_when_the_reply_is_gone();
+    } else {
+      send_samples(usb);
+    }
+  }
+
+  /// The reply to any 64 bytes.
+  hal::HidReport answer(const hal::HidReport& report) {
+    ++reports_;
+    Message request;
+    Message reply;
+    const DecodeProblem problem = decode(report, request);
+    if (problem != DecodeProblem::none) {
+      ++rejected_;
+      reply.type = MessageType::rejected;
+      reply.status = problem == DecodeProblem::wrong_version ? Status::wrong_version : Status::damaged;
+      return encode(reply);
+    }
+    app_.host_heard();
+    reply.type = reply_to(request.type);
+    reply.sequence = request.sequence;
+    reply.status = handle(request, reply);
+    return encode(reply);
+  }
+
+ private:
+  template <typename Payload, typename Handler>
+  static Status with(const Message& request, Handler handler) {
+    Payload payload;
+    return request.get(payload) ? handler(payload) : Status::malformed;
+  }
+
+  Status handle(const Message& request, Message& reply) {
+    switch (request.type) {
+      case MessageType::identify:
+        reply.put(identity());
+        return Status::ok;
+      case MessageType::status:
+        reply.put(status());
+        return Status::ok;
+      case MessageType::timing:
+        return with<TimingRequest>(request, [&](const TimingRequest& r) { return tell_timing(r, reply); });
+      case MessageType::read_values:
+        return with<ReadRequest>(request, [&](const ReadRequest& r) { return read_values(r, reply); });
+      case MessageType::read_stored:
+        return with<ReadRequest>(request, [&](const ReadRequest& r) { return read_stored(r, reply); });
+      case MessageType::begin_staging:
+        return with<BeginRequest>(request, [&](const BeginRequest& r) { return begin_staging(r); });
+      case MessageType::stage:
+        return with<ValuesPayload>(request, [&](const ValuesPayload& r) { return stage(r, reply); });
+      case MessageType::commit:
+        return with<CommitRequest>(request, [&](const CommitRequest& r) { return commit(r, reply); });
+      case MessageType::save:
+        return app_.save();
+      case MessageType::restart:
+        return restart();
+      case MessageType::heartbeat:
+        return Status::ok;
+      default:
+        return handle_motion(request, reply);
+    }
+  }
+
+  Status handle_motion(const Message& request, Message& reply) {
+    switch (request.type) {
+      case MessageType::enable:
+        return with<AxesRequest>(request, [&](const AxesRequest& r) { return enable(r); });
+      case MessageType::disable:
+        return with<AxesRequest>(request, [&](const AxesRequest& r) { return disable(r); });
+      case MessageType::stop:
+        app_.stop();
+        return Status::ok;
+      case MessageType::jog:
+        return with<JogRequest>(request, [&](const JogRequest& r) {
+          return r.axis < kAxisCount ? app_.jog(r.axis, r.velocity) : Status::malformed;
+        });
+      case MessageType::move:
+        return with<MoveRequest>(request, [&](const MoveRequest& r) {
+          return r.axis < kAxisCount ? app_.move(r.axis, r.counts()) : Status::malformed;
+        });
+      case MessageType::clear_faults:
+        app_.clear_faults();
+        return Status::ok;
+      case MessageType::start_capture:
+        return with<CaptureRequest>(request, [&](const CaptureRequest& r) { return start_capture(r); });
+      case MessageType::stop_capture:
+        app_.capture().stop();
+        reply.put(app_.capture().counts());
+        return Status::ok;
+      case MessageType::read_fault_capture:
+        return with<FaultRowRequest>(request, [&](const FaultRowRequest& r) { return fault_row(r, reply); });
+      default:
+        return Status::unknown_request;
+    }
+  }
+
+  IdentityPayload identity() const {
+    IdentityPayload payload;
+    payload.schema_hash = kSchemaHash;
+    payload.parameter_count = static_cast<std::uint16_t>(kParameterCount);
+    payload.axis_count = static_cast<std::uint8_t>(kAxisCount);
+    payload.fixed_point = std::is_same_v<typename Application::Number, float> ? 0 : 1;
+    payload.board = image_.board;
+    payload.version = image_.version;
+    std::copy_n(image_.git_hash.begin(), payload.git_hash.size(), payload.git_hash.begin());
+    return payload;
+  }
+
+  StatusPayload status() {
+    const StoreReport& store = app_.store().report();
+    StatusPayload payload;
+    payload.control_periods = app_.control_periods();
+    payload.store_sequence = store.sequence;
+    payload.store_erases = store.erases;
+    payload.not_migrated = store.not_migrated;
+    payload.store_state = static_cast<std::uint8_t>(store.state);
+    payload.reset_cause = boot_.reset_cause;
+    payload.resets = boot_.resets;
+    payload.flags = static_cast<std::uint8_t>((app_.has_unsaved_changes() ? kBoardUnsaved : 0) |
+                                              (app_.board().emergency_stop().is_pressed() ? kBoardStopPressed : 0) |
+                                              (app_.capture().is_running() ? kBoardCapturing : 0) |
+                                              (boot_.simulated ? kBoardSimulated : 0));
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) payload.axis[axis] = app_.axis_status(axis);
+    return payload;
+  }
+
+  Status tell_timing(const TimingRequest& request, Message& reply) {
+    TimingPayload payload = app_.timing();
+    payload.reports = reports_;
+    payload.rejected_reports = rejected_;
+    payload.stack_used = stack_.used;
+    payload.stack_size = stack_.size;
+    reply.put(payload);
+    if (request.begin_anew != 0) app_.begin_timing_anew();
+    return Status::ok;
+  }
+
+  Status read_values(const ReadRequest& request, Message& reply) {
+    if (request.set > ValueSet::initial) return Status::malformed;
+    ValuesPayload payload;
+    payload.first = request.first;
+    for (std::size_t place = request.first; place < kParameterCount && payload.count < kValuesPerReport; ++place) {
+      const float value = request.set == ValueSet::active   ? app_.active().at(place)
+                          : request.set == ValueSet::staged ? app_.staged().at(place)
+                                                            : rule_at(place).initial;
+      payload.key[payload.count] = key_at(place).code;
+      payload.bits[payload.count++] = std::bit_cast<std::uint32_t>(value);
+    }
+    reply.put(payload);
+    return Status::ok;
+  }
+
+  Status read_stored(const ReadRequest& request, Message& reply) {
+    ValuesPayload payload;
+    payload.first = request.first;
+    for (std::size_t index = request.first; payload.count < kValuesPerReport; ++index) {
+      const auto entry = app_.store().entry(index);
+      if (!entry) break;
+      payload.key[payload.count] = entry->key;
+      payload.bits[payload.count++] = entry->value_bits;
+    }
+    reply.put(payload);
+    return Status::ok;
+  }
+
+  Status begin_staging(const BeginRequest& request) {
+    if (request.from == ValueSet::active)
+      app_.staged() = app_.active();
+    else if (request.from == ValueSet::initial)
+      app_.staged() = ParameterValues{};
+    else
+      return Status::malformed;
+    return Status::ok;
+  }
+
+  Status stage(const ValuesPayload& request, Message& reply) {
+    if (request.count > kValuesPerReport) return Status::malformed;
+    for (std::size_t i = 0; i < request.count; ++i) {
+      const ParameterKey key{request.key[i]};
+      const auto place = place_of(key);
+      const auto problem =
+          place ? check_value(rule_at(*place), std::bit_cast<float>(request.bits[i])) : ValueProblem::none;
+      if (!place || problem != ValueProblem::none) {
+        reply.put(ProblemPayload{key.code, static_cast<std::uint8_t>(problem), 0, request.bits[i]});
+        return place ? Status::bad_value : Status::unknown_parameter;
+      }
+    }
+    for (std::size_t i = 0; i < request.count; ++i)
+      app_.staged().set(*place_of({request.key[i]}), std::bit_cast<float>(request.bits[i]));
+    return Status::ok;
+  }
+
+  Status commit(const CommitRequest& request, Message& reply) {
+    if (set_crc(app_.staged()) != request.crc) return Status::set_differs;
+    ProblemPayload problem;
+    const Status status = app_.commit(problem);
+    if (status != Status::ok) reply.put(problem);
+    return status;
+  }
+
+  Status enable(const AxesRequest& request) {
+    if (!names_axes(request)) return Status::malformed;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+      if ((request.mask >> axis & 1) == 0) continue;
+      const Status status = app_.enable(axis);
+      if (status != Status::ok) return status;
+    }
+    return Status::ok;
+  }
+
+  Status disable(const AxesRequest& request) {
+    if (!names_axes(request)) return Status::malformed;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      if ((request.mask >> axis & 1) != 0) app_.disable(axis);
+    return Status::ok;
+  }
+
+  static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxisCount == 0; }
+
+  Status start_capture(const CaptureRequest& request) {
+    const unsigned x = request.channels[0], y = request.channels[1];
+    const int words = std::popcount(x) + std::popcount(y);
+    const bool has_unknown = ((x | y) >> kChannels) != 0;
+    if (words == 0 || words > static_cast<int>(kWordsPerReport) || has_unknown || request.every == 0)
+      return Status::malformed;
+    app_.start_capture(request);
+    return Status::ok;
+  }
+
+  Status fault_row(const FaultRowRequest& request, Message& reply) {
+    if (request.axis >= kAxisCount) return Status::malformed;
+    FaultRowPayload payload;
+    if (!app_.fault_row(request.axis, request.row, payload)) return Status::no_such_row;
+    reply.put(payload);
+    return Status::ok;
+  }
+
+  Status restart() {
+    if (app_.any_enabled()) return Status::drive_enabled;
+    restart_wanted_ = true;
+    restart_asked_us_ = app_.board().clock().now_us();
+    return Status::ok;
+  }
+
+  void restart_when_the_reply_is_gone() {
+    constexpr std::uint32_t kLongestWay_us = 20'000;  // through the queue and over the wire
+    if (app_.board().clock().now_us() - restart_asked_us_ < kLongestWay_us) return;
+    restart_wanted_ = false;
+    app_.board().restart();
+  }
+
+  template <hal::UsbHid Usb>
+  void send_samples(Usb& usb) {
+    if (!samples_wait_) {
+      SamplesPayload payload;
+      const std::size_t rows = app_.capture().fetch(payload, app_.capture().is_running());
+      if (rows == 0) return;
+      Message message;
+      message.type = MessageType::samples;
+      message.sequence = samples_sent_++;
+      message.put(payload);
+      message.length = static_cast<std::uint8_t>(sizeof payload.first_row + 4 * rows * app_.capture().words_per_row());
+      samples_ = encode(message);
+      samples_wait_ = true;
+    }
+    samples_wait_ = !usb.send(samples_);
+  }
+
+  Application& app_;
+  const ImageHeader& image_;
+  BootFacts boot_;
+  StackUse stack_{};
+  hal::HidReport reply_{};
+  hal::HidReport samples_{};
+  bool reply_waits_ = false;
+  bool samples_wait_ = false;
+  bool restart_wanted_ = false;
+  std::uint32_t restart_asked_us_ = 0;
+  std::uint16_t samples_sent_ = 0;
+  std::uint32_t reports_ = 0;
+  std::uint32_t rejected_ = 0;
+};
+
+}  // namespace firmware

@@ -1,0 +1,38 @@
+// A whole board, as the application sees it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "hal/axis_hal.hpp"
+#include "hal/clock.hpp"
+#include "hal/emergency_stop.hpp"
+#include "hal/flash.hpp"
+#include "hal/limit_inputs.hpp"
+#include "hal/usb_hid.hpp"
+
+namespace hal {
+
+/// Contract: while an object of type ControlShutOut lives, the control interrupt does not run; they nest, and live for
+/// microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells the
+/// watchdog that the processor is about to stand still for as long as two erases of a sector may last; `end_stall`
+/// makes it quick again. `restart` starts the program anew, and may return before it does.
+template <typename T>
+concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
+  typename T::AxisType;
+  typename T::ControlShutOut;
+  requires AxisHal<typename T::AxisType>;
+  { board.axis(index) } -> std::same_as<typename T::AxisType&>;
+  requires LimitInputs<std::remove_reference_t<decltype(board.axis(index).limits())>>;
+  requires EmergencyStop<std::remove_reference_t<decltype(board.emergency_stop())>>;
+  requires Clock<std::remove_reference_t<decltype(board.clock())>>;
+  requires UsbHid<std::remove_reference_t<decltype(board.usb())>>;
+  requires Flash<std::remove_reference_t<decltype(board.parameter_flash())>>;
+  { board.set_control_rate(rate_Hz) } -> std::same_as<void>;
+  { board.begin_stall() } -> std::same_as<void>;
+  { board.end_stall() } -> std::same_as<void>;
+  { board.restart() } -> std::same_as<void>;
+};
+
+}  // namespace hal

@@ -1,0 +1,63 @@
+// The axis board with two simulated drives plugged in: the board's side of all connectors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "hal/board.hpp"
+#include "hal/pc/simulated_axis.hpp"
+#include "hal/pc/simulated_flash.hpp"
+#include "hal/pc/simulated_panel.hpp"
+#include "hal/pc/simulated_usb.hpp"
+
+namespace hal::pc {
+
+/// Time passes in advance() alone, which calls nothing of the board's program.
+class SimulatedBoard {
+ public:
+  using AxisType = SimulatedAxis;
+  struct ControlShutOut {
+    ControlShutOut() {}  // program and control period take turns in one thread
+  };
+
+  /// As many reports as TinyUSB's port queues, and the F405's two sectors; of these only as much as a set can need.
+  SimulatedBoard(const sim::DriveDescription& x, const sim::DriveDescription& y, std::uint64_t seed)
+      : plants_{sim::Plant(x, seed), sim::Plant(y, seed + 1)}, x_(plants_[0]), y_(plants_[1]) {}
+  SimulatedBoard(const SimulatedBoard&) = delete;
+  SimulatedBoard& operator=(const SimulatedBoard&) = delete;
+
+  SimulatedAxis& axis(std::size_t index) { return index == 0 ? x_ : y_; }
+  SimulatedEmergencyStop& emergency_stop() { return stop_; }
+  SimulatedClock& clock() { return clock_; }
+  SimulatedUsb& usb() { return usb_; }
+  SimulatedFlash& parameter_flash() { return flash_; }
+
+  void set_control_rate(std::uint32_t rate_Hz) { control_period_us_ = 1'000'000 / rate_Hz; }
+  void begin_stall() {}
+  void end_stall() {}
+  void restart() { wants_restart_ = true; }
+
+  // The world's side.
+  std::uint32_t control_period_us() const { return control_period_us_; }
+  bool wants_restart() const { return wants_restart_; }
+  sim::Plant& plant(std::size_t index) { return plants_[index]; }
+
+  /// One control period of the world's time.
+  void advance() {
+    for (sim::Plant& plant : plants_) plant.advance(1e-6 * control_period_us_);
+    clock_.advance_us(control_period_us_);
+  }
+
+ private:
+  std::array<sim::Plant, 2> plants_;
+  SimulatedAxis x_, y_;
+  SimulatedEmergencyStop stop_;
+  SimulatedClock clock_;
+  SimulatedUsb usb_{16};
+  SimulatedFlash flash_{2, 4096, 4};
+  std::uint32_t control_period_us_ = 1000;
+  bool wants_restart_ = false;
+};
+static_assert(Board<SimulatedBoard>);
+
+}  // namespace hal::pc

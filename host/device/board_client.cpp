@@ -1,0 +1,285 @@
+#include "host/device/board_client.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+
+#include "firmware/app/parameters/parameter_check.hpp"
+#include "firmware/app/parameters/set_crc.hpp"
+#include "host/device/parameter_names.hpp"
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+using firmware::Message;
+using firmware::MessageType;
+using firmware::Status;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+/// Two erases of the largest sector (STM32F405 datasheet, table 40: 2 s each at most), and some more.
+constexpr milliseconds kSavePatience{5000};
+
+[[noreturn]] void fail(ExitCode code, const std::string& text) { throw Failure(code, text); }
+
+[[noreturn]] void throw_problem(const Message& reply) {
+  firmware::ProblemPayload problem;
+  if (!reply.get(problem)) fail(ExitCode::protocol, "the board refuses a value but does not say which");
+  const firmware::ParameterKey key{problem.key};
+  if (reply.status == Status::drive_enabled)
+    fail(ExitCode::refused,
+         fmt::format("{} may change only while all drives are disabled: `axistool disable`", full_name(key)));
+  if (reply.status == Status::unknown_parameter)
+    fail(ExitCode::protocol,
+         fmt::format("the board does not know {}: flash the firmware that belongs to this axistool", full_name(key)));
+  fail(ExitCode::bad_input, describe(key, problem.kind, std::bit_cast<float>(problem.bits)));
+}
+
+/// Throws what a status other than ok means.
+void require_ok(const Message& reply) {
+  switch (reply.status) {
+    case Status::ok:
+      return;
+    case Status::bad_value:
+    case Status::unknown_parameter:
+      throw_problem(reply);
+    case Status::drive_enabled:
+      if (reply.length != 0) throw_problem(reply);
+      fail(ExitCode::refused, "refused while a drive is enabled: `axistool disable` first");
+    case Status::wrong_state:
+      fail(ExitCode::refused,
+           "the axis is not in a state that allows this: `axistool info` shows it; enable it first, and let it come to "
+           "rest");
+    case Status::not_fitted:
+      fail(ExitCode::refused,
+           "the axis is not fitted: give it the parameters of a design (axistool design, axistool set-params)");
+    case Status::unreachable:
+      fail(ExitCode::refused, "the move would last too long: raise limits.velocity, or split it");
+    case Status::device_fault:
+      fail(ExitCode::device_fault, "the board reports a fault: `axistool faults` tells cause and remedy");
+    case Status::flash_failed:
+      fail(ExitCode::device_fault, "the flash does not take the parameters; what was saved before still holds");
+    case Status::not_verified:
+      fail(ExitCode::device_fault, "the saved parameters read back differently; what was saved before still holds");
+    case Status::wrong_version:
+      fail(ExitCode::protocol, "the board speaks another version of the protocol: flash the firmware of this axistool");
+    case Status::damaged:
+      fail(ExitCode::protocol, "a report arrived damaged at the board: try again, and another cable or port");
+    case Status::set_differs:
+      fail(ExitCode::protocol, "the board staged other values than were sent: is another program setting parameters?");
+    case Status::unknown_request:
+    case Status::malformed:
+    case Status::no_such_row:
+      break;
+  }
+  fail(ExitCode::protocol,
+       fmt::format("the board does not understand request {:#04x} (status {}): flash the firmware of "
+                   "this axistool",
+                   static_cast<unsigned>(reply.type) & ~unsigned{firmware::kReplyBit},
+                   static_cast<unsigned>(reply.status)));
+}
+
+template <typename Payload>
+Payload payload_of(const Message& reply) {
+  Payload payload;
+  if (!reply.get(payload)) fail(ExitCode::protocol, "the board's answer has the wrong length");
+  return payload;
+}
+
+}  // namespace
+
+BoardClient::BoardClient(std::unique_ptr<ReportLink> link) : link_(std::move(link)) {}
+
+template <typename Payload>
+Message BoardClient::request(MessageType type, const Payload& payload, milliseconds patience) {
+  Message message;
+  message.type = type;
+  message.put(payload);
+  return exchange(message, patience);
+}
+
+Message BoardClient::request(MessageType type, milliseconds patience) {
+  Message message;
+  message.type = type;
+  return exchange(message, patience);
+}
+
+Message BoardClient::exchange(Message message, milliseconds patience) {
+  const Message reply = reply_to(message, patience);
+  require_ok(reply);
+  return reply;
+}
+
+Message BoardClient::reply_to(Message message, milliseconds patience) {
+  message.sequence = ++sequence_;
+  link_->send(firmware::encode(message));
+  const auto deadline = steady_clock::now() + patience;
+  while (const auto reply = receive(deadline)) {
+    if (reply->type == MessageType::samples) {
+      keep_samples(*reply);
+    } else if (reply->type == MessageType::rejected) {
+      require_ok(*reply);
+      fail(ExitCode::protocol, "the board rejects a report and does not say why");
+    } else if (reply->type == firmware::reply_to(message.type) && reply->sequence == message.sequence) {
+      return *reply;
+    }  // else an answer to a request that was given up: of no use any more
+  }
+  fail(ExitCode::time_out,
+       fmt::format("{} does not answer within {} ms: unplug it and plug it in again; `axistool doctor` looks further",
+                   link_->name(), patience.count()));
+}
+
+std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
+  const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
+  if (left.count() < 0) return std::nullopt;
+  const auto report = link_->receive(left);
+  if (!report) return std::nullopt;
+  Message message;
+  switch (firmware::decode(*report, message)) {
+    case firmware::DecodeProblem::none:
+      return message;
+    case firmware::DecodeProblem::wrong_version:
+      fail(ExitCode::protocol, fmt::format("the board speaks version {} of the protocol, this axistool version {}",
+                                           static_cast<unsigned>((*report)[0]), firmware::kProtocolVersion));
+    case firmware::DecodeProblem::wrong_length:
+    case firmware::DecodeProblem::wrong_crc:
+      break;
+  }
+  fail(ExitCode::protocol, "a report arrived damaged (checksum): try again, and another cable or port");
+}
+
+void BoardClient::keep_samples(const Message& message) {
+  constexpr std::size_t kMostWaiting = 100'000;  // more than a minute's worth: nobody takes them
+  if (message.length < 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of a length that cannot be");
+  if (samples_.size() == kMostWaiting) fail(ExitCode::protocol, "the board sends samples that were not asked for");
+  Samples samples;
+  std::memcpy(&samples.first_row, message.payload.data(), 4);
+  samples.words.resize(message.length / 4 - 1u);
+  std::memcpy(samples.words.data(), message.payload.data() + 4, samples.words.size() * 4);
+  samples_.push_back(std::move(samples));
+}
+
+firmware::IdentityPayload BoardClient::identify() {
+  return payload_of<firmware::IdentityPayload>(request(MessageType::identify));
+}
+
+firmware::StatusPayload BoardClient::status() {
+  return payload_of<firmware::StatusPayload>(request(MessageType::status));
+}
+
+firmware::TimingPayload BoardClient::timing(bool begin_anew) {
+  const firmware::TimingRequest anew{static_cast<std::uint8_t>(begin_anew ? 1 : 0)};
+  return payload_of<firmware::TimingPayload>(request(MessageType::timing, anew, kPatience));
+}
+
+void BoardClient::require_same_table() {
+  const firmware::IdentityPayload identity = identify();
+  if (identity.schema_hash == firmware::kSchemaHash) return;
+  fail(ExitCode::protocol,
+       fmt::format("the board's table of parameters ({:#010x}, {} values) is not this program's ({:#010x}, {} values): "
+                   "use the axistool that was built with its firmware, or flash the firmware of this one",
+                   identity.schema_hash, identity.parameter_count, firmware::kSchemaHash, firmware::kParameterCount));
+}
+
+firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
+  firmware::ParameterValues values;
+  std::size_t place = 0;
+  while (place < firmware::kParameterCount) {
+    const firmware::ReadRequest wanted{static_cast<std::uint16_t>(place), set, 0};
+    const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_values, wanted, kPatience));
+    if (part.first != place || part.count == 0 || part.count > firmware::kValuesPerReport)
+      fail(ExitCode::protocol, "the board's answer holds other parameters than were asked for");
+    for (std::size_t i = 0; i < part.count && place < firmware::kParameterCount; ++i, ++place) {
+      if (part.key[i] != firmware::key_at(place).code)
+        fail(ExitCode::protocol, "the board's parameters stand in another order: its firmware is another version");
+      values.set(place, std::bit_cast<float>(part.bits[i]));
+    }
+  }
+  return values;
+}
+
+void BoardClient::write_values(const firmware::ParameterValues& values) {
+  const firmware::ParameterValues before = read_values();
+  request(MessageType::begin_staging, firmware::BeginRequest{firmware::ValueSet::active}, kPatience);
+  firmware::ValuesPayload part;
+  const auto flush = [&] {
+    if (part.count != 0) request(MessageType::stage, part, kPatience);
+    part = {};
+  };
+  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+    const auto bits = std::bit_cast<std::uint32_t>(values.at(place));
+    if (bits == std::bit_cast<std::uint32_t>(before.at(place))) continue;
+    part.key[part.count] = firmware::key_at(place).code;
+    part.bits[part.count++] = bits;
+    if (part.count == firmware::kValuesPerReport) flush();
+  }
+  flush();
+  request(MessageType::commit, firmware::CommitRequest{firmware::set_crc(values)}, kPatience);
+  if (!(read_values() == values)) fail(ExitCode::protocol, "the board's parameters read back differently");
+}
+
+std::vector<firmware::StoredEntry> BoardClient::read_stored() {
+  std::vector<firmware::StoredEntry> entries;
+  for (;;) {
+    const firmware::ReadRequest wanted{static_cast<std::uint16_t>(entries.size()), {}, 0};
+    const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_stored, wanted, kPatience));
+    if (part.first != entries.size() || part.count > firmware::kValuesPerReport || entries.size() > 4096)
+      fail(ExitCode::protocol, "the board's answer holds other entries than were asked for");
+    for (std::size_t i = 0; i < part.count; ++i) entries.push_back({part.key[i], 0, part.bits[i]});
+    if (part.count < firmware::kValuesPerReport) return entries;
+  }
+}
+
+void BoardClient::save() { request(MessageType::save, kSavePatience); }
+
+void BoardClient::enable(std::uint8_t axes) { request(MessageType::enable, firmware::AxesRequest{axes}, kPatience); }
+void BoardClient::disable(std::uint8_t axes) { request(MessageType::disable, firmware::AxesRequest{axes}, kPatience); }
+void BoardClient::stop() { request(MessageType::stop); }
+
+void BoardClient::jog(std::uint8_t axis, double velocity) {
+  request(MessageType::jog, firmware::JogRequest{axis, {}, static_cast<float>(velocity)}, kPatience);
+}
+
+void BoardClient::move(std::uint8_t axis, std::int64_t target_counts) {
+  request(MessageType::move, firmware::MoveRequest::to(axis, target_counts), kPatience);
+}
+
+void BoardClient::clear_faults() { request(MessageType::clear_faults); }
+void BoardClient::heartbeat() { request(MessageType::heartbeat); }
+void BoardClient::restart() { request(MessageType::restart); }
+
+void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
+  samples_.clear();
+  request(MessageType::start_capture, wanted, kPatience);
+}
+
+firmware::CaptureReply BoardClient::stop_capture() {
+  return payload_of<firmware::CaptureReply>(request(MessageType::stop_capture));
+}
+
+std::optional<firmware::FaultRowPayload> BoardClient::fault_row(std::uint8_t axis, std::uint16_t row) {
+  Message message;
+  message.type = MessageType::read_fault_capture;
+  message.put(firmware::FaultRowRequest{axis, 0, row});
+  const Message reply = reply_to(message, kPatience);
+  if (reply.status == Status::no_such_row) return std::nullopt;
+  require_ok(reply);
+  return payload_of<firmware::FaultRowPayload>(reply);
+}
+
+std::optional<BoardClient::Samples> BoardClient::next_samples(milliseconds patience) {
+  const auto deadline = steady_clock::now() + patience;
+  while (samples_.empty()) {
+    const auto message = receive(deadline);
+    if (!message) return std::nullopt;
+    if (message->type == MessageType::samples) keep_samples(*message);
+  }
+  Samples samples = std::move(samples_.front());
+  samples_.pop_front();
+  return samples;
+}
+
+}  // namespace host

@@ -1,0 +1,79 @@
+// The host's end of the protocol (firmware/app/protocol/README.md).
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/app/parameters/parameter_values.hpp"
+#include "firmware/app/protocol/report.hpp"
+#include "firmware/app/store/stored_set.hpp"
+#include "host/device/report_link.hpp"
+
+namespace host {
+
+/// Functions throw Failure: no_such_device (board gone), time_out (no answer), protocol (damaged or senseless answer),
+/// refused (not in this state), device_fault, bad_input (a value that the board does not take).
+class BoardClient {
+ public:
+  explicit BoardClient(std::unique_ptr<ReportLink> link);
+
+  firmware::IdentityPayload identify();
+  firmware::StatusPayload status();
+  firmware::TimingPayload timing(bool begin_anew);
+
+  /// Throws Failure(protocol) when the board has another table of parameters than this program.
+  void require_same_table();
+
+  firmware::ParameterValues read_values(firmware::ValueSet set = firmware::ValueSet::active);
+  /// Stages what differs from the active set, commits, reads back and compares by bits.
+  void write_values(const firmware::ParameterValues& values);
+  /// What lies in flash, keys that this program does not know included.
+  std::vector<firmware::StoredEntry> read_stored();
+  void save();
+
+  void enable(std::uint8_t axes);
+  void disable(std::uint8_t axes);
+  void stop();
+  void jog(std::uint8_t axis, double velocity);
+  void move(std::uint8_t axis, std::int64_t target_counts);
+  void clear_faults();
+  void heartbeat();
+  void restart();
+
+  void start_capture(const firmware::CaptureRequest& request);
+  firmware::CaptureReply stop_capture();
+  /// Empty beyond the last row.
+  std::optional<firmware::FaultRowPayload> fault_row(std::uint8_t axis, std::uint16_t row);
+
+  struct Samples {
+    std::uint32_t first_row = 0;
+    std::vector<std::uint32_t> words;
+  };
+  /// Those that have come, or come within `patience`; empty otherwise.
+  std::optional<Samples> next_samples(std::chrono::milliseconds patience);
+
+  std::string name() const { return link_->name(); }
+
+ private:
+  template <typename Payload>
+  firmware::Message request(firmware::MessageType type, const Payload& payload, std::chrono::milliseconds patience);
+  firmware::Message request(firmware::MessageType type, std::chrono::milliseconds patience = kPatience);
+  firmware::Message exchange(firmware::Message message, std::chrono::milliseconds patience);
+  /// The reply, whatever its status.
+  firmware::Message reply_to(firmware::Message message, std::chrono::milliseconds patience);
+  std::optional<firmware::Message> receive(std::chrono::steady_clock::time_point deadline);
+  void keep_samples(const firmware::Message& message);
+
+  static constexpr std::chrono::milliseconds kPatience{1000};
+
+  std::unique_ptr<ReportLink> link_;
+  std::uint16_t sequence_ = 0;
+  std::deque<Samples> samples_;
+};
+
+}  // namespace host

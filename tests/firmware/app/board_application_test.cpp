@@ -1,0 +1,278 @@
+// The board behind its protocol: sets of parameters, saving, motion, capture.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/firmware/app/board_on_a_bench.hpp"
+
+namespace {
+
+using firmware::MessageType;
+using firmware::ParameterValues;
+using firmware::Status;
+using firmware::StoreState;
+using firmware::SupervisorState;
+using firmware_test::paper_values;
+using firmware_test::place_named;
+using firmware_test::set;
+using Bench = firmware_test::BoardOnABench<float>;
+
+constexpr auto kFault = static_cast<std::uint8_t>(SupervisorState::fault);
+constexpr auto kEnabled = static_cast<std::uint8_t>(SupervisorState::enabled);
+
+TEST(BoardParameters, AreTakenOverAsAWholeSet) {
+  Bench bench;
+  EXPECT_EQ(bench.download(paper_values()).status, Status::ok);
+  EXPECT_EQ(bench.application.active(), paper_values());
+  EXPECT_NE(bench.status().flags & firmware::kBoardUnsaved, 0);
+}
+
+TEST(BoardParameters, ASetThatDoesNotFitTogetherChangesNothing) {
+  Bench bench;
+  ASSERT_EQ(bench.download(paper_values()).status, Status::ok);
+  ParameterValues other = paper_values();
+  set(other, "x.feedback.k1", 1);
+  set(other, "x.drive.sample_period", 0.002);
+  const firmware::Message reply = bench.download(other);
+  EXPECT_EQ(reply.status, Status::bad_value);
+  firmware::ProblemPayload problem;
+  ASSERT_TRUE(reply.get(problem));
+  EXPECT_EQ(problem.key, firmware::key_at(place_named("x.drive.sample_period")).code);
+  EXPECT_EQ(bench.application.active(), paper_values());
+}
+
+TEST(BoardParameters, AReportWithOneBadValueStagesNone) {
+  Bench bench;
+  bench.ask(MessageType::begin_staging, firmware::BeginRequest{});
+  firmware::ValuesPayload part;
+  part.count = 2;
+  part.key[0] = firmware::key_at(place_named("x.feedback.k1")).code;
+  part.bits[0] = std::bit_cast<std::uint32_t>(48.0F);
+  part.key[1] = firmware::key_at(place_named("x.kalman.k11")).code;
+  part.bits[1] = std::bit_cast<std::uint32_t>(5.2F);
+  const firmware::Message reply = bench.ask(MessageType::stage, part);
+  EXPECT_EQ(reply.status, Status::bad_value);
+  firmware::ProblemPayload problem;
+  ASSERT_TRUE(reply.get(problem));
+  EXPECT_EQ(problem.key, part.key[1]);
+  EXPECT_EQ(problem.kind, static_cast<std::uint8_t>(firmware::ValueProblem::above_maximum));
+  EXPECT_EQ(bench.application.staged(), bench.application.active());
+  part.key[1] = 0x1FFF;
+  EXPECT_EQ(bench.ask(MessageType::stage, part).status, Status::unknown_parameter);
+}
+
+TEST(BoardParameters, OnlyTheSetThatTheHostMeansIsCommitted) {
+  Bench bench;
+  bench.ask(MessageType::begin_staging, firmware::BeginRequest{});
+  EXPECT_EQ(bench.ask(MessageType::commit, firmware::CommitRequest{firmware::set_crc(paper_values())}).status,
+            Status::set_differs);
+  EXPECT_EQ(bench.application.active(), ParameterValues{});
+}
+
+TEST(BoardParameters, AreRefusedAndNotSavedWhileADriveIsEnabled) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  ParameterValues other = paper_values();
+  set(other, "x.feedback.k1", 40);
+  EXPECT_EQ(bench.download(other).status, Status::drive_enabled);
+  EXPECT_EQ(bench.ask(MessageType::save).status, Status::drive_enabled);
+  EXPECT_EQ(bench.ask(MessageType::restart).status, Status::drive_enabled);
+  EXPECT_EQ(bench.application.active(), paper_values());
+  EXPECT_EQ(bench.status().axis[0].state, kEnabled);
+}
+
+TEST(BoardParameters, OutliveARestartOnceTheyAreSaved) {
+  Bench bench;
+  ASSERT_EQ(bench.download(paper_values()).status, Status::ok);
+  ASSERT_EQ(bench.ask(MessageType::save).status, Status::ok);
+  EXPECT_EQ(bench.status().flags & firmware::kBoardUnsaved, 0);
+  Bench again(&bench.board.parameter_flash());
+  EXPECT_EQ(again.application.active(), paper_values());
+  EXPECT_EQ(again.status().store_state, static_cast<std::uint8_t>(StoreState::loaded));
+}
+
+TEST(BoardParameters, ADamagedStoreKeepsTheDrivesDisabledAndHasAName) {
+  Bench bench;
+  ASSERT_EQ(bench.download(paper_values()).status, Status::ok);
+  ASSERT_EQ(bench.ask(MessageType::save).status, Status::ok);
+  ASSERT_EQ(bench.ask(MessageType::save).status, Status::ok);
+  bench.board.parameter_flash().contents()[1][64] ^= std::byte{4};
+  Bench again(&bench.board.parameter_flash());
+  EXPECT_EQ(again.status().store_state, static_cast<std::uint8_t>(StoreState::damaged));
+  again.run(200);
+  EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
+  EXPECT_FALSE(again.board.axis(0).drive_enable().is_on());
+  // Parameters alone do not mend it: they must also be saved.
+  ASSERT_EQ(again.download(paper_values()).status, Status::ok);
+  EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
+  ASSERT_EQ(again.ask(MessageType::save).status, Status::ok);
+  again.run(200);
+  EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
+}
+
+TEST(BoardMotion, AnAxisThatIsNotFittedStaysOff) {
+  Bench bench;
+  bench.run(200);
+  EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::not_fitted);
+  EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{0}).status, Status::malformed);
+  EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{4}).status, Status::malformed);
+  EXPECT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 1.0F}).status, Status::wrong_state);
+}
+
+TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  const std::int64_t target = 4096;  // 10 mm
+  ASSERT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::to(0, target)).status, Status::ok);
+  for (int i = 0; i < 20; ++i) {
+    bench.run(50);
+    ASSERT_EQ(bench.ask(MessageType::heartbeat).status, Status::ok);
+  }
+  const firmware::AxisStatus axis = bench.status().axis[0];
+  EXPECT_EQ(axis.state, kEnabled);
+  EXPECT_NE(axis.flags & firmware::kAxisAtRest, 0);
+  EXPECT_NEAR(static_cast<double>(axis.counts()), static_cast<double>(target), 2.0);
+}
+
+TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 50.0F}).status, Status::ok);
+  bench.run(1000);
+  const firmware::AxisStatus axis = bench.status().axis[0];
+  EXPECT_EQ(axis.state, kFault);
+  EXPECT_EQ(axis.fault, static_cast<std::uint8_t>(firmware::AxisFault::host_heartbeat_lost));
+  EXPECT_NEAR(axis.velocity, 0.0, 0.5);
+  EXPECT_FALSE(bench.board.axis(0).drive_enable().is_on());
+}
+
+TEST(BoardMotion, StandsAsLongAsItLikesWithoutAHost) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  bench.run(2000);
+  EXPECT_EQ(bench.status().axis[0].state, kEnabled);
+}
+
+TEST(BoardMotion, FaultsAreClearedAndKeptRowsAreReadable) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  bench.board.emergency_stop().press();
+  bench.run(20);
+  EXPECT_EQ(bench.status().axis[0].fault, static_cast<std::uint8_t>(firmware::AxisFault::emergency_stop));
+  firmware::FaultRowPayload row;
+  ASSERT_TRUE(bench.ask(MessageType::read_fault_capture, firmware::FaultRowRequest{0, 0, 0}).get(row));
+  EXPECT_GT(row.rows, 50);
+  EXPECT_EQ(bench.ask(MessageType::read_fault_capture, firmware::FaultRowRequest{0, 0, row.rows}).status,
+            Status::no_such_row);
+  bench.board.emergency_stop().release();
+  EXPECT_EQ(bench.ask(MessageType::clear_faults).status, Status::ok);
+  bench.run(200);
+  EXPECT_EQ(bench.status().axis[0].fault, 0);
+  EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
+}
+
+struct CaptureCase {
+  firmware::CaptureRequest request;
+  std::size_t words;
+};
+
+class Capture : public testing::TestWithParam<CaptureCase> {};
+INSTANTIATE_TEST_SUITE_P(Rows, Capture,
+                         testing::Values(CaptureCase{{{1u << 1, 0}, 1, 0}, 1}, CaptureCase{{{0x7, 0x7}, 1, 0}, 6},
+                                         CaptureCase{{{0x7FF, 1}, 1, 0}, 12}, CaptureCase{{{0x1F, 0}, 3, 0}, 5}));
+
+TEST_P(Capture, SendsEveryRowOnceAndInOrder) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  ASSERT_EQ(bench.ask(MessageType::start_capture, GetParam().request).status, Status::ok);
+  const int kPeriods = 3000;
+  std::uint32_t next_row = 0;
+  const auto fetch = [&] {
+    hal::HidReport report;
+    while (bench.board.usb().host_receive(report)) {
+      firmware::Message message;
+      ASSERT_EQ(firmware::decode(report, message), firmware::DecodeProblem::none);
+      ASSERT_EQ(message.type, MessageType::samples);
+      std::uint32_t first = 0;
+      std::memcpy(&first, message.payload.data(), 4);
+      ASSERT_EQ(first, next_row);
+      ASSERT_EQ((message.length - 4u) % (4 * GetParam().words), 0u);
+      next_row += static_cast<std::uint32_t>((message.length - 4u) / (4 * GetParam().words));
+    }
+  };
+  for (int k = 0; k < kPeriods; ++k) {
+    bench.run(1);
+    fetch();
+  }
+  firmware::CaptureReply taken;
+  ASSERT_TRUE(bench.ask(MessageType::stop_capture).get(taken));
+  for (int i = 0; i < 100; ++i) bench.server.poll(bench.board.usb());
+  fetch();
+  EXPECT_EQ(taken.rows, (kPeriods + GetParam().request.every - 1u) / GetParam().request.every);
+  EXPECT_EQ(taken.dropped, 0u);
+  EXPECT_EQ(next_row, taken.rows);
+}
+
+TEST(CaptureLoss, IsCountedAndShowsInTheNumbersOfRows) {
+  Bench bench;
+  bench.fit_and_enable_x();
+  ASSERT_EQ(bench.ask(MessageType::start_capture, firmware::CaptureRequest{{0xFFF & 0x7FF, 1}, 1, 0}).status,
+            Status::ok);
+  bench.run(500);  // nobody fetches: the queue of the cable and then the board's rows fill up
+  std::vector<std::uint32_t> numbers;
+  firmware::CaptureReply taken;
+  ASSERT_TRUE(bench.ask(MessageType::stop_capture).get(taken));
+  hal::HidReport report;
+  for (int i = 0; i < 500; ++i) {
+    bench.server.poll(bench.board.usb());
+    while (bench.board.usb().host_receive(report)) {
+      std::uint32_t first = 0;
+      std::memcpy(&first, report.data() + firmware::kPayloadOffset, 4);
+      numbers.push_back(first);
+    }
+  }
+  EXPECT_EQ(taken.rows, 500u);
+  EXPECT_GT(taken.dropped, 0u);
+  EXPECT_EQ(numbers.size(), taken.rows - taken.dropped) << "what was not dropped arrives";
+}
+
+TEST(Capture, RefusesWhatDoesNotFitAReport) {
+  Bench bench;
+  const auto status_of = [&](firmware::CaptureRequest request) {
+    return bench.ask(MessageType::start_capture, request).status;
+  };
+  EXPECT_EQ(status_of({{0, 0}, 1, 0}), Status::malformed) << "no channel";
+  EXPECT_EQ(status_of({{0x7FF, 3}, 1, 0}), Status::malformed) << "13 channels";
+  EXPECT_EQ(status_of({{1u << 11, 0}, 1, 0}), Status::malformed) << "no such channel";
+  EXPECT_EQ(status_of({{1, 0}, 0, 0}), Status::malformed) << "every 0th period";
+}
+
+TEST(BoardProtocol, AnswersWhatItDoesNotKnow) {
+  Bench bench;
+  EXPECT_EQ(bench.ask(static_cast<MessageType>(0x44)).status, Status::unknown_request);
+  EXPECT_EQ(bench.ask(MessageType::jog).status, Status::malformed);
+  hal::HidReport noise{};
+  noise.fill(std::byte{0xA5});
+  firmware::Message reply;
+  ASSERT_EQ(firmware::decode(bench.server.answer(noise), reply), firmware::DecodeProblem::none);
+  EXPECT_EQ(reply.type, MessageType::rejected);
+  EXPECT_EQ(reply.status, Status::damaged);
+}
+
+TEST(BoardProtocol, FixedPointSpeaksThePhysicalUnitsOfRequests) {
+  firmware_test::BoardOnABench<firmware::FixedPoint> bench;
+  bench.fit_and_enable_x();
+  ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 20.0F}).status, Status::ok);
+  const std::int64_t before = bench.status().axis[0].counts();
+  for (int i = 0; i < 20; ++i) {
+    bench.run(50);
+    bench.ask(MessageType::heartbeat);
+  }
+  const firmware::AxisStatus axis = bench.status().axis[0];
+  const double travel_mm = static_cast<double>(axis.counts() - before) * firmware_test::kEncoderResolution_mm;
+  EXPECT_NEAR(travel_mm, 20.0, 1.5) << "one second at 20 mm/s, less the time to get going";
+  EXPECT_NEAR(axis.velocity, 20.0 / firmware_test::kLead_mm_per_rad, 1.0);
+}
+
+}  // namespace

@@ -1,0 +1,108 @@
+// A simulated board with its program, and a host that talks to it in reports.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "firmware/app/protocol/server.hpp"
+#include "hal/pc/simulated_board.hpp"
+#include "tests/firmware/app/paper_values.hpp"
+
+namespace firmware_test {
+
+inline sim::DriveDescription paper_machine(const PaperAxis& paper) {
+  sim::DriveDescription drive;
+  drive.data.amplifier_gain_A_per_V = paper.amplifier_gain_A_per_V;
+  drive.data.torque_constant_Nm_per_A = kMotorConstant_Nm_per_A;
+  drive.data.lead = kLead_mm_per_rad;
+  drive.data.dac_resolution_V = kDacResolution_V;
+  drive.data.encoder_resolution = kEncoderResolution_mm;
+  drive.data.tach_noise_variance = 0.01;
+  drive.effects = {{"inertia", {{"J", paper.inertia_kg_m2}}, {}, {}},
+                   {"viscous", {{"B", paper.viscous_Nm_s_per_rad}}, {}, {}}};
+  return drive;
+}
+
+template <typename Scalar = float>
+struct BoardOnABench {
+  using Application = firmware::BoardApplication<Scalar, hal::pc::SimulatedBoard>;
+
+  hal::pc::SimulatedBoard board{paper_machine(kPaperX), paper_machine(kPaperY), 1};
+  Application application{board};
+  firmware::ImageHeader image;
+  firmware::ProtocolServer<Application> server{application, image, {}};
+  std::uint16_t sequence = 0;
+
+  /// Starts with what the flash holds.
+  explicit BoardOnABench(const hal::pc::SimulatedFlash* flash = nullptr) {
+    if (flash != nullptr) board.parameter_flash() = *flash;
+    board.usb().plug_in();
+    application.start();
+  }
+
+  void run(int periods) {
+    for (int k = 0; k < periods; ++k) {
+      application.control_period();
+      server.poll(board.usb());
+      board.advance();
+    }
+  }
+
+  template <typename Payload>
+  firmware::Message ask(firmware::MessageType type, const Payload& payload) {
+    firmware::Message request;
+    request.type = type;
+    request.sequence = ++sequence;
+    request.put(payload);
+    return ask(request);
+  }
+
+  firmware::Message ask(firmware::MessageType type) {
+    firmware::Message request;
+    request.type = type;
+    request.sequence = ++sequence;
+    return ask(request);
+  }
+
+  firmware::Message ask(const firmware::Message& request) {
+    firmware::Message reply;
+    EXPECT_EQ(firmware::decode(server.answer(firmware::encode(request)), reply), firmware::DecodeProblem::none);
+    EXPECT_EQ(reply.type, firmware::reply_to(request.type));
+    EXPECT_EQ(reply.sequence, request.sequence);
+    return reply;
+  }
+
+  /// Stages what differs from the active set and commits.
+  firmware::Message download(const firmware::ParameterValues& values) {
+    EXPECT_EQ(ask(firmware::MessageType::begin_staging, firmware::BeginRequest{}).status, firmware::Status::ok);
+    firmware::ValuesPayload part;
+    for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+      if (values.at(place) == application.active().at(place)) continue;
+      part.key[part.count] = firmware::key_at(place).code;
+      part.bits[part.count++] = std::bit_cast<std::uint32_t>(values.at(place));
+      if (part.count < firmware::kValuesPerReport) continue;
+      EXPECT_EQ(ask(firmware::MessageType::stage, part).status, firmware::Status::ok);
+      part = {};
+    }
+    if (part.count != 0) {
+      EXPECT_EQ(ask(firmware::MessageType::stage, part).status, firmware::Status::ok);
+    }
+    return ask(firmware::MessageType::commit, firmware::CommitRequest{firmware::set_crc(values)});
+  }
+
+  firmware::StatusPayload status() {
+    firmware::StatusPayload payload;
+    EXPECT_TRUE(ask(firmware::MessageType::status).get(payload));
+    return payload;
+  }
+
+  /// Parameters of the paper's x axis, self-test passed, enabled.
+  void fit_and_enable_x() {
+    ASSERT_EQ(download(paper_values()).status, firmware::Status::ok);
+    run(200);
+    ASSERT_EQ(ask(firmware::MessageType::enable, firmware::AxesRequest{1}).status, firmware::Status::ok);
+    run(5);
+    ASSERT_EQ(status().axis[0].state, static_cast<std::uint8_t>(firmware::SupervisorState::enabled));
+  }
+};
+
+}  // namespace firmware_test
