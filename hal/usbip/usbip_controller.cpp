@@ -25,6 +25,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t kPort = 0;
 constexpr std::uint8_t kDirectionIn = TUSB_DIR_IN_MASK;
+using Clock = std::chrono::steady_clock;
+constexpr int kFramesToCatchUp = 8;              // this computer may be late; a bus is not
 constexpr std::size_t kLongestTransfer = 65536;  // far above anything that a HID device is asked for
 
 /// A transfer that the host waits for.
@@ -40,11 +42,15 @@ struct Endpoint {
   std::uint8_t* buffer = nullptr;
   std::uint16_t size = 0;
   std::deque<Transfer> waiting;
+  Clock::time_point next_frame{};  ///< when it may move the next report
+
+  bool may_move() const { return armed && !waiting.empty(); }
 };
 
 struct Controller {
   int socket = -1;
   bool connected = false;
+  Clock::duration frame{};
   std::array<std::array<Endpoint, 2>, TUP_DCD_ENDPOINT_MAX> endpoints;
   std::optional<Transfer> control;  ///< the request on the control pipe
   Bytes received;                   ///< of the next message
@@ -92,7 +98,9 @@ void advance(std::uint8_t address) {
     for (; !side.waiting.empty(); side.waiting.pop_front()) answer(side.waiting.front(), kStalled);
     return;
   }
-  if (!side.armed || side.waiting.empty()) return;
+  const auto now = Clock::now();
+  if (!side.may_move() || now < side.next_frame) return;
+  side.next_frame = std::max(side.next_frame + controller.frame, now - kFramesToCatchUp * controller.frame);
   Transfer& transfer = side.waiting.front();
   std::size_t size = 0;
   bool finished = true;
@@ -110,6 +118,22 @@ void advance(std::uint8_t address) {
     side.waiting.pop_front();
   }
   report_done(address, size);
+}
+
+/// How long to wait for the next frame in which there is something to move, at most `longest`.
+Clock::duration time_to_next_frame(Clock::duration longest) {
+  const auto now = Clock::now();
+  for (const auto& number : controller.endpoints)
+    for (const Endpoint& side : number)
+      if (side.may_move()) longest = std::min(longest, side.next_frame - now);
+  return std::max(longest, Clock::duration::zero());
+}
+
+void advance_all() {
+  for (std::uint8_t number = 1; number < TUP_DCD_ENDPOINT_MAX; ++number) {
+    advance(number);
+    advance(number | kDirectionIn);
+  }
 }
 
 void finish_control(std::int32_t status) {
@@ -190,8 +214,9 @@ std::optional<Transfer> next_message() {
 
 }  // namespace
 
-UsbipController::UsbipController(int socket, tinyusb::HidPort& port) : port_(port) {
+UsbipController::UsbipController(int socket, tinyusb::HidPort& port, std::chrono::microseconds frame) : port_(port) {
   controller = {};
+  controller.frame = frame;
   controller.socket = socket;
   controller.connected = true;
   dcd_event_bus_reset(kPort, TUSB_SPEED_FULL, false);
@@ -202,7 +227,11 @@ UsbipController::~UsbipController() { close(controller.socket); }
 
 bool UsbipController::serve(std::chrono::milliseconds wait) {
   pollfd waiting{controller.socket, POLLIN, 0};
-  const int ready = poll(&waiting, 1, static_cast<int>(wait.count()));
+  const auto limit = std::chrono::duration_cast<std::chrono::nanoseconds>(time_to_next_frame(wait)).count();
+  const timespec limit_ns{limit / 1'000'000'000, limit % 1'000'000'000};
+  const int ready = ppoll(&waiting, 1, &limit_ns, nullptr);
+  advance_all();
+  port_.poll();
   if (ready > 0) {
     std::array<std::uint8_t, 4096> buffer{};
     const ssize_t size = recv(controller.socket, buffer.data(), buffer.size(), 0);
@@ -229,7 +258,6 @@ bool UsbipController::serve(std::chrono::milliseconds wait) {
 
 // The controller as TinyUSB sees it.
 
-using hal::usbip::controller;
 using hal::usbip::endpoint;
 
 extern "C" {
@@ -265,6 +293,7 @@ bool dcd_edpt_open(std::uint8_t, const tusb_desc_endpoint_t* descriptor) {
   auto& side = endpoint(descriptor->bEndpointAddress);
   side.open = true;
   side.armed = side.stalled = false;
+  side.next_frame = hal::usbip::Clock::now();
   return true;
 }
 

@@ -12,7 +12,8 @@ namespace hal::usbip {
 class UsbipController {
  public:
   /// Takes over the socket and shows `port`, which must have been started, the bus reset that a new host begins with.
-  UsbipController(int socket, tinyusb::HidPort& port);
+  /// An endpoint moves one report a `frame`, as on a real bus; vhci-hcd alone would go as fast as the computer can.
+  UsbipController(int socket, tinyusb::HidPort& port, std::chrono::microseconds frame = std::chrono::milliseconds(1));
   UsbipController(const UsbipController&) = delete;
   UsbipController& operator=(const UsbipController&) = delete;
   ~UsbipController();

@@ -24,6 +24,7 @@ void add_all_commands(CLI::App& app) {
   add_demo(app);
   add_flash(app);
   add_info(app);
+  add_udev_rule(app);
   add_parameters(app);
 }
 

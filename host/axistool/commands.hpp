@@ -19,6 +19,7 @@ void add_effects(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_flash(CLI::App& app);
 void add_info(CLI::App& app);
+void add_udev_rule(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_diagnose(CLI::App& app);

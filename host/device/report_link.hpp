@@ -21,8 +21,8 @@ class ReportLink {
   /// Throws Failure (no_such_device) when the board is gone.
   virtual void send(const hal::HidReport& report) = 0;
 
-  /// Waits at most `limit`; empty when nothing came. Throws Failure (no_such_device) when the board is gone and all that
-  /// it had sent has been fetched.
+  /// Waits at most `limit`; empty when nothing came. Throws Failure (no_such_device) when the board is gone and all
+  /// that it had sent has been fetched.
   virtual std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) = 0;
 
   /// As --device names it: usb:SERIAL, socket:PATH.

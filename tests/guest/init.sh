@@ -20,7 +20,7 @@ ip link set lo up
 echo "guest: started"
 echo "guest: started" >/host/dev/kmsg
 chroot /host /usr/bin/env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/run LC_ALL=C.UTF-8 \
-  AXIS_GUEST=1 /bin/bash /run/guest/command
+  AXIS_GUEST=1 SYSTEMD_IGNORE_CHROOT=1 /bin/bash /run/guest/command
 echo $? >/host/run/guest/exit_code
 dmesg | sed '1,/guest: started/d' >/host/run/guest/kernel.log
 sync

@@ -44,14 +44,14 @@ class UsbipSocket : public testing::Test {
     std::array<int, 2> ends{};
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
     host = ends[0];
-    controller.emplace(ends[1], port);
+    controller.emplace(ends[1], port, 0us);
   }
   void TearDown() override {
     controller.reset();
     if (host >= 0) close(host);
   }
 
-  void send(const Bytes& bytes) {
+  void send(const Bytes& bytes) const {
     ASSERT_EQ(write(host, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
 
@@ -228,6 +228,27 @@ TEST_F(UsbipSocket, UnderstandsMessagesThatComeTogether) {
   ASSERT_TRUE(first);
   EXPECT_EQ(first->sequence, 50u);
   EXPECT_EQ(reply(true)->sequence, 51u);
+}
+
+TEST_F(UsbipSocket, MovesOneReportAFrame) {
+  controller.reset();
+  close(host);
+  std::array<int, 2> ends{};
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+  host = ends[0];
+  controller.emplace(ends[1], port);
+  configure();
+  constexpr std::uint8_t kReports = 8;
+  for (std::uint8_t i = 0; i < kReports; ++i) {
+    ASSERT_TRUE(port.send(report_of(i)));
+    send(submit(100u + i, true, 1, 64));
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::uint8_t got = 0; got < kReports;) {
+    ASSERT_TRUE(controller->serve(10ms));
+    for (; const auto next = reply(true); ++got) EXPECT_EQ(next->data, bytes_of(report_of(got)));
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, (kReports - 1) * 1ms);
 }
 
 TEST_F(UsbipSocket, EndsWhenTheHostGoes) {

@@ -1,0 +1,34 @@
+// hidapi, chosen when the program runs: its hidraw back end (the kernel's HID driver stays in charge) or its libusb
+// one.
+#pragma once
+
+#include <hidapi/hidapi.h>
+
+#include <string>
+
+namespace host {
+
+enum class HidBackend { hidraw, libusb };
+
+/// The functions of one back end. Both libraries use the same names, so neither is linked.
+struct HidLibrary {
+  HidBackend backend{};
+  decltype(&hid_enumerate) enumerate = nullptr;
+  decltype(&hid_free_enumeration) free_enumeration = nullptr;
+  decltype(&hid_open_path) open_path = nullptr;
+  decltype(&hid_close) close = nullptr;
+  decltype(&hid_write) write = nullptr;
+  decltype(&hid_read_timeout) read_timeout = nullptr;
+  decltype(&hid_send_feature_report) send_feature_report = nullptr;
+};
+
+/// The one that the environment variable AXISTOOL_HIDAPI names (hidraw or libusb), else hidraw, else libusb. Throws
+/// Failure: usage for another name, no_such_device when the library is not installed.
+const HidLibrary& hid_library();
+
+/// One back end. Throws Failure (no_such_device) when it is not installed.
+const HidLibrary& hid_library(HidBackend backend);
+
+const char* name_of(HidBackend backend);
+
+}  // namespace host

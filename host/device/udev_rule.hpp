@@ -1,0 +1,17 @@
+// The rule that lets a user, not only root, open a board.
+#pragma once
+
+#include <string>
+
+namespace host {
+
+inline constexpr const char* kUdevRuleFile = "/etc/udev/rules.d/70-axis.rules";
+inline constexpr const char* kInstallUdevRule = "sudo axistool udev-rule --install";
+
+/// For hidraw and for libusb: the group plugdev, and whoever sits at the computer.
+std::string udev_rule();
+
+/// Writes the rule and makes udev apply it to what is plugged in. Throws Failure (permission) when it may not.
+void install_udev_rule();
+
+}  // namespace host
