@@ -8,7 +8,7 @@ mkdir -p "$1"
 cache=$(readlink -f "$1")
 PATH=$PATH:/usr/sbin:/sbin
 
-modules="virtio_pci 9pnet_virtio 9p vhci-hcd usbhid hid-generic uhid hid-cp2112"
+modules="virtio_pci virtio_console 9pnet_virtio 9p vhci-hcd usbhid hid-generic uhid hid-cp2112"
 
 skip() {
   echo "guest: $*" >&2
@@ -38,7 +38,7 @@ apt-get -qq -o Acquire::Retries=3 -o APT::Sandbox::User= download "$package" bus
   skip "the packages $package and busybox-static cannot be downloaded: apt-get update"
 dpkg-deb --fsys-tarfile busybox-static_*.deb | tar x ./bin/busybox
 dpkg-deb --fsys-tarfile "$package"_*.deb | tar x --wildcards './boot/vmlinuz-*' './lib/modules/*/kernel/drivers/usb/*' \
-  './lib/modules/*/kernel/drivers/hid/*' './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/net/9p/*' \
+  './lib/modules/*/kernel/drivers/hid/*' './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/char/virtio_console*' './lib/modules/*/kernel/net/9p/*' \
   './lib/modules/*/kernel/fs/9p/*' './lib/modules/*/kernel/fs/fscache/*' './lib/modules/*/kernel/fs/netfs/*'
 
 # Decompressed here it boots 3 s sooner than by its own code. xz complains of what follows the compressed kernel.

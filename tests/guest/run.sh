@@ -2,7 +2,7 @@
 # run.sh CACHE PROGRAM [ARGUMENT...]: runs a program of this machine as root under Debian's own kernel, in an emulated PC
 # with the modules of USB/IP, HID and CP2112. The program sees this machine's files read-only; /run and /tmp are its own.
 # Its output and its exit code are this script's; 77 where the guest cannot be had, with the reason.
-# GUEST_LIMIT: seconds that the guest may take (300).
+# GUEST_LIMIT: seconds that the guest may take (300). GUEST_LINK: a Unix socket that the guest sees as /dev/vport*.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 cache=$1
@@ -21,6 +21,9 @@ if [ "$status" -ne 0 ]; then
   exit "$status"
 fi
 
+link=()
+[ -z "${GUEST_LINK:-}" ] || link=(-chardev "socket,id=link,path=$GUEST_LINK" -device virtio-serial
+  -device virtserialport,chardev=link)
 shared=$(mktemp -d)
 trap 'rm -rf "$shared"' EXIT
 printf 'cd %q; exec %s\n' "$PWD" "$(printf '%q ' "$@")" >"$shared/command"
@@ -28,7 +31,7 @@ timeout "${GUEST_LIMIT:-300}" $emulator -accel tcg,thread=multi -cpu max -machin
   -nographic -serial stdio -monitor none -kernel "$kernel/vmlinux" -initrd "$kernel/initrd.gz" \
   -append "console=ttyS0 quiet loglevel=3 panic=-1" \
   -virtfs local,path=/,mount_tag=root,security_model=none,readonly=on,multidevs=remap \
-  -virtfs local,path="$shared",mount_tag=shared,security_model=none </dev/null |
+  -virtfs local,path="$shared",mount_tag=shared,security_model=none "${link[@]}" </dev/null |
   tr -d '\r' | sed -e '1,/guest: started$/d' -e '/reboot: Power down$/d' || status=$?
 if [ ! -e "$shared/exit_code" ]; then
   echo "guest: it ended without an exit code (status $status)"

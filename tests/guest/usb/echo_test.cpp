@@ -10,8 +10,9 @@
 #include "host/device/udev_rule.hpp"
 #include "host/device/usb_boards.hpp"
 #include "host/exit_codes.hpp"
-#include "tests/guest/child.hpp"
 #include "tests/guest/echo_board/echo_report.hpp"
+#include "tests/guest/support/child.hpp"
+#include "tests/guest/support/guest_boards.hpp"
 #include "tests/run_program.hpp"
 
 namespace {
@@ -25,22 +26,15 @@ using host::open_usb_board;
 class Usb : public testing::TestWithParam<HidBackend> {
  protected:
   void SetUp() override {
-    if (std::getenv("AXIS_GUEST") == nullptr) GTEST_SKIP() << "runs in the guest: tests/guest/run.sh";
+    if (!guest_test::in_guest()) GTEST_SKIP() << "runs in the guest: tests/guest/run.sh";
     wait_for_boards(0);  // those of the test before
   }
 
   const host::HidLibrary& library() const { return host::hid_library(GetParam()); }
 
-  /// Waits until as many boards can be opened as there should be.
   void wait_for_boards(std::size_t count) const {
-    for (int attempt = 0; attempt < 500; ++attempt) {
-      const auto boards = find_usb_boards(library());
-      const bool complete =
-          std::none_of(boards.begin(), boards.end(), [](const auto& one) { return one.serial_number.empty(); });
-      if (boards.size() == count && complete) return;
-      std::this_thread::sleep_for(10ms);
-    }
-    FAIL() << "there are " << find_usb_boards(library()).size() << " boards, not " << count;
+    ASSERT_TRUE(guest_test::boards_become(count, library(), 10s))
+        << "there are " << find_usb_boards(library()).size() << " boards, not " << count;
   }
 };
 

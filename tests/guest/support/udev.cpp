@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <memory>
 #include <thread>
 
-#include "tests/guest/child.hpp"
+#include "tests/guest/support/child.hpp"
+#include "tests/guest/support/guest_boards.hpp"
 #include "tests/run_program.hpp"
 
 namespace {
@@ -14,7 +14,7 @@ namespace {
 class Udev : public testing::Environment {
  public:
   void SetUp() override {
-    if (std::getenv("AXIS_GUEST") == nullptr) return;
+    if (!guest_test::in_guest()) return;
     daemon_ = std::make_unique<guest_test::Child>(std::vector<std::string>{"/lib/systemd/systemd-udevd"});
     bool answers = false;
     for (int attempt = 0; attempt < 100 && !answers; ++attempt) {

@@ -1,0 +1,121 @@
+// The board's application, protocol and store on the emulated processor, its reports over USART1: the other end of the
+// cable has a USB controller. The axes stand still; their encoders and converters are plain memory.
+#include <atomic>
+
+#include "firmware/app/protocol/server.hpp"
+#include "firmware/boards/image/board_scalar.hpp"
+#include "firmware/boards/image/fault_handler.hpp"
+#include "firmware/boards/image/stack_use.hpp"
+#include "firmware/boards/image/survival_record.hpp"
+#include "firmware/boards/image/this_image.hpp"
+#include "firmware/boards/pil/value_axis.hpp"
+#include "firmware/boards/qemu-usb/memory_flash.hpp"
+#include "firmware/boards/qemu-usb/report_cable.hpp"
+#include "hal/board.hpp"
+#include "hal/cortex_m/registers.hpp"
+#include "hal/stm32f4/usart_port.hpp"
+
+namespace firmware::boards {
+
+namespace {
+
+constexpr std::uint32_t kClock_Hz = 168'000'000;  // QEMU gives the chip its 168 MHz
+
+[[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
+hal::stm32f4::UsartPort serial(hal::stm32f4::usart1());
+std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's last start
+
+class EmulatedBoard {
+ public:
+  using AxisType = ValueAxis;
+
+  class ControlShutOut {
+   public:
+    ControlShutOut() {
+      asm volatile("mrs %0, primask" : "=r"(before_));
+      asm volatile("cpsid i" ::: "memory");
+    }
+    ~ControlShutOut() { asm volatile("msr primask, %0" ::"r"(before_) : "memory"); }
+    ControlShutOut(const ControlShutOut&) = delete;
+    ControlShutOut& operator=(const ControlShutOut&) = delete;
+
+   private:
+    std::uint32_t before_ = 0;
+  };
+
+  /// No button is wired.
+  struct Stop {
+    bool is_pressed() const { return false; }
+  };
+
+  /// A control period is its step: nothing here is quicker.
+  struct Clock {
+    std::uint32_t now_us() const { return control_time_us; }
+  };
+
+  ValueAxis& axis(std::size_t index) { return axes_[index]; }
+  Stop& emergency_stop() { return stop_; }
+  Clock& clock() { return clock_; }
+  BoardEnd<hal::stm32f4::UsartPort>& usb() { return usb_; }
+  MemoryFlash& parameter_flash() { return flash_; }
+
+  void set_control_rate(std::uint32_t rate_Hz) {
+    period_us_ = 1'000'000 / rate_Hz;
+    hal::cortex_m::sys_tick().RVR = kClock_Hz / rate_Hz - 1;
+  }
+  void begin_stall() {}
+  void end_stall() {}
+  void restart() { reset_processor(); }
+
+  std::uint32_t period_us() const { return period_us_; }
+
+ private:
+  std::array<ValueAxis, kAxisCount> axes_;
+  Stop stop_;
+  Clock clock_;
+  BoardEnd<hal::stm32f4::UsartPort> usb_{serial};
+  MemoryFlash flash_{flash_cells};
+  std::uint32_t period_us_ = 1000;
+};
+static_assert(hal::Board<EmulatedBoard>);
+
+using Application = BoardApplication<BoardScalar, EmulatedBoard>;
+
+EmulatedBoard board;
+Application application(board);
+
+}  // namespace
+
+/// There is no converter and no enable line here.
+void make_outputs_safe() noexcept {}
+
+}  // namespace firmware::boards
+
+extern "C" void control_interrupt() {
+  using namespace firmware::boards;
+  control_time_us = control_time_us + board.period_us();
+  for (std::size_t i = 0; i < firmware::kAxisCount; ++i) board.axis(i).encoder().reading.valid = true;
+  application.control_period();
+}
+
+extern "C" [[noreturn]] void run_board() {
+  using namespace firmware::boards;
+  const LastRun last_run = take_over_survival_record(ResetCause::unknown);
+  arm_fault_detection();
+  constexpr std::uint32_t kResetClock_Hz = 16'000'000;  // the RC oscillator; QEMU sends at once anyway
+  serial.start(kResetClock_Hz, 115200);
+  application.start();
+  const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
+                                 true};
+  firmware::ProtocolServer<Application> server(application, this_image(), boot);
+  using hal::cortex_m::SysTick;
+  hal::cortex_m::set_exception_priority(hal::cortex_m::kSysTickException, 2);
+  hal::cortex_m::sys_tick().CSR = SysTick::kEnable | SysTick::kInterrupt | SysTick::kProcessorClock;
+  board.usb().say_hello();
+  for (;;) {
+    board.usb().poll();
+    server.poll(board.usb(), {stack_used_bytes(), stack_size_bytes()});
+    // Asking the emulated port without a pause keeps the emulator from filling it.
+    for (volatile int pause = 0; pause < 200;) pause = pause + 1;
+  }
+}

@@ -1,0 +1,65 @@
+// Parameter flash in RAM that start-up leaves alone: it outlives a reset, as flash does, but not the emulator.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "hal/flash.hpp"
+
+namespace firmware::boards {
+
+class MemoryFlash {
+ public:
+  static constexpr std::size_t kSectors = 2, kSectorSize = 4096, kProgramSize = 4;
+
+  /// What lies in the memory; an object of static storage in .noinit.
+  struct Cells {
+    std::uint32_t magic;
+    std::array<std::array<std::byte, kSectorSize>, kSectors> sectors;
+  };
+
+  /// Erased unless the memory has been one before.
+  explicit MemoryFlash(Cells& cells) : cells_(cells) {
+    constexpr std::uint32_t kMagic = 0x464C5348;
+    if (cells_.magic == kMagic) return;
+    for (std::size_t sector = 0; sector < kSectors; ++sector) erase(sector);
+    cells_.magic = kMagic;
+  }
+
+  std::size_t sector_count() const { return kSectors; }
+  std::size_t sector_size() const { return kSectorSize; }
+  std::size_t program_size() const { return kProgramSize; }
+
+  hal::FlashResult read(std::size_t sector, std::size_t offset, std::span<std::byte> out) {
+    if (!contains(sector, offset, out.size())) return hal::FlashResult::out_of_range;
+    std::copy_n(cells_.sectors[sector].begin() + offset, out.size(), out.begin());
+    return hal::FlashResult::ok;
+  }
+
+  hal::FlashResult program(std::size_t sector, std::size_t offset, std::span<const std::byte> in) {
+    if (!contains(sector, offset, in.size())) return hal::FlashResult::out_of_range;
+    if (offset % kProgramSize != 0 || in.size() % kProgramSize != 0) return hal::FlashResult::misaligned;
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      std::byte& cell = cells_.sectors[sector][offset + i];
+      if ((in[i] & ~cell) != std::byte{0}) return hal::FlashResult::not_erased;
+      cell = in[i];
+    }
+    return hal::FlashResult::ok;
+  }
+
+  hal::FlashResult erase(std::size_t sector) {
+    if (sector >= kSectors) return hal::FlashResult::out_of_range;
+    cells_.sectors[sector].fill(std::byte{0xFF});
+    return hal::FlashResult::ok;
+  }
+
+ private:
+  static bool contains(std::size_t sector, std::size_t offset, std::size_t size) {
+    return sector < kSectors && offset <= kSectorSize && size <= kSectorSize - offset;
+  }
+
+  Cells& cells_;
+};
+static_assert(hal::Flash<MemoryFlash>);
+
+}  // namespace firmware::boards

@@ -1,0 +1,115 @@
+// A cable for reports over a byte stream, for a processor whose USB controller is not emulated. The board holds one
+// end; the other belongs to a program that has the controller, and tells the board what the bus does.
+#pragma once
+
+#include "firmware/boards/pil/frame.hpp"
+#include "hal/serial_port.hpp"
+#include "hal/tinyusb/report_queue.hpp"
+#include "hal/usb_hid.hpp"
+
+namespace firmware::boards {
+
+/// First byte of each frame's payload; a report follows in all of them, and counts in `report` alone.
+enum class CableMessage : std::uint8_t {
+  hello = 'H',         ///< from the board, when its receiver is on: whatever was on its way is void
+  configured = 'C',    ///< to the board
+  unconfigured = 'U',  ///< to the board
+  report = 'R',
+  taken = 'T',  ///< the receiver's program has taken a report: there is room for another
+};
+
+/// Reports for which each end has room. The computer has more, for it may be late.
+inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 64;
+
+/// One end. It sends as many reports as the other has room for, so none is lost and no end ever waits.
+template <hal::SerialPort Port, std::size_t own_room, std::size_t other_room>
+class ReportCable {
+ public:
+  explicit ReportCable(Port& port) : port_(port) {}
+
+  /// For the board, once, when its receiver is on.
+  void say_hello() { tell(CableMessage::hello); }
+  /// For the computer: what has become of the bus.
+  void set_configured(bool configured) {
+    begin_anew(configured);
+    tell(configured ? CableMessage::configured : CableMessage::unconfigured);
+  }
+  /// For the computer: true once after each start of the board.
+  bool heard_hello() {
+    const bool heard = heard_hello_;
+    heard_hello_ = false;
+    return heard;
+  }
+
+  /// Takes in what has arrived; call it often.
+  void poll() {
+    constexpr int kMostBytes = 256;  // a round of the background stays short
+    std::byte byte{};
+    for (int i = 0; i < kMostBytes && port_.receive(byte); ++i)
+      if (receiver_.take(byte)) handle(receiver_.payload());
+  }
+
+  bool send(const hal::HidReport& report) {
+    if (!configured_ || room_ == 0) return false;
+    --room_;
+    tell(CableMessage::report, report);
+    return true;
+  }
+  bool receive(hal::HidReport& report) {
+    if (!arrived_.take(report)) return false;
+    tell(CableMessage::taken);
+    return true;
+  }
+  bool is_configured() const { return configured_; }
+
+ private:
+  void tell(CableMessage message, const hal::HidReport& report = {}) {
+    std::array<std::byte, 1 + hal::kHidReportSize> payload{static_cast<std::byte>(message)};
+    std::copy(report.begin(), report.end(), payload.begin() + 1);
+    send_frame(payload, [this](std::byte byte) { port_.send(byte); });
+  }
+
+  void handle(std::span<const std::byte> payload) {
+    hal::HidReport report;
+    if (payload.size() != 1 + report.size()) return;
+    std::copy(payload.begin() + 1, payload.end(), report.begin());
+    switch (static_cast<CableMessage>(payload.front())) {
+      case CableMessage::hello:
+        heard_hello_ = true;
+        begin_anew(false);
+        break;
+      case CableMessage::configured:
+        begin_anew(true);
+        break;
+      case CableMessage::unconfigured:
+        begin_anew(false);
+        break;
+      case CableMessage::report:
+        if (configured_) arrived_.put(report);
+        break;
+      case CableMessage::taken:
+        if (room_ < other_room) ++room_;
+        break;
+    }
+  }
+
+  void begin_anew(bool configured) {
+    configured_ = configured;
+    room_ = other_room;
+    arrived_.clear();
+  }
+
+  Port& port_;
+  FrameReceiver<1 + hal::kHidReportSize> receiver_;
+  hal::tinyusb::ReportQueue<own_room> arrived_;
+  std::size_t room_ = other_room;
+  bool configured_ = false;
+  bool heard_hello_ = false;
+};
+
+template <hal::SerialPort Port>
+using BoardEnd = ReportCable<Port, kBoardRoom, kComputerRoom>;
+template <hal::SerialPort Port>
+using ComputerEnd = ReportCable<Port, kComputerRoom, kBoardRoom>;
+
+}  // namespace firmware::boards
