@@ -216,7 +216,10 @@ class BoardApplication {
   static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
   BoardLimits limits_of_board() const {
-    return BoardWatch::default_limits(1.0F / static_cast<float>(active_.template get<"control.rate">()));
+    const auto rate_Hz = static_cast<float>(active_.template get<"control.rate">());
+    BoardLimits limits = BoardWatch::default_limits(1.0F / rate_Hz);
+    limits.heartbeat_samples = static_cast<std::int32_t>(active_.template get<"host.timeout">() * rate_Hz);
+    return limits;
   }
 
   void configure_all() {

@@ -24,8 +24,27 @@ void add_all_commands(CLI::App& app) {
   add_demo(app);
   add_flash(app);
   add_info(app);
-  add_udev_rule(app);
+  add_list(app);
   add_parameters(app);
+  add_get_params(app);
+  add_set_params(app);
+  add_diff_params(app);
+  add_reset_params(app);
+  add_save(app);
+  add_backup(app);
+  add_restore(app);
+  add_enable(app);
+  add_disable(app);
+  add_jog(app);
+  add_move(app);
+  add_capture(app);
+  add_faults(app);
+  add_clear_faults(app);
+  add_bench(app);
+  add_doctor(app);
+  add_sim(app);
+  add_completion(app);
+  add_udev_rule(app);
 }
 
 }  // namespace axistool

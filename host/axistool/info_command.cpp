@@ -1,22 +1,24 @@
-// axistool info: what a firmware image says about itself.
+// axistool info: what a board, or a firmware image, says about itself.
 #include <fmt/format.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/device/board_report.hpp"
 #include "host/device/image_file.hpp"
 
 namespace axistool {
 
 namespace {
 
-struct InfoArguments {
-  std::string image, json;
+struct InfoArguments : DeviceArguments {
+  std::string image;
 };
 
-void run(const InfoArguments& arguments) {
+void describe_image(const InfoArguments& arguments) {
   const host::ImageFile image = host::read_image_file(arguments.image);
   const firmware::ImageHeader& header = image.header;
   const bool whole = image.state == firmware::ImageState::whole;
@@ -32,22 +34,36 @@ void run(const InfoArguments& arguments) {
                 {"crc32", header.crc},
                 {"whole", whole}},
                arguments.json);
-  if (arguments.json == "-") return;
+  if (!talks(arguments)) return;
   fmt::print("board        {}\nversion      {}\ncommit       {}\nchip         {:#05x}\n", header.board.data(),
              header.version.data(), header.git_hash.data(), header.chip_id);
   fmt::print("schema hash  {:#010x}\nsize         {} bytes\nCRC-32       {:#010x}\nimage        {}\n",
              header.schema_hash, header.image_size, header.crc, host::describe(image.state));
 }
 
+void describe_board(const InfoArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  const firmware::IdentityPayload identity = board.identify();
+  const firmware::StatusPayload status = board.status();
+  if (!arguments.json.empty()) write_json(host::board_json(board.name(), identity, status), arguments.json);
+  if (talks(arguments)) fmt::print("{}", host::board_text(board.name(), identity, status));
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* command = app.add_subcommand("info", "what a firmware image says about itself, and whether it is whole");
-  command->add_option("IMAGE", arguments->image, "image file (.bin)")->required();
-  add_json_option(*command, arguments->json);
-  command->footer("Example:\n  axistool info build/firmware/images/axis-f405.bin\nExit code 1: the image is damaged.");
-  command->callback([arguments] { run(*arguments); });
+  CLI::App* command = app.add_subcommand("info", "What a board, or a firmware image, says about itself");
+  command->add_option("IMAGE", arguments->image, "image file (.bin); without it, the board");
+  add_device_options(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  axistool info\n"
+      "  axistool info --sim --json -\n"
+      "  axistool info build/firmware/images/axis-f405.bin\n"
+      "Exit code 1: the image is damaged.");
+  command->callback(
+      [arguments] { arguments->image.empty() ? describe_board(*arguments) : describe_image(*arguments); });
 }
 
 }  // namespace axistool

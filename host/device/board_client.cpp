@@ -201,7 +201,7 @@ firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
   return values;
 }
 
-void BoardClient::write_values(const firmware::ParameterValues& values) {
+void BoardClient::write_values(const firmware::ParameterValues& values, bool everything) {
   const firmware::ParameterValues before = read_values();
   request(MessageType::begin_staging, firmware::BeginRequest{firmware::ValueSet::active}, kPatience);
   firmware::ValuesPayload part;
@@ -211,7 +211,7 @@ void BoardClient::write_values(const firmware::ParameterValues& values) {
   };
   for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
     const auto bits = std::bit_cast<std::uint32_t>(values.at(place));
-    if (bits == std::bit_cast<std::uint32_t>(before.at(place))) continue;
+    if (!everything && bits == std::bit_cast<std::uint32_t>(before.at(place))) continue;
     part.key[part.count] = firmware::key_at(place).code;
     part.bits[part.count++] = bits;
     if (part.count == firmware::kValuesPerReport) flush();

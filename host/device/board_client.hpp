@@ -30,8 +30,8 @@ class BoardClient {
   void require_same_table();
 
   firmware::ParameterValues read_values(firmware::ValueSet set = firmware::ValueSet::active);
-  /// Stages what differs from the active set, commits, reads back and compares by bits.
-  void write_values(const firmware::ParameterValues& values);
+  /// Stages what differs from the active set (or everything), commits, reads back and compares by bits.
+  void write_values(const firmware::ParameterValues& values, bool everything = false);
   /// What lies in flash, keys that this program does not know included.
   std::vector<firmware::StoredEntry> read_stored();
   void save();

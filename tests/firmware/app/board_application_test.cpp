@@ -135,16 +135,28 @@ TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
   EXPECT_NEAR(static_cast<double>(axis.counts()), static_cast<double>(target), 2.0);
 }
 
-TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
+/// Control periods of 1 ms from the last request to the beginning of the stop, and that it ends well.
+int periods_until_a_stop(double timeout_s) {
   Bench bench;
   bench.fit_and_enable_x();
-  ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 50.0F}).status, Status::ok);
+  ParameterValues values = bench.application.active();
+  set(values, "host.timeout", timeout_s);
+  EXPECT_EQ(bench.download(values).status, Status::ok) << "may change while a drive is enabled";
+  EXPECT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 50.0F}).status, Status::ok);
+  int periods = 0;
+  for (; periods < 2000 && bench.application.axes()[0].state() == SupervisorState::enabled; ++periods) bench.run(1);
   bench.run(1000);
   const firmware::AxisStatus axis = bench.status().axis[0];
   EXPECT_EQ(axis.state, kFault);
   EXPECT_EQ(axis.fault, static_cast<std::uint8_t>(firmware::AxisFault::host_heartbeat_lost));
   EXPECT_NEAR(axis.velocity, 0.0, 0.5);
   EXPECT_FALSE(bench.board.axis(0).drive_enable().is_on());
+  return periods;
+}
+
+TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
+  EXPECT_NEAR(periods_until_a_stop(0.2), 200, 2);
+  EXPECT_NEAR(periods_until_a_stop(0.05), 50, 2);
 }
 
 TEST(BoardMotion, StandsAsLongAsItLikesWithoutAHost) {

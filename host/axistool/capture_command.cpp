@@ -1,0 +1,153 @@
+// axistool capture: samples of a board at loop rate, as a record.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/capture.hpp"
+#include "host/record/read_record.hpp"
+#include "host/report/progress.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct CaptureArguments : DeviceArguments {
+  std::string output, axis = "x", trigger, drive;
+  std::vector<std::string> channels, jogs;
+  double duration_s = 0.0, before_s = 0.0, patience_s = 60.0;
+  unsigned every = 1;
+  bool linear = false;
+};
+
+/// "20:1.5": 20 mm/s for 1.5 s.
+host::JogStep parse_jog(const std::string& text) {
+  host::JogStep step;
+  const char* next = text.c_str();
+  char* end = nullptr;
+  step.velocity = std::strtod(next, &end);
+  const bool has_speed = end != next && *end == ':';
+  next = has_speed ? end + 1 : next;
+  step.duration_s = std::strtod(next, &end);
+  if (!has_speed || end == next || *end != '\0' || !std::isfinite(step.velocity) || !(step.duration_s > 0.0))
+    throw host::Failure(host::ExitCode::usage, fmt::format("--jog {}: write SPEED:SECONDS, for example 20:1.5", text));
+  return step;
+}
+
+host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmware::ParameterValues& values) {
+  host::CaptureSettings settings;
+  settings.axis = axis_index(arguments.axis);
+  settings.kind = arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
+  for (const std::string& name : arguments.channels)
+    settings.channels.push_back(host::channel_named(name, settings.kind));
+  if (arguments.channels.empty())
+    settings.channels = host::usual_channels(values.axis(settings.axis).get<"tachometer.fitted">());
+  if (!arguments.trigger.empty()) {
+    settings.trigger = host::parse_trigger(arguments.trigger, settings.kind);
+    settings.channels.push_back(settings.trigger->channel);
+  }
+  std::ranges::sort(settings.channels);
+  settings.channels.erase(std::unique(settings.channels.begin(), settings.channels.end()), settings.channels.end());
+  settings.every = static_cast<std::uint16_t>(arguments.every);
+  settings.before_s = arguments.before_s;
+  settings.patience_s = arguments.patience_s;
+  for (const std::string& jog : arguments.jogs) settings.jogs.push_back(parse_jog(jog));
+  settings.duration_s = arguments.duration_s > 0.0 || !settings.jogs.empty() ? arguments.duration_s : 1.0;
+  return settings;
+}
+
+void run(const CaptureArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  const firmware::ParameterValues values = board.read_values();
+  const host::CaptureSettings settings = settings_of(arguments, values);
+  const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
+  const double reports_Hz = rate_Hz / std::floor(static_cast<double>(firmware::kWordsPerReport) /
+                                                 static_cast<double>(settings.channels.size()));
+  if (reports_Hz > 1000.0)
+    throw host::Failure(host::ExitCode::usage,
+                        fmt::format("{} channels at {:g} Hz need {:.0f} reports a second, and USB carries 1000: fewer "
+                                    "channels, or --every {}",
+                                    settings.channels.size(), rate_Hz, reports_Hz,
+                                    settings.every * static_cast<unsigned>(std::ceil(reports_Hz / 1000.0))));
+  if (arguments.dry_run) {
+    if (talks(arguments))
+      fmt::print("would capture {} channels at {:g} Hz into {}\n", settings.channels.size(), rate_Hz, arguments.output);
+    return;
+  }
+  double seconds = settings.duration_s;
+  for (const host::JogStep& jog : settings.jogs) seconds += arguments.duration_s > 0.0 ? 0.0 : jog.duration_s;
+  host::Capture capture;
+  {
+    host::Progress progress("capture", std::max<std::size_t>(1, static_cast<std::size_t>(seconds * rate_Hz)));
+    std::size_t shown = 0;
+    capture = host::run_capture(board, settings, [&](std::size_t rows) {
+      if (rows > shown) progress.advance(rows - shown);
+      shown = std::max(shown, rows);
+    });
+  }
+  const host::Record record =
+      host::capture_record(capture, settings, arguments.drive.empty() ? arguments.axis : arguments.drive);
+  host::write_record(record, arguments.output);
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-capture/1"},
+                {"file", arguments.output},
+                {"rows", record.size()},
+                {"sample_period_s", record.sample_period_s},
+                {"lost_rows", capture.lost},
+                {"dropped_by_board", capture.dropped_by_board}},
+               arguments.json);
+  if (talks(arguments))
+    fmt::print("{} rows at {:g} Hz in {}, {} lost\n", record.size(), rate_Hz, arguments.output, capture.lost);
+  if (capture.lost > 0)
+    throw host::Failure(
+        host::ExitCode::protocol,
+        fmt::format("{} rows were lost ({} dropped by the board); {} has gaps there, nothing is filled in: "
+                    "capture fewer channels or a lower rate, and close programs that load the computer",
+                    capture.lost, capture.dropped_by_board, arguments.output));
+}
+
+}  // namespace
+
+void add_capture(CLI::App& app) {
+  auto arguments = std::make_shared<CaptureArguments>();
+  CLI::App* command = app.add_subcommand("capture", "Record an axis at loop rate, as it moves -> record");
+  command->add_option("-o,--output", arguments->output, "record to write (axis-record/1)")->required();
+  command->add_option("--axis", arguments->axis, "x or y")->capture_default_str();
+  command
+      ->add_option("--for", arguments->duration_s,
+                   "seconds, from the trigger if there is one; default: 1, or the jogs'")
+      ->check(CLI::Range(0.0, 86400.0));
+  command
+      ->add_option("--channels", arguments->channels,
+                   "names, separated by commas; default: u_V, x_mm, w_rad_s, x_ref_mm, w_ref_rad_s")
+      ->delimiter(',');
+  command->add_option("--every", arguments->every, "take every n-th control period")
+      ->capture_default_str()
+      ->check(CLI::Range(1u, 65535u));
+  command->add_option("--trigger", arguments->trigger, "begin when a channel crosses a level: 'w_rad_s>5', 'x_mm<0'");
+  command->add_option("--pre", arguments->before_s, "seconds to keep from before the trigger")
+      ->check(CLI::Range(0.0, 3600.0));
+  command->add_option("--wait", arguments->patience_s, "seconds to wait for the trigger")->capture_default_str();
+  command->add_option("--jog", arguments->jogs, "SPEED:SECONDS, one after the other, meanwhile; the axis is enabled")
+      ->delimiter(',');
+  command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
+  command->add_option("--drive", arguments->drive, "name of the drive in the record; default: the axis");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  axistool capture -o idle.csv --for 2\n"
+      "  axistool capture -o jogs.csv --jog 20:1,-20:1\n"
+      "  axistool capture -o bump.csv --trigger 'd_hat_V>0.5' --pre 0.1 --for 0.4 --channels u_V,x_mm,d_hat_V\n"
+      "Channels beyond the default: x_err_mm, w_hat_rad_s, d_hat_V, u_friction_V, u_control_V, flags.\n"
+      "Rows that were lost are counted, and end with exit code 5; the file keeps the gap.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

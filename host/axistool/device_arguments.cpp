@@ -1,0 +1,59 @@
+#include "host/axistool/device_arguments.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include "host/axistool/json_output.hpp"
+#include "host/device/open_device.hpp"
+#include "host/exit_codes.hpp"
+
+namespace axistool {
+
+void add_device_options(CLI::App& command, DeviceArguments& arguments) {
+  command
+      .add_option("--device", arguments.device,
+                  "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH; default: the only one on USB")
+      ->envname("AXIS_DEVICE");
+  command.add_flag_callback(
+      "--sim", [&arguments] { arguments.device = "sim"; }, "the same as --device sim");
+  add_json_option(command, arguments.json);
+}
+
+void add_change_options(CLI::App& command, DeviceArguments& arguments) {
+  command.add_flag("--dry-run", arguments.dry_run, "say what would be done, and do nothing");
+  command.add_flag("-y,--yes", arguments.yes, "do not ask");
+}
+
+host::BoardClient open_board(const DeviceArguments& arguments) {
+  return host::BoardClient(host::open_device(arguments.device));
+}
+
+bool talks(const DeviceArguments& arguments) { return arguments.json != "-"; }
+
+void require_consent(const DeviceArguments& arguments, const std::string& question) {
+  if (arguments.yes) return;
+  std::string answer;
+  if (::isatty(STDIN_FILENO) == 1) {
+    fmt::print(stderr, "{} [y/N] ", question);
+    std::getline(std::cin, answer);
+  }
+  if (answer == "y" || answer == "yes") return;
+  throw host::Failure(host::ExitCode::refused, question + " Not done: answer y, or give --yes");
+}
+
+std::uint8_t axis_index(const std::string& name) {
+  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis)
+    if (firmware::kAxisNames[axis] == name) return static_cast<std::uint8_t>(axis);
+  throw host::Failure(host::ExitCode::usage, fmt::format("the board has no axis '{}'; it has x and y", name));
+}
+
+std::uint8_t axis_mask(const std::vector<std::string>& names) {
+  unsigned mask = names.empty() ? (1u << firmware::kAxisCount) - 1 : 0;
+  for (const std::string& name : names) mask |= 1u << axis_index(name);
+  return static_cast<std::uint8_t>(mask);
+}
+
+}  // namespace axistool

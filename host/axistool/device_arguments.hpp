@@ -1,0 +1,35 @@
+// The options that every command with a board has.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "host/device/board_client.hpp"
+
+namespace axistool {
+
+struct DeviceArguments {
+  std::string device, json;
+  bool dry_run = false, yes = false;
+};
+
+/// --device, also from the environment variable AXIS_DEVICE, and --json.
+void add_device_options(CLI::App& command, DeviceArguments& arguments);
+/// --dry-run and --yes, for commands that change something.
+void add_change_options(CLI::App& command, DeviceArguments& arguments);
+
+host::BoardClient open_board(const DeviceArguments& arguments);
+
+/// Prints on standard output unless it belongs to JSON alone.
+bool talks(const DeviceArguments& arguments);
+
+/// Asks on a terminal; elsewhere only --yes is a yes. Throws Failure(refused) on a no.
+void require_consent(const DeviceArguments& arguments, const std::string& question);
+
+/// "x" -> 0. Throws Failure(usage).
+std::uint8_t axis_index(const std::string& name);
+/// Of several; all when empty.
+std::uint8_t axis_mask(const std::vector<std::string>& names);
+
+}  // namespace axistool

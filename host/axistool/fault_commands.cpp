@@ -1,0 +1,114 @@
+// axistool faults, clear-faults: why a board stands still, and letting it go on.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/board_report.hpp"
+#include "host/device/fault_record.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct FaultArguments : DeviceArguments {
+  std::string record;
+  bool linear = false;
+};
+
+nlohmann::json faults_json(const firmware::StatusPayload& status) {
+  nlohmann::json axes = nlohmann::json::array();
+  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+    const auto& fault = firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].fault));
+    axes.push_back({{"axis", firmware::kAxisNames[axis]},
+                    {"state", host::state_text(status.axis[axis])},
+                    {"fault", fault.name},
+                    {"number", status.axis[axis].fault},
+                    {"cause", fault.cause},
+                    {"remedy", fault.remedy}});
+  }
+  return {{"format", "axis-faults/1"},
+          {"axes", axes},
+          {"store", host::store_text(status.store_state)},
+          {"reset_cause", host::reset_text(status.reset_cause)}};
+}
+
+bool has_fault(const firmware::StatusPayload& status) {
+  bool any = host::store_problem(status).has_value();
+  for (const firmware::AxisStatus& axis : status.axis) any = any || axis.fault != 0;
+  return any;
+}
+
+void print_faults(const firmware::StatusPayload& status) {
+  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+    const auto& fault = firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].fault));
+    fmt::print(
+        "{}: {}, {}\n", firmware::kAxisNames[axis], host::state_text(status.axis[axis]),
+        status.axis[axis].fault == 0 ? "no fault" : fmt::format("fault {} {}", status.axis[axis].fault, fault.name));
+    if (status.axis[axis].fault != 0) fmt::print("   cause:  {}\n   remedy: {}\n", fault.cause, fault.remedy);
+  }
+  if (const auto problem = host::store_problem(status)) fmt::print("store: {}\n", *problem);
+  fmt::print("last reset: {}\n", host::reset_text(status.reset_cause));
+}
+
+void tell(const FaultArguments& arguments, const firmware::StatusPayload& status) {
+  if (has_fault(status)) end_with(host::ExitCode::device_fault);
+  if (!arguments.json.empty()) write_json(faults_json(status), arguments.json);
+  if (talks(arguments)) print_faults(status);
+}
+
+void faults(const FaultArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  const firmware::StatusPayload status = board.status();
+  tell(arguments, status);
+  if (arguments.record.empty()) return;
+  board.require_same_table();
+  const sim::DriveKind kind = arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
+  for (std::uint8_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+    if (status.axis[axis].fault == 0) continue;
+    const auto record = host::read_fault_record(board, axis, kind);
+    if (!record) continue;
+    host::write_record(*record, arguments.record);
+    if (talks(arguments))
+      fmt::print("the last {:.0f} ms of {} before its fault: {}\n", 1e3 * record->t_s.back(),
+                 firmware::kAxisNames[axis], arguments.record);
+    return;
+  }
+}
+
+void clear_faults(const FaultArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  if (!arguments.dry_run) board.clear_faults();
+  std::this_thread::sleep_for(std::chrono::milliseconds(arguments.dry_run ? 0 : 300));  // the self-test that follows
+  tell(arguments, board.status());
+}
+
+}  // namespace
+
+void add_faults(CLI::App& app) {
+  auto arguments = std::make_shared<FaultArguments>();
+  CLI::App* command = app.add_subcommand("faults", "Faults of a board: cause, remedy, and what happened just before");
+  command->add_option("--record", arguments->record,
+                      "write what the axis kept of the time before its fault to this file");
+  command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
+  add_device_options(*command, *arguments);
+  command->footer("Examples:\n  axistool faults\n  axistool faults --record last.csv\nExit code 6: there is a fault.");
+  command->callback([arguments] { faults(*arguments); });
+}
+
+void add_clear_faults(CLI::App& app) {
+  auto arguments = std::make_shared<FaultArguments>();
+  CLI::App* command = app.add_subcommand("clear-faults", "Forget the faults of a board and let it test itself again");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer("Example:\n  axistool clear-faults\nExit code 6: a fault has come back.");
+  command->callback([arguments] { clear_faults(*arguments); });
+}
+
+}  // namespace axistool

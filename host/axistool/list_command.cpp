@@ -1,0 +1,50 @@
+// axistool list: the boards there are.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/socket_link.hpp"
+#include "host/device/usb_boards.hpp"
+
+namespace axistool {
+
+namespace {
+
+bool simulated_board_listens() {
+  try {
+    host::connect_to_socket(host::default_socket_path());
+    return true;
+  } catch (const host::Failure&) {
+    return false;
+  }
+}
+
+void run(const DeviceArguments& arguments) {
+  nlohmann::json boards = nlohmann::json::array();
+  for (const host::UsbBoard& board : host::find_usb_boards())
+    boards.push_back({{"device", "usb:" + board.serial_number}, {"product", board.product}, {"path", board.path}});
+  if (simulated_board_listens())
+    boards.push_back({{"device", "sim"}, {"product", "simulated board"}, {"path", host::default_socket_path()}});
+  if (boards.empty()) end_with(host::ExitCode::no_such_device);
+  if (!arguments.json.empty()) write_json({{"format", "axis-board-list/1"}, {"boards", boards}}, arguments.json);
+  if (!talks(arguments)) return;
+  for (const nlohmann::json& board : boards)
+    fmt::print("{:<32} {:<20} {}\n", board["device"].get<std::string>(), board["product"].get<std::string>(),
+               board["path"].get<std::string>());
+  if (boards.empty()) fmt::print("no board on USB, and no simulated one: plug one in, or start `axistool sim`\n");
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+  auto arguments = std::make_shared<DeviceArguments>();
+  CLI::App* command = app.add_subcommand("list", "Boards that are plugged in, and the simulated one");
+  add_json_option(*command, arguments->json);
+  command->footer("Example:\n  axistool list --json -\nExit code 3: there is none.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,151 @@
+// axistool enable, disable, jog, move: a board's axes in motion.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/motion.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct MotionArguments : DeviceArguments {
+  std::vector<std::string> axes;
+  std::string axis;
+  double value = 0.0, duration_s = 1.0;
+  bool relative = false;
+};
+
+std::atomic<bool> interrupted = false;
+
+/// Ctrl-C slows the axis down instead of leaving it to the board's time-out.
+void catch_interrupts() {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+}
+
+bool is_interrupted() { return interrupted; }
+
+double position_of(host::BoardClient& board, std::uint8_t axis, const firmware::ParameterValues& values) {
+  const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
+  return static_cast<double>(board.status().axis.at(axis).counts()) * resolution;
+}
+
+void report(const MotionArguments& arguments, const char* what, nlohmann::json document) {
+  document["format"] = "axis-motion/1";
+  document["command"] = what;
+  document["done"] = !arguments.dry_run;
+  if (!arguments.json.empty()) write_json(document, arguments.json);
+}
+
+void enable(const MotionArguments& arguments) {
+  const std::uint8_t mask = axis_mask(arguments.axes);
+  host::BoardClient board = open_board(arguments);
+  if (!arguments.dry_run) {
+    require_consent(arguments, "Close the control loop? The axis may move.");
+    host::enable_and_wait(board, mask);
+  }
+  report(arguments, "enable", {{"axes", arguments.axes}});
+  if (talks(arguments)) fmt::print("{}\n", arguments.dry_run ? "would enable" : "enabled");
+}
+
+void disable(const MotionArguments& arguments) {
+  const std::uint8_t mask = axis_mask(arguments.axes);
+  host::BoardClient board = open_board(arguments);
+  if (!arguments.dry_run) host::disable_and_wait(board, mask);
+  report(arguments, "disable", {{"axes", arguments.axes}});
+  if (talks(arguments)) fmt::print("{}\n", arguments.dry_run ? "would disable" : "disabled");
+}
+
+void jog(const MotionArguments& arguments) {
+  const std::uint8_t axis = axis_index(arguments.axis);
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  const firmware::ParameterValues values = board.read_values();
+  const double before = position_of(board, axis, values);
+  catch_interrupts();
+  if (!arguments.dry_run)
+    host::jog_for(board, axis, arguments.value, std::chrono::duration<double>(arguments.duration_s), is_interrupted);
+  const double after = position_of(board, axis, values);
+  report(arguments, "jog", {{"axis", arguments.axis}, {"from", before}, {"to", after}});
+  if (!talks(arguments)) return;
+  if (arguments.dry_run)
+    fmt::print("would jog {} at {:g} for {:g} s\n", arguments.axis, arguments.value, arguments.duration_s);
+  else
+    fmt::print("{} went from {:.4f} to {:.4f}{}\n", arguments.axis, before, after, interrupted ? " (interrupted)" : "");
+}
+
+void move(const MotionArguments& arguments) {
+  const std::uint8_t axis = axis_index(arguments.axis);
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  const firmware::ParameterValues values = board.read_values();
+  const double before = position_of(board, axis, values);
+  const double target = arguments.relative ? before + arguments.value : arguments.value;
+  const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
+  if (std::abs(target / resolution) > 9e15)
+    throw host::Failure(host::ExitCode::usage, fmt::format("{:g} is too far for the axis to count", target));
+  catch_interrupts();
+  if (!arguments.dry_run) host::move_and_wait(board, axis, std::llround(target / resolution), is_interrupted);
+  const double after = position_of(board, axis, values);
+  report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
+  if (!talks(arguments)) return;
+  fmt::print("{} {} {:.4f} from {:.4f}{}\n", arguments.axis, arguments.dry_run ? "would move to" : "is at",
+             arguments.dry_run ? target : after, before, interrupted ? " (interrupted)" : "");
+}
+
+}  // namespace
+
+void add_enable(CLI::App& app) {
+  auto arguments = std::make_shared<MotionArguments>();
+  CLI::App* command = app.add_subcommand("enable", "Close the control loop of axes");
+  command->add_option("AXIS", arguments->axes, "x, y, or both; default: both");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer("Example:\n  axistool enable x --yes\nAsks before; in a script give --yes.");
+  command->callback([arguments] { enable(*arguments); });
+}
+
+void add_disable(CLI::App& app) {
+  auto arguments = std::make_shared<MotionArguments>();
+  CLI::App* command = app.add_subcommand("disable", "Slow axes down and open their control loop");
+  command->add_option("AXIS", arguments->axes, "x, y, or both; default: both");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer("Example:\n  axistool disable");
+  command->callback([arguments] { disable(*arguments); });
+}
+
+void add_jog(CLI::App& app) {
+  auto arguments = std::make_shared<MotionArguments>();
+  CLI::App* command = app.add_subcommand("jog", "Move an enabled axis at a speed, for a time");
+  command->add_option("AXIS", arguments->axis, "x or y")->required();
+  command->add_option("SPEED", arguments->value, "mm/s (linear drive: m/s), negative the other way")->required();
+  command->add_option("--for", arguments->duration_s, "seconds, then it slows down")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3600.0));
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer("Example:\n  axistool jog x -20 --for 2\nCtrl-C slows down at once.");
+  command->callback([arguments] { jog(*arguments); });
+}
+
+void add_move(CLI::App& app) {
+  auto arguments = std::make_shared<MotionArguments>();
+  CLI::App* command = app.add_subcommand("move", "Move an enabled axis to a position and wait for it");
+  command->add_option("AXIS", arguments->axis, "x or y")->required();
+  command->add_option("POSITION", arguments->value, "mm (linear drive: m)")->required();
+  command->add_flag("--relative", arguments->relative, "from where the axis is");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer("Examples:\n  axistool move x 100\n  axistool move y -5 --relative");
+  command->callback([arguments] { move(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,120 @@
+// axistool save, backup, restore: parameters that last.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/atomic_file.hpp"
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/axistool/parameter_commands.hpp"
+#include "host/device/parameter_file.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct StoreArguments : DeviceArguments {
+  std::string file;
+  bool save = true;
+};
+
+void save(const StoreArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  if (!arguments.dry_run) board.save();
+  const firmware::StatusPayload status = board.status();
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-save/1"},
+                {"saved", !arguments.dry_run},
+                {"sequence", status.store_sequence},
+                {"erases", status.store_erases}},
+               arguments.json);
+  if (!talks(arguments)) return;
+  if (arguments.dry_run)
+    fmt::print("would save; the board {} unsaved changes\n",
+               (status.flags & firmware::kBoardUnsaved) != 0 ? "has" : "has no");
+  else
+    fmt::print("saved as set {}; flash erased {} times of some 20000\n", status.store_sequence, status.store_erases);
+}
+
+void backup(const StoreArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  std::vector<firmware::StoredEntry> foreign;
+  for (const firmware::StoredEntry& entry : board.read_stored()) {
+    const auto place = firmware::place_of({entry.key});
+    const bool fits =
+        place && firmware::check_value(firmware::rule_at(*place), std::bit_cast<float>(entry.value_bits)) ==
+                     firmware::ValueProblem::none;
+    if (!fits) foreign.push_back(entry);
+  }
+  host::write_file_atomically(arguments.file, host::format_parameter_file(board.read_values(), foreign));
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-backup/1"},
+                {"file", arguments.file},
+                {"parameters", firmware::kParameterCount},
+                {"not_in_table", foreign.size()}},
+               arguments.json);
+  if (!talks(arguments)) return;
+  fmt::print("{} parameters written to {}\n", firmware::kParameterCount, arguments.file);
+  if (!foreign.empty())
+    fmt::print("{} stored values fit this firmware's table no more; the file keeps them as comments\n", foreign.size());
+}
+
+void restore(const StoreArguments& arguments) {
+  const std::vector<host::Assignment> list = host::read_parameter_file(arguments.file);
+  firmware::ParameterValues after;
+  for (const host::Assignment& one : list) after.set(one.place, one.value);
+  host::require_fitting_set(after);
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  const std::vector<Difference> changes = differences(board.read_values(), after);
+  if (!arguments.dry_run) {
+    require_consent(arguments, fmt::format("Replace {} of the board's parameters and save?", changes.size()));
+    board.write_values(after);
+    board.save();
+  }
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-params-change/1"},
+                {"changes", differences_json(changes)},
+                {"applied", !arguments.dry_run},
+                {"saved", !arguments.dry_run}},
+               arguments.json);
+  if (!talks(arguments)) return;
+  print_differences(changes, "was", "is");
+  fmt::print("{} parameters {}; what the file does not name has its initial value\n", changes.size(),
+             arguments.dry_run ? "would change" : "changed and saved");
+}
+
+}  // namespace
+
+void add_save(CLI::App& app) {
+  auto arguments = std::make_shared<StoreArguments>();
+  CLI::App* command = app.add_subcommand("save", "Keep a board's parameters over power-off");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer(
+      "Example:\n  axistool save\nRefused (exit code 8) while a drive is enabled. Takes up to 4 s on hardware.");
+  command->callback([arguments] { save(*arguments); });
+}
+
+void add_backup(CLI::App& app) {
+  auto arguments = std::make_shared<StoreArguments>();
+  CLI::App* command = app.add_subcommand("backup", "Write all parameters of a board to a file");
+  command->add_option("FILE", arguments->file, "file to write (axis-params/1)")->required();
+  add_device_options(*command, *arguments);
+  command->footer("Example:\n  axistool backup machine-7.toml");
+  command->callback([arguments] { backup(*arguments); });
+}
+
+void add_restore(CLI::App& app) {
+  auto arguments = std::make_shared<StoreArguments>();
+  CLI::App* command = app.add_subcommand("restore", "Give a board exactly the parameters of a backup, and save them");
+  command->add_option("FILE", arguments->file, "file that backup wrote")->required();
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer("Example:\n  axistool restore machine-7.toml --yes");
+  command->callback([arguments] { restore(*arguments); });
+}
+
+}  // namespace axistool

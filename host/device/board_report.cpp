@@ -1,0 +1,118 @@
+#include "host/device/board_report.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "firmware/app/parameters/parameter_values.hpp"
+#include "firmware/app/store/parameter_store.hpp"
+#include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+
+namespace host {
+
+namespace {
+
+template <std::size_t size>
+std::string text_of(const std::array<char, size>& padded) {
+  return std::string(padded.data(), std::string_view(padded.data(), size).find_last_not_of('\0') + 1);
+}
+
+template <typename Names>
+std::string nth(const Names& names, std::size_t n) {
+  return n < names.size() ? std::string(names[n]) : fmt::format("number {}", n);
+}
+
+}  // namespace
+
+std::string state_text(const firmware::AxisStatus& axis) {
+  return (axis.flags & firmware::kAxisFitted) != 0 ? nth(firmware::kStateNames, axis.state) : "not fitted";
+}
+
+std::string store_text(std::uint8_t store_state) {
+  constexpr std::array<std::string_view, 5> kNames{"empty", "loaded", "migrated", "incomplete", "damaged"};
+  return nth(kNames, store_state);
+}
+
+std::string reset_text(std::uint8_t reset_cause) {
+  constexpr std::array<std::string_view, 7> kNames{"unknown",  "power on", "reset pin", "software",
+                                                   "watchdog", "fault",    "brown-out"};
+  return nth(kNames, reset_cause);
+}
+
+std::optional<std::string> store_problem(const firmware::StatusPayload& status) {
+  switch (static_cast<firmware::StoreState>(status.store_state)) {
+    case firmware::StoreState::damaged:
+      return "the saved parameters are damaged, the drives stay disabled: `axistool restore BACKUP`, or set-params and "
+             "save";
+    case firmware::StoreState::incomplete:
+      return fmt::format(
+          "{} saved parameters do not fit this firmware, the drives stay disabled: `axistool backup` "
+          "shows them; set what is right and save",
+          status.not_migrated);
+    case firmware::StoreState::empty:
+    case firmware::StoreState::loaded:
+    case firmware::StoreState::migrated:
+      break;
+  }
+  return std::nullopt;
+}
+
+nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
+                          const firmware::StatusPayload& status) {
+  nlohmann::json axes = nlohmann::json::array();
+  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+    const firmware::AxisStatus& now = status.axis[axis];
+    axes.push_back({{"axis", firmware::kAxisNames[axis]},
+                    {"state", state_text(now)},
+                    {"fault", firmware::fault_info(static_cast<firmware::AxisFault>(now.fault)).name},
+                    {"counts", now.counts()},
+                    {"velocity", now.velocity},
+                    {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
+                    {"at_rest", (now.flags & firmware::kAxisAtRest) != 0}});
+  }
+  return {{"format", "axis-board/1"},
+          {"device", device},
+          {"board", text_of(identity.board)},
+          {"version", text_of(identity.version)},
+          {"git_hash", text_of(identity.git_hash)},
+          {"schema_hash", identity.schema_hash},
+          {"same_table", identity.schema_hash == firmware::kSchemaHash},
+          {"fixed_point", identity.fixed_point != 0},
+          {"simulated", (status.flags & firmware::kBoardSimulated) != 0},
+          {"control_periods", status.control_periods},
+          {"store", store_text(status.store_state)},
+          {"unsaved_changes", (status.flags & firmware::kBoardUnsaved) != 0},
+          {"erases", status.store_erases},
+          {"reset_cause", reset_text(status.reset_cause)},
+          {"resets", status.resets},
+          {"emergency_stop", (status.flags & firmware::kBoardStopPressed) != 0},
+          {"axes", axes}};
+}
+
+std::string board_text(const std::string& device, const firmware::IdentityPayload& identity,
+                       const firmware::StatusPayload& status) {
+  std::string text =
+      fmt::format("device       {}\nboard        {}{}, version {} {}\nnumbers      {}\nparameters   table {:#010x}{}\n",
+                  device, text_of(identity.board),
+                  (status.flags & firmware::kBoardSimulated) != 0 ? " (simulated)" : "", text_of(identity.version),
+                  text_of(identity.git_hash), identity.fixed_point != 0 ? "fixed point" : "float", identity.schema_hash,
+                  identity.schema_hash == firmware::kSchemaHash ? ", as this axistool's" : ", NOT this axistool's");
+  text += fmt::format("store        {}{}; flash erased {} times\n", store_text(status.store_state),
+                      (status.flags & firmware::kBoardUnsaved) != 0 ? ", unsaved changes" : "", status.store_erases);
+  text += fmt::format("last reset   {}; {} since power on\n", reset_text(status.reset_cause), status.resets);
+  if ((status.flags & firmware::kBoardStopPressed) != 0) text += "emergency stop is pressed\n";
+  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+    const firmware::AxisStatus& now = status.axis[axis];
+    text += fmt::format(
+        "axis {}       {}, {} counts{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),
+        now.fault == 0
+            ? ""
+            : fmt::format(", fault {}", firmware::fault_info(static_cast<firmware::AxisFault>(now.fault)).name));
+  }
+  if (const auto problem = store_problem(status)) text += *problem + "\n";
+  return text;
+}
+
+}  // namespace host

@@ -1,0 +1,26 @@
+// What a board says about itself, in words.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "firmware/app/protocol/messages.hpp"
+
+namespace host {
+
+std::string state_text(const firmware::AxisStatus& axis);
+std::string store_text(std::uint8_t store_state);
+std::string reset_text(std::uint8_t reset_cause);
+
+/// Why the store keeps the drives disabled, with the remedy; empty while it does not.
+std::optional<std::string> store_problem(const firmware::StatusPayload& status);
+
+/// Name, version, table, store, axes: format "axis-board/1".
+nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
+                          const firmware::StatusPayload& status);
+/// The same for people.
+std::string board_text(const std::string& device, const firmware::IdentityPayload& identity,
+                       const firmware::StatusPayload& status);
+
+}  // namespace host

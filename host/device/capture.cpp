@@ -1,0 +1,213 @@
+#include "host/device/capture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+
+#include "host/exit_codes.hpp"
+#include "host/record/columns.hpp"
+
+namespace host {
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kHeartbeat{20};  // a fifth of the silence that a board suffers
+
+class CaptureRun {
+ public:
+  CaptureRun(BoardClient& board, const CaptureSettings& settings)
+      : board_(board),
+        settings_(settings),
+        values_(board.read_values()),
+        scale_(values_.axis(settings.axis), board.identify().fixed_point != 0,
+               board.status().axis.at(settings.axis).counts()) {
+    capture_.row_period_s = static_cast<double>(settings.every) / values_.get<"control.rate">();
+    capture_.channel.resize(settings.channels.size());
+    wanted_ = static_cast<std::size_t>(std::ceil(total_duration() / capture_.row_period_s - 1e-9));
+    before_ = settings.trigger ? static_cast<std::size_t>(std::llround(settings.before_s / capture_.row_period_s)) : 0;
+    triggered_ = !settings.trigger;
+    for (std::size_t i = 0; settings.trigger && i < settings.channels.size(); ++i)
+      if (settings.channels[i] == settings.trigger->channel) trigger_column_ = i;
+  }
+
+  Capture run(const std::function<void(std::size_t)>& progress) {
+    firmware::CaptureRequest request;
+    for (const firmware::Channel channel : settings_.channels)
+      request.channels[settings_.axis] |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
+    request.every = settings_.every;
+    board_.start_capture(request);
+    try {
+      fetch(progress);
+    } catch (const Failure&) {
+      end_quietly();
+      throw;
+    }
+    if (!settings_.jogs.empty()) board_.stop();
+    if (settings_.trigger) capture_.trigger_s = (trigger_number_ - capture_.number.front()) * capture_.row_period_s;
+    capture_.dropped_by_board = board_.stop_capture().dropped;
+    for (std::size_t i = 1; i < capture_.number.size(); ++i)
+      capture_.lost += capture_.number[i] - capture_.number[i - 1] - 1;
+    return std::move(capture_);
+  }
+
+ private:
+  double total_duration() const {
+    if (settings_.duration_s > 0.0) return settings_.duration_s;
+    double sum = 0.0;
+    for (const JogStep& step : settings_.jogs) sum += step.duration_s;
+    return sum;
+  }
+
+  void fetch(const std::function<void(std::size_t)>& progress) {
+    const auto began = steady_clock::now();
+    auto heard = began;
+    next_jog_ = began;
+    while (after_ < wanted_) {
+      const auto samples = board_.next_samples(milliseconds(10));
+      if (samples) take(*samples);
+      const auto now = steady_clock::now();
+      if (samples) last_row_ = now;
+      steer(now);
+      if (!settings_.jogs.empty() && now - heard > kHeartbeat) {
+        watch();
+        heard = now;
+      }
+      if (!triggered_ && now - began > std::chrono::duration<double>(settings_.patience_s))
+        throw Failure(ExitCode::time_out, fmt::format("the trigger did not come within {:g} s", settings_.patience_s));
+      const double silence_s = 2.0 + 20.0 * capture_.row_period_s;
+      if (now - std::max(last_row_, began) > std::chrono::duration<double>(silence_s))
+        throw Failure(ExitCode::time_out, "the board sends no more samples");
+      if (progress) progress(capture_.number.size());
+    }
+  }
+
+  /// The jogs in turn, by the computer's clock: what the axis really did is in the record.
+  void steer(steady_clock::time_point now) {
+    if (jog_ > settings_.jogs.size() || settings_.jogs.empty() || now < next_jog_) return;
+    if (jog_ == settings_.jogs.size()) {
+      board_.stop();
+    } else {
+      board_.jog(settings_.axis, settings_.jogs[jog_].velocity);
+      next_jog_ += std::chrono::duration_cast<steady_clock::duration>(
+          std::chrono::duration<double>(settings_.jogs[jog_].duration_s));
+    }
+    ++jog_;
+  }
+
+  /// A heartbeat that also tells whether the axis still runs.
+  void watch() {
+    if (board_.status().axis.at(settings_.axis).fault != 0)
+      throw Failure(ExitCode::device_fault, "the axis stopped with a fault: `axistool faults` tells cause and remedy");
+  }
+
+  void take(const BoardClient::Samples& samples) {
+    const std::size_t words = settings_.channels.size();
+    if (samples.words.size() % words != 0)
+      throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
+    for (std::size_t row = 0; row * words < samples.words.size() && after_ < wanted_; ++row)
+      take_row(samples.first_row + static_cast<std::uint32_t>(row), samples.words.data() + row * words);
+  }
+
+  /// A row's words stand in the order of the channels' numbers.
+  void take_row(std::uint32_t number, const std::uint32_t* words) {
+    std::vector<std::size_t> order(settings_.channels.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+      order[i] = static_cast<std::size_t>(std::ranges::count_if(
+          settings_.channels, [&](firmware::Channel other) { return other < settings_.channels[i]; }));
+    capture_.number.push_back(number);
+    for (std::size_t i = 0; i < order.size(); ++i)
+      capture_.channel[i].push_back(scale_(settings_.channels[i], words[order[i]]));
+    if (!triggered_) {
+      const double value = capture_.channel[trigger_column_].back();
+      const bool beyond =
+          settings_.trigger->rising ? value > settings_.trigger->level : value < settings_.trigger->level;
+      triggered_ = beyond && was_short_;
+      was_short_ = was_short_ || !beyond;
+      // While waiting not at every row: erasing at the front moves all others.
+      if (triggered_ || capture_.number.size() > before_ + 1000) keep_last(before_ + 1);
+      trigger_number_ = number;
+    }
+    if (triggered_) ++after_;
+  }
+
+  void keep_last(std::size_t rows) {
+    const auto cut = [&](auto& column) {
+      if (column.size() > rows) column.erase(column.begin(), column.end() - static_cast<std::ptrdiff_t>(rows));
+    };
+    cut(capture_.number);
+    for (auto& column : capture_.channel) cut(column);
+  }
+
+  void end_quietly() {
+    try {
+      if (!settings_.jogs.empty()) board_.stop();
+      board_.stop_capture();
+    } catch (const Failure&) {  // the board has gone: the first failure says so
+    }
+  }
+
+  BoardClient& board_;
+  const CaptureSettings& settings_;
+  firmware::ParameterValues values_;
+  ChannelScale scale_;
+  Capture capture_;
+  std::size_t wanted_ = 0, before_ = 0, after_ = 0;
+  std::size_t trigger_column_ = 0;
+  std::uint32_t trigger_number_ = 0;
+  bool triggered_ = false;
+  bool was_short_ = false;  ///< a trigger is a crossing: some row was not beyond the level
+  std::size_t jog_ = 0;
+  steady_clock::time_point next_jog_;
+  steady_clock::time_point last_row_;
+};
+
+}  // namespace
+
+Trigger parse_trigger(std::string_view text, sim::DriveKind kind) {
+  const std::size_t sign = text.find_first_of("<>");
+  const std::string level(sign == std::string_view::npos ? "" : text.substr(sign + 1));
+  char* end = nullptr;
+  const double value = std::strtod(level.c_str(), &end);
+  if (level.empty() || *end != '\0')
+    throw Failure(ExitCode::usage, fmt::format("{}: write CHANNEL>LEVEL or CHANNEL<LEVEL, for example '{}>5'", text,
+                                               channel_name(firmware::Channel::tachometer_velocity, kind)));
+  return {channel_named(text.substr(0, sign), kind), text[sign] == '>', value};
+}
+
+Capture run_capture(BoardClient& board, const CaptureSettings& settings,
+                    const std::function<void(std::size_t)>& progress) {
+  return CaptureRun(board, settings).run(progress);
+}
+
+Record capture_record(const Capture& capture, const CaptureSettings& settings, const std::string& drive) {
+  Record record;
+  record.drive = drive;
+  record.kind = settings.kind;
+  record.sample_period_s = capture.row_period_s;
+  record.header["source"] = "axistool capture";
+  if (capture.trigger_s) record.header["trigger_s"] = fmt::format("{}", *capture.trigger_s);
+  if (capture.lost > 0) record.header["lost_rows"] = std::to_string(capture.lost);
+  const auto periods_a_second = static_cast<double>(std::llround(1.0 / capture.row_period_s));
+  const bool is_whole_rate = std::abs(periods_a_second * capture.row_period_s - 1.0) < 1e-12;
+  for (const std::uint32_t number : capture.number) {
+    const double rows = number - capture.number.front();  // dividing keeps 0.003 from becoming 0.0030000000000000001
+    record.t_s.push_back(is_whole_rate ? rows / periods_a_second : rows * capture.row_period_s);
+  }
+  for (std::size_t i = 0; i < settings.channels.size(); ++i) {
+    const std::string name = channel_name(settings.channels[i], settings.kind);
+    if (const KnownColumn* known = find_known_column(name))
+      record.*(known->channel) = capture.channel[i];
+    else
+      record.extra.push_back({name, capture.channel[i], {}});
+  }
+  return record;
+}
+
+}  // namespace host

@@ -1,0 +1,61 @@
+// A capture: rows at loop rate from a board, from before a trigger on, while the axis moves as it is told.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/device/board_client.hpp"
+#include "host/device/capture_channels.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+struct Trigger {
+  firmware::Channel channel = firmware::Channel::dac_code;
+  bool rising = true;  ///< the first row above the level; else the first below
+  double level = 0.0;
+};
+
+/// "w_rad_s>5", "x_mm<0.1". Throws Failure(usage).
+Trigger parse_trigger(std::string_view text, sim::DriveKind kind);
+
+struct JogStep {
+  double velocity = 0.0;  ///< mm/s (m/s)
+  double duration_s = 0.0;
+};
+
+struct CaptureSettings {
+  std::uint8_t axis = 0;
+  sim::DriveKind kind = sim::DriveKind::rotary;
+  std::vector<firmware::Channel> channels;  ///< 1 to kWordsPerReport, no two alike
+  std::uint16_t every = 1;                  ///< control periods from row to row
+  double duration_s = 1.0;                  ///< from the first row, or from the trigger; 0: as long as the jogs last
+  std::optional<Trigger> trigger;           ///< its channel is among `channels`
+  double before_s = 0.0;                    ///< kept from before the trigger
+  double patience_s = 60.0;                 ///< for the trigger
+  std::vector<JogStep> jogs;                ///< in turn, from the first row on; the axis is enabled
+};
+
+struct Capture {
+  std::vector<std::uint32_t> number;  ///< of each row; a jump is a loss
+  std::vector<std::vector<double>> channel;
+  double row_period_s = 0.0;
+  std::optional<double> trigger_s;  ///< from the first row to the trigger
+  std::size_t lost = 0;             ///< rows between the first and the last that did not arrive
+  std::uint32_t dropped_by_board = 0;
+};
+
+/// Runs a capture. `progress` is told the rows so far. Throws Failure: time_out (no trigger), what BoardClient throws,
+/// device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and the board to end
+/// the capture.
+Capture run_capture(BoardClient& board, const CaptureSettings& settings,
+                    const std::function<void(std::size_t)>& progress = {});
+
+/// As a record: t_s from the rows' numbers, 0 at the first row.
+Record capture_record(const Capture& capture, const CaptureSettings& settings, const std::string& drive);
+
+}  // namespace host

@@ -1,0 +1,29 @@
+// How fast and how reliable the way to a board is.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "host/device/board_client.hpp"
+
+namespace host {
+
+struct DeviceBench {
+  double connect_ms = 0;   ///< open, identify, status
+  double read_all_ms = 0;  ///< all parameters
+  double set_all_ms = 0;   ///< all parameters staged, committed, read back and compared
+  double exchange_median_ms = 0;
+  double exchange_worst_ms = 0;
+  double capture_s = 0;
+  std::size_t capture_rows = 0;
+  std::size_t capture_reports = 0;
+  std::size_t lost_rows = 0;
+};
+
+/// Times everything with the parameters that the board has; nothing changes. Drives must be disabled.
+/// `open` makes the way to the board; `progress` is told the seconds of the capture so far.
+DeviceBench bench_device(const std::function<std::unique_ptr<ReportLink>()>& open, double capture_s,
+                         const std::function<void(double)>& progress = {});
+
+}  // namespace host

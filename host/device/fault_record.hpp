@@ -1,0 +1,15 @@
+// What an axis kept of the time before a fault stopped it, as a record.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "host/device/board_client.hpp"
+#include "host/record/read_record.hpp"
+
+namespace host {
+
+/// Empty when the axis kept nothing, or too little for a record.
+std::optional<Record> read_fault_record(BoardClient& board, std::uint8_t axis, sim::DriveKind kind);
+
+}  // namespace host

@@ -1,0 +1,112 @@
+#include "host/device/motion.hpp"
+
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+using firmware::SupervisorState;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kRound{20};  // a fifth of the silence that a board suffers while it moves
+
+SupervisorState state_of(const firmware::StatusPayload& status, std::size_t axis) {
+  return static_cast<SupervisorState>(status.axis.at(axis).state);
+}
+
+/// Asks until `done`, the board's heartbeat on the way.
+template <typename Done>
+bool ask_until(BoardClient& board, std::chrono::duration<double> patience, Done done) {
+  const auto deadline = steady_clock::now() + patience;
+  for (;;) {
+    if (done(board.status())) return true;
+    if (steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(kRound);
+  }
+}
+
+template <typename Each>
+bool for_all(std::uint8_t mask, Each each) {
+  for (std::uint8_t axis = 0; axis < firmware::kAxisCount; ++axis)
+    if ((mask >> axis & 1) != 0 && !each(axis)) return false;
+  return true;
+}
+
+bool rests(const firmware::StatusPayload& status, std::uint8_t axis) {
+  require_no_fault(status, axis);
+  return (status.axis.at(axis).flags & firmware::kAxisAtRest) != 0;
+}
+
+/// However long it takes: limits of acceleration may be low. A silent board ends it.
+void stop_and_wait(BoardClient& board, std::uint8_t axis) {
+  board.stop();
+  ask_until(board, std::chrono::hours(1), [&](const auto& status) { return rests(status, axis); });
+}
+
+}  // namespace
+
+void require_no_fault(const firmware::StatusPayload& status, std::uint8_t axis) {
+  const std::uint8_t number = status.axis.at(axis).fault;
+  if (number == 0) return;
+  const firmware::FaultInfo& fault = firmware::fault_info(static_cast<firmware::AxisFault>(number));
+  throw Failure(ExitCode::device_fault,
+                fmt::format("axis {}: {}: {}. Remedy: {}; then `axistool clear-faults`", firmware::kAxisNames.at(axis),
+                            fault.name, fault.cause, fault.remedy));
+}
+
+void enable_and_wait(BoardClient& board, std::uint8_t mask) {
+  ask_until(board, std::chrono::seconds(2), [&](const auto& status) {
+    return for_all(mask, [&](std::uint8_t axis) {
+      require_no_fault(status, axis);
+      return state_of(status, axis) != SupervisorState::self_test;
+    });
+  });
+  board.enable(mask);
+  const bool closed = ask_until(board, std::chrono::seconds(2), [&](const auto& status) {
+    return for_all(mask, [&](std::uint8_t axis) {
+      require_no_fault(status, axis);
+      return state_of(status, axis) == SupervisorState::enabled;
+    });
+  });
+  if (!closed) throw Failure(ExitCode::time_out, "the board does not enable the axis; `axistool doctor` looks further");
+}
+
+void disable_and_wait(BoardClient& board, std::uint8_t mask) {
+  board.disable(mask);
+  const bool off = ask_until(board, std::chrono::minutes(1), [&](const auto& status) {
+    return for_all(mask, [&](std::uint8_t axis) { return !firmware::outputs_are_on(state_of(status, axis)); });
+  });
+  if (!off) throw Failure(ExitCode::time_out, "the axis does not come to rest: press the emergency stop");
+}
+
+void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,
+             const std::function<bool()>& stop) {
+  board.jog(axis, velocity);
+  ask_until(board, duration, [&](const auto& status) {
+    require_no_fault(status, axis);
+    return stop();
+  });
+  stop_and_wait(board, axis);
+}
+
+void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t target_counts,
+                   const std::function<bool()>& stop) {
+  board.move(axis, target_counts);
+  bool interrupted = false;
+  std::this_thread::sleep_for(kRound);  // the move begins with the next control period
+  ask_until(board, std::chrono::hours(24), [&](const auto& status) {
+    interrupted = stop();
+    return interrupted || rests(status, axis);
+  });
+  if (interrupted) stop_and_wait(board, axis);
+}
+
+}  // namespace host

@@ -1,0 +1,31 @@
+// Commanded motion, with the heartbeat that a board asks for meanwhile.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+#include "host/device/board_client.hpp"
+
+namespace host {
+
+/// Enables the axes of `mask` and waits until their loops are closed, a self-test before included. Throws
+/// Failure(device_fault, refused, time_out).
+void enable_and_wait(BoardClient& board, std::uint8_t mask);
+
+/// Slows down, drops the enables and waits until they are off.
+void disable_and_wait(BoardClient& board, std::uint8_t mask);
+
+/// Jogs for a time or until `stop` says so, then slows down to rest. Throws Failure(device_fault) when the axis faults;
+/// whatever ends it, the axis is told to stop.
+void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,
+             const std::function<bool()>& stop);
+
+/// Moves to a target and waits until the axis rests there, or until `stop` says so.
+void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t target_counts,
+                   const std::function<bool()>& stop);
+
+/// Throws Failure(device_fault) with the fault's name, cause and remedy.
+void require_no_fault(const firmware::StatusPayload& status, std::uint8_t axis);
+
+}  // namespace host

@@ -1,0 +1,36 @@
+// Board parameters in files (`axis-params/1`, TOML) and on the command line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/app/parameters/parameter_values.hpp"
+#include "firmware/app/store/stored_set.hpp"
+
+namespace host {
+
+struct Assignment {
+  std::size_t place = 0;
+  float value = 0;
+};
+
+/// Reads a file of parameters; it need not name all. `axis` ("x", "y" or empty) says to which axis of the board a file
+/// belongs that holds one axis of another name, as `design` names it after the model. Throws Failure(bad_input) naming
+/// file, line, parameter, range and unit.
+std::vector<Assignment> read_parameter_file(const std::string& path, std::string_view axis = {});
+std::vector<Assignment> parse_parameter_text(std::string_view text, std::string_view name, std::string_view axis = {});
+
+/// "x.kalman.k11=0.3". Throws Failure(usage).
+Assignment parse_assignment(std::string_view text);
+
+/// Throws Failure(bad_input) naming what is wrong with the set as a whole, as far as the host can tell.
+void require_fitting_set(const firmware::ParameterValues& values);
+
+/// A file of all parameters, each with unit and meaning. `foreign`: entries of a board's flash that the table does not
+/// have; they stand in comments.
+std::string format_parameter_file(const firmware::ParameterValues& values,
+                                  const std::vector<firmware::StoredEntry>& foreign = {});
+
+}  // namespace host

@@ -1,0 +1,199 @@
+// The commands with a board, on the simulated one, as a user runs them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "host/record/read_record.hpp"
+#include "tests/host/axistool/simulated_board.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
+
+class DeviceCommands : public testing::Test {
+ protected:
+  std::string file(const char* name) const { return folder_.path(name); }
+
+  ProgramRun run(const std::string& command) const { return board_.run(command); }
+
+  /// Must succeed; standard output alone.
+  nlohmann::json json(const std::string& command, int exit_code = 0) const {
+    const ProgramRun done = board_.run(command + " --json -", "2>/dev/null");
+    EXPECT_EQ(done.exit_code, exit_code) << command << "\n" << done.output;
+    return nlohmann::json::parse(done.output, nullptr, false);
+  }
+
+  std::string design() const {
+    EXPECT_EQ(run_axistool("design " + kCase + "/model.toml -o " + file("params.toml")).exit_code, 0);
+    return file("params.toml");
+  }
+
+  /// The design on the board, which is patient: a loaded computer must not look like a lost host.
+  void fit() const { ASSERT_EQ(run("set-params " + design() + " host.timeout=5").exit_code, 0); }
+
+  TemporaryFolder folder_;
+  SimulatedBoardProcess board_{folder_.path(""), {"--x", kCase + "/model.toml"}};
+};
+
+TEST_F(DeviceCommands, FromRecordToRecord) {
+  const std::string model = file("x.toml"), params = file("x-params.toml"), record = file("jogs.csv");
+  ASSERT_EQ(
+      run_axistool("identify " + kCase + "/train-steps.csv --drive " + kCase + "/model.toml -o " + model).exit_code, 0);
+  ASSERT_EQ(run_axistool("friction " + kCase + "/train-jog.csv --model " + model + " -o " + model).exit_code, 0);
+  ASSERT_EQ(run_axistool("design " + model + " -o " + params).exit_code, 0);
+  ASSERT_EQ(run("set-params " + params + " host.timeout=5 --save").exit_code, 0);
+  ASSERT_EQ(run("enable x --yes").exit_code, 0);
+  const ProgramRun jog = run("jog x 20 --for 0.3");
+  ASSERT_EQ(jog.exit_code, 0) << jog.output;
+  const ProgramRun capture = run("capture -o " + record + " --jog 20:0.6,-20:0.6,60:0.4,-60:0.4");
+  ASSERT_EQ(capture.exit_code, 0) << capture.output;
+  EXPECT_EQ(run("disable x").exit_code, 0);
+  const host::Record jogs = host::read_record(record);
+  EXPECT_EQ(jogs.size(), 2000u);
+  const ProgramRun compare = run_axistool("compare " + model + " " + record + " --json -", "2>/dev/null");
+  const nlohmann::json comparison = nlohmann::json::parse(compare.output);
+  EXPECT_LT(comparison["relative_error"].get<double>(), 0.05) << "torque that the identified model leaves unexplained";
+}
+
+TEST_F(DeviceCommands, ParametersOutliveAPowerCutOnceTheyAreSaved) {
+  const std::string params = design();
+  ASSERT_EQ(run("set-params " + params).exit_code, 0);
+  EXPECT_EQ(run("diff-params " + params).exit_code, 0);
+  ASSERT_EQ(run("save").exit_code, 0);
+  ASSERT_EQ(run("set-params x.feedback.k1=20").exit_code, 0);
+  EXPECT_EQ(run("diff-params " + params).exit_code, 1);
+  board_.end(SIGKILL);
+  std::filesystem::remove(folder_.path("board.socket"));
+  const SimulatedBoardProcess again(folder_.path(""), {"--x", kCase + "/model.toml"});
+  EXPECT_EQ(again.run("diff-params " + params).exit_code, 0);
+  EXPECT_THAT(again.run("info").output, HasSubstr("loaded"));
+}
+
+TEST_F(DeviceCommands, SetParamsSaysWhatIsWrongAndChangesNothing) {
+  const ProgramRun high = run("set-params x.feedback.k1=3 x.kalman.k11=5.2");
+  EXPECT_EQ(high.exit_code, 2);
+  EXPECT_THAT(high.output, HasSubstr("x.kalman.k11 = 5.2 is above its maximum 2.0 (1)"));
+  const ProgramRun typo = run("set-params x.kalman.k1l=0.2");
+  EXPECT_EQ(typo.exit_code, 2);
+  EXPECT_THAT(typo.output, HasSubstr("did you mean x.kalman.k11"));
+  std::ofstream(file("bad.toml")) << "format = \"axis-params/1\"\n[x.kalman]\nk12 = 0.1\nk11 = 5.2\n";
+  const ProgramRun bad = run("set-params " + file("bad.toml"));
+  EXPECT_EQ(bad.exit_code, 9);
+  EXPECT_THAT(bad.output, HasSubstr("bad.toml: line 4: x.kalman.k11 = 5.2 is above its maximum 2.0 (1)"));
+  std::ofstream(file("stage.toml")) << "format = \"axis-params/1\"\n[stage.kalman]\nk12 = 0.1\n";
+  EXPECT_THAT(run("set-params " + file("stage.toml")).output, HasSubstr("--axis x"));
+  EXPECT_EQ(run("set-params x.drive.fitted=true").exit_code, 9) << "fitted without a design";
+  EXPECT_EQ(run("diff-params --defaults").exit_code, 0) << "nothing of all this was taken";
+  EXPECT_EQ(run("set-params " + file("stage.toml") + " --axis y").exit_code, 0);
+  EXPECT_EQ(json("get-params y.kalman.k12")["parameters"]["y.kalman.k12"], 0.1F);
+}
+
+TEST_F(DeviceCommands, ADryRunChangesNothing) {
+  const std::string params = design();
+  const nlohmann::json change = json("set-params " + params + " --save --dry-run");
+  EXPECT_FALSE(change["applied"].get<bool>());
+  EXPECT_GT(change["changes"].size(), 20u);
+  EXPECT_EQ(run("diff-params --defaults").exit_code, 0);
+  EXPECT_EQ(run("enable x --dry-run").exit_code, 0);
+  EXPECT_EQ(run("reset-params --dry-run").exit_code, 0);
+}
+
+TEST_F(DeviceCommands, ABackupIsRestoredBitByBit) {
+  ASSERT_EQ(run("set-params " + design() + " x.feedback.k2=0.1234567 y.limits.jerk=333").exit_code, 0);
+  const nlohmann::json before = json("get-params");
+  ASSERT_EQ(run("backup " + file("backup.toml")).exit_code, 0);
+  EXPECT_EQ(run("reset-params").exit_code, 8) << "asks first, and nobody answers";
+  ASSERT_EQ(run("reset-params --save --yes").exit_code, 0);
+  EXPECT_EQ(run("diff-params --defaults").exit_code, 0);
+  ASSERT_EQ(run("restore " + file("backup.toml") + " --yes").exit_code, 0);
+  EXPECT_EQ(json("get-params"), before);
+  EXPECT_EQ(run("diff-params " + file("backup.toml")).exit_code, 0);
+}
+
+TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
+  EXPECT_EQ(run("enable x --yes").exit_code, 8) << "not fitted";
+  fit();
+  EXPECT_EQ(run("jog x 10").exit_code, 8) << "not enabled";
+  EXPECT_EQ(run("enable x").exit_code, 8) << "nobody answers the question";
+  ASSERT_EQ(run("enable x --yes").exit_code, 0);
+  EXPECT_EQ(run("save").exit_code, 8);
+  EXPECT_EQ(run("set-params x.feedback.k1=20").exit_code, 8);
+  const nlohmann::json moved = json("move x 5");
+  EXPECT_NEAR(moved["to"].get<double>(), 5.0, 0.01);
+  EXPECT_NEAR(json("move x -2 --relative")["to"].get<double>(), 3.0, 0.01);
+  EXPECT_EQ(run("jog z 10").exit_code, 2);
+  EXPECT_EQ(run("disable").exit_code, 0);
+  EXPECT_EQ(json("faults")["axes"][0]["fault"], "none");
+}
+
+TEST_F(DeviceCommands, ATriggerKeepsWhatWasBefore) {
+  fit();
+  ASSERT_EQ(run("enable x --yes").exit_code, 0);
+  ASSERT_EQ(
+      run("capture -o " + file("bump.csv") +
+          " --jog 1:0.2,50:0.4 --trigger 'w_ref_rad_s>10' --pre 0.1 --for 0.2 --channels u_V,x_mm,w_rad_s,d_hat_V")
+          .exit_code,
+      0);
+  const host::Record record = host::read_record(file("bump.csv"));
+  ASSERT_EQ(record.size(), 300u);
+  EXPECT_NEAR(std::stod(record.header.at("trigger_s")), 0.1, 1e-9);
+  EXPECT_LE(record.w_ref[99], 10.0);
+  EXPECT_GT(record.w_ref[100], 10.0);
+  EXPECT_EQ(record.extra.at(0).name, "d_hat_V");
+  const ProgramRun never = run("capture -o " + file("never.csv") + " --trigger 'x_mm>1e6' --wait 0.3");
+  EXPECT_EQ(never.exit_code, 7);
+  EXPECT_FALSE(std::filesystem::exists(file("never.csv")));
+}
+
+TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
+  std::thread puller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    board_.end(SIGKILL);
+  });
+  const ProgramRun capture = run("capture -o " + file("long.csv") + " --for 60");
+  puller.join();
+  EXPECT_EQ(capture.exit_code, 3) << capture.output;
+  EXPECT_FALSE(std::filesystem::exists(file("long.csv")));
+  EXPECT_EQ(run("info").exit_code, 3) << "nobody is there";
+}
+
+TEST_F(DeviceCommands, TellAboutTheBoard) {
+  const nlohmann::json info = json("info");
+  EXPECT_EQ(info["format"], "axis-board/1");
+  EXPECT_TRUE(info["simulated"].get<bool>());
+  EXPECT_EQ(info["axes"][0]["state"], "not fitted");
+  const nlohmann::json doctor = json("doctor");
+  for (const auto& check : doctor["checks"]) EXPECT_NE(check["result"], "bad") << check;
+  const nlohmann::json bench = json("bench --for 1");
+  EXPECT_EQ(bench["lost_rows"], 0);
+  EXPECT_GT(bench["capture_rows"], 0);
+  EXPECT_EQ(run("clear-faults").exit_code, 0);
+}
+
+TEST(DeviceOption, NamesWhatItTakes) {
+  const ProgramRun odd = run_axistool("info --device com3");
+  EXPECT_EQ(odd.exit_code, 2);
+  EXPECT_THAT(odd.output, AllOf(HasSubstr("usb:SERIAL"), HasSubstr("socket:PATH")));
+  EXPECT_THAT(run_axistool("info --device socket:/nowhere/at/all").output, HasSubstr("axistool sim"));
+}
+
+TEST(Completion, ScriptsAreValidAndKnowTheParameters) {
+  const ProgramRun bash = run_axistool("completion bash | bash -n && \"" AXISTOOL_PROGRAM "\" completion bash");
+  EXPECT_EQ(bash.exit_code, 0);
+  EXPECT_THAT(bash.output, AllOf(HasSubstr("set-params)"), HasSubstr("x.kalman.k11="), HasSubstr("--dry-run")));
+  EXPECT_THAT(run_axistool("completion zsh").output, HasSubstr("bashcompinit"));
+  EXPECT_THAT(run_axistool("completion fish").output, HasSubstr("__fish_seen_subcommand_from set-params"));
+  EXPECT_EQ(run_axistool("completion tcsh").exit_code, 2);
+}
+
+}  // namespace
