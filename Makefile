@@ -73,6 +73,13 @@ pil: firmware ## Processor in the loop: the image under QEMU against the host bu
 	ninja -C $(BUILD) -j $(JOBS) axis_pil
 	$(BUILD)/bin/axis_pil $(IMAGE)
 
+.PHONY: hil
+hil: ## Run the scenarios: the firmware around simulated drives (SCENARIO=files; records and reports in build/hil)
+	$(NEED) build
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	$(BUILD)/bin/axistool hil $(or $(SCENARIO),host/hil/scenarios/*.toml) -o $(BUILD)/hil
+
 .PHONY: cost
 cost: firmware ## Executed instructions of one control step, by number type and processor
 	$(NEED) build test

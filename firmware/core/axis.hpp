@@ -89,10 +89,11 @@ class Axis {
   /// Slows down to standstill within the limits.
   constexpr void stop() { generator_.stop(); }
 
-  /// The same after step_with(): takes the reference over from the interpolator.
-  constexpr void stop_interpolated() {
-    if (generator_.at_rest()) generator_.stop_from(preview_.newest());
-  }
+  /// The same after step_with(): takes the whole reference over.
+  constexpr void stop_interpolated() { generator_.stop_from(preview_.newest()); }
+
+  /// What the reference travelled in the last sample, kPreviewSamples ahead of the axis.
+  constexpr Increment leading_travel() const { return preview_.newest(); }
 
   /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
@@ -106,11 +107,24 @@ class Axis {
   constexpr bool is_at_rest() const { return generator_.at_rest() && preview_.position() == preview_.leading(); }
 
   /// One control period with the axis's own reference.
-  constexpr const AxisTelemetry<Scalar>& step() { return step_with(telemetry_.enabled ? generator_.next() : 0); }
+  constexpr const AxisTelemetry<Scalar>& step() { return follow(telemetry_.enabled ? generator_.next() : 0); }
 
-  /// One control period whose reference increment, for kPreviewSamples from now, comes from an interpolator that
-  /// coordinates several axes; |increment| < 2^62. The axis's own generator must be at rest.
+  /// The same with an increment on top, for kPreviewSamples from now, that comes from an interpolator which coordinates
+  /// several axes; |increment| < 2^61.
   constexpr const AxisTelemetry<Scalar>& step_with(Increment increment) {
+    return follow(telemetry_.enabled ? increment + generator_.next() : 0);
+  }
+
+  constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
+  constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
+
+  /// Opens the loop because of a fault that somebody else found.
+  constexpr void trip(AxisFault fault) { fail(fault); }
+
+ private:
+  using Traits = ScalarTraits<Scalar>;
+
+  constexpr const AxisTelemetry<Scalar>& follow(Increment increment) {
     if (!is_configured_) return telemetry_;
     if (!measure()) return telemetry_;
     if (!telemetry_.enabled) {
@@ -122,15 +136,6 @@ class Axis {
     control();
     return telemetry_;
   }
-
-  constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
-  constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
-
-  /// Opens the loop because of a fault that somebody else found.
-  constexpr void trip(AxisFault fault) { fail(fault); }
-
- private:
-  using Traits = ScalarTraits<Scalar>;
 
   constexpr bool measure() {
     const hal::EncoderReading encoder = hal_.encoder().read();

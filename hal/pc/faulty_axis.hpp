@@ -136,15 +136,21 @@ class FaultyAxis {
   void advance(double duration_s) {
     enable_.apply();
     if (defects.dac_stuck) dac_.write(dac_.commanded());
-    const double x = plant_.truth().x;
+    const double x = plant_.truth().x, w = plant_.truth().w;
     plant_.advance(duration_s);
-    if (defects.blocked) {
-      plant_.truth().x = plant_.truth().load_x = x;
-      plant_.truth().w = plant_.truth().load_w = 0.0;
-    }
+    if (defects.blocked) block(x, w, duration_s);
   }
 
  private:
+  /// Something gives way for a few milliseconds, then nothing moves.
+  void block(double x, double w, double duration_s) {
+    constexpr double kLeft = 0.6, kStanding = 0.01;  // of the speed a period later; rad/s (m/s)
+    const double slowed = std::abs(w) < kStanding ? 0.0 : kLeft * w;
+    sim::DriveState& truth = plant_.truth();
+    truth.w = truth.load_w = slowed;
+    truth.x = truth.load_x = x + (w + slowed) / 2.0 * plant_.data().lead * duration_s;
+  }
+
   sim::Plant& plant_;
   SimulatedAxis sound_;
   std::mt19937_64 noise_;

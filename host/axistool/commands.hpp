@@ -39,6 +39,7 @@ void add_doctor(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_completion(CLI::App& app);
 void add_udev_rule(CLI::App& app);
+void add_hil(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_diagnose(CLI::App& app);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/exit_codes.hpp"
@@ -45,13 +46,30 @@ void Machine::run_plants() {
   ++samples_;
 }
 
+std::array<firmware::Increment, kMachineAxes> Machine::runaway() {
+  std::array<firmware::Increment, kMachineAxes> added{};
+  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    if (defects.runaway_mm_s2[i] == 0.0) continue;
+    runaway_mm_s_[i] += defects.runaway_mm_s2[i] * period_s_;
+    const double counts = runaway_mm_s_[i] * period_s_ / plants_[i]->data().encoder_resolution;
+    constexpr double kMostCounts = 16'000.0;  // the references' range, motion_limits.hpp
+    added[i] = std::llround(std::clamp(counts, -kMostCounts, kMostCounts) * static_cast<double>(firmware::kOneCount));
+  }
+  return added;
+}
+
 void Machine::step() {
-  axes_.step(inputs());
+  if (defects.runaway_mm_s2 == decltype(defects.runaway_mm_s2){})
+    axes_.step(inputs());
+  else
+    axes_.step_with(runaway(), inputs());
   run_plants();
 }
 
 void Machine::step_with(const std::array<firmware::Increment, kMachineAxes>& increments) {
-  axes_.step_with(increments, inputs());
+  auto sum = runaway();
+  for (std::size_t i = 0; i < kMachineAxes; ++i) sum[i] += increments[i];
+  axes_.step_with(sum, inputs());
   run_plants();
 }
 

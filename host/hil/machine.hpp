@@ -30,6 +30,8 @@ struct BoardDefects {
   bool power_lost = false;      ///< amplifiers without power; the board's supply sinks below its threshold
   bool store_damaged = false;
   bool host_silent = false;  ///< no heart-beat any more
+  /// The interpolator adds this acceleration to its path, on and on; mm/s^2.
+  std::array<double, kMachineAxes> runaway_mm_s2{};
 };
 
 /// Deterministic: equal arguments and calls give equal bits. Not copyable, because the axes refer to their hardware.
@@ -53,6 +55,7 @@ class Machine {
   MachineGroup& axes() { return axes_; }
   const MachineGroup& axes() const { return axes_; }
   hal::pc::FaultyAxis& wires(std::size_t axis) { return *wires_[axis]; }
+  hal::pc::FaultyAxis const& wires(std::size_t axis) const { return *wires_[axis]; }
   const sim::Plant& plant(std::size_t axis) const { return *plants_[axis]; }
   double sample_period_s() const { return period_s_; }
   /// Since the machine was made.
@@ -62,6 +65,7 @@ class Machine {
 
  private:
   firmware::BoardInputs inputs();
+  std::array<firmware::Increment, kMachineAxes> runaway();
   void run_plants();
 
   double period_s_;
@@ -69,6 +73,7 @@ class Machine {
   std::array<std::unique_ptr<hal::pc::FaultyAxis>, kMachineAxes> wires_;
   MachineGroup axes_;
   hal::pc::SimulatedClock clock_;
+  std::array<double, kMachineAxes> runaway_mm_s_{};
   std::uint64_t samples_ = 0;
 };
 

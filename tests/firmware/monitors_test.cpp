@@ -118,6 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                            Watched w = moving_at(0.0f);
                            w.seen.control_V = -amount * kLimits.polarity_command_V;
                            w.seen.estimate.disturbance = 2.0f * w.seen.control_V;
+                           w.seen.estimate.velocity = 20.0f;
+                           w.seen.tachometer_velocity = 0.0f;
                            w.samples = firmware::kPolaritySamples;
                            return w;
                          }},
@@ -126,7 +128,17 @@ INSTANTIATE_TEST_SUITE_P(
                            Watched w = moving_at(0.0f);
                            w.seen.control_V = 5.0f;
                            w.seen.estimate.disturbance = 10.0f;
+                           w.seen.estimate.velocity = -20.0f;
                            w.samples = firmware::kPolaritySamples + (amount > 1.0f ? 0 : -1);
+                           return w;
+                         }},
+                    Case{"feedback_polarity_velocity", AxisFault::feedback_polarity,
+                         [](float amount) {
+                           Watched w = moving_at(0.0f);
+                           w.seen.control_V = 5.0f;
+                           w.seen.estimate.disturbance = 10.0f;
+                           w.seen.estimate.velocity = -amount * kLimits.disagreement_floor / 4.0f;
+                           w.samples = firmware::kPolaritySamples;
                            return w;
                          }},
                     Case{"saturation", AxisFault::saturation_too_long,

@@ -24,7 +24,7 @@ class AxisMonitors {
 
   /// Before the first sample of a self-test: nothing is known of the time before.
   constexpr void restart() {
-    disagreement_ = Scalar(0);
+    disagreement_ = last_velocity_ = Scalar(0);
     saturated_samples_ = reversed_samples_ = 0;
   }
 
@@ -32,7 +32,9 @@ class AxisMonitors {
   constexpr AxisFault watch_sensors(const AxisTelemetry<Scalar>& seen) {
     const Scalar measured = tachometer_fitted_ ? seen.tachometer_velocity : seen.estimate.velocity;
     const Scalar difference = Traits::times(seen.encoder_travel, velocity_per_count_) - measured;
-    if (magnitude(difference) > limits_.encoder_jump) return AxisFault::encoder_jump;
+    const Scalar expected = last_velocity_;
+    last_velocity_ = seen.estimate.velocity;
+    if (magnitude(difference) > limits_.encoder_jump) return which_jumped(difference + measured, measured, expected);
     disagreement_ = disagreement_ + (difference - disagreement_) * kFilterShare;
     if (magnitude(disagreement_) > limits_.disagreement_floor + limits_.disagreement_share * magnitude(measured))
       return AxisFault::encoder_tachometer_disagreement;
@@ -81,18 +83,28 @@ class AxisMonitors {
   constexpr void forget_high_water() { high_water_ = Scalar(0); }
 
  private:
+  /// Of two sensors that part within one sample, the one that left the estimate is the bad one.
+  static constexpr AxisFault which_jumped(Scalar encoder, Scalar tachometer, Scalar expected) {
+    return magnitude(encoder - expected) >= magnitude(tachometer - expected)
+               ? AxisFault::encoder_jump
+               : AxisFault::encoder_tachometer_disagreement;
+  }
+
   using Traits = ScalarTraits<Scalar>;
   static constexpr Scalar kFilterShare = Scalar(1.0f / (1 << kDisagreementShift));
 
   static constexpr Scalar magnitude(Scalar value) { return Traits::magnitude(value); }
 
-  /// A drive that accelerates against its command looks like a disturbance of twice that command; one that is blocked,
-  /// like a disturbance of once the command.
+  /// A drive that is connected the wrong way round runs against its command, and looks like a disturbance of twice that
+  /// command. Braking runs against it too, but by a disturbance of friction's size; a blocked drive has a disturbance
+  /// of once the command, and stands.
   constexpr bool is_reversed(const AxisTelemetry<Scalar>& seen) {
-    const Scalar disturbance = seen.estimate.disturbance;
-    const Scalar along = seen.control_V > Scalar(0) ? disturbance : Scalar(0) - disturbance;
-    const Scalar given = seen.saturated ? dac_limit_V_ : magnitude(seen.control_V);
-    if (along > given * Scalar(1.75f)) return ++reversed_samples_ >= kPolaritySamples;
+    const bool forward = seen.control_V > Scalar(0);
+    const auto along = [forward](Scalar value) { return forward ? value : Scalar(0) - value; };
+    const Scalar given = seen.saturated ? dac_limit_V_ : along(seen.control_V);
+    if (along(seen.estimate.disturbance) > given * Scalar(1.75f) &&
+        along(seen.estimate.velocity) < Scalar(0) - limits_.disagreement_floor * Scalar(0.25f))
+      return ++reversed_samples_ >= kPolaritySamples;
     reversed_samples_ = 0;
     return false;
   }
@@ -102,6 +114,7 @@ class AxisMonitors {
   Scalar dac_limit_V_{};
   Scalar disagreement_{};
   Scalar high_water_{};
+  Scalar last_velocity_{};
   std::int32_t saturated_samples_ = 0;
   std::int32_t reversed_samples_ = 0;
   bool tachometer_fitted_ = true;

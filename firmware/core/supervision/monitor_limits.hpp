@@ -27,7 +27,7 @@ struct MonitorLimits {
 /// tachometer's noise power, and a sixteenth of an encoder count a sample.
 inline constexpr int kDisagreementShift = 4;
 /// Samples in a row that a drive must seem to accelerate against its command.
-inline constexpr std::int32_t kPolaritySamples = 10;
+inline constexpr std::int32_t kPolaritySamples = 5;
 /// Samples that the inputs are watched before an axis is ready; three time constants of the filter above.
 inline constexpr std::int32_t kSelfTestSamples = 50;
 

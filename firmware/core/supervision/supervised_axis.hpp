@@ -72,17 +72,18 @@ class SupervisedAxis {
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) {
+    is_interpolated_ = false;
     axis_.step();
     supervise(outer);
   }
 
-  /// One control period with an interpolator's increment; a stopping axis goes its own way.
+  /// One control period with an interpolator's increment on top; a stopping axis goes its own way.
   constexpr void step_with(Increment increment, AxisFault outer = AxisFault::none) {
     if (state_ != SupervisorState::enabled) return step(outer);
     is_interpolated_ = true;
     axis_.step_with(increment);
-    const Increment travel = increment < 0 ? -increment : increment;
-    const bool is_too_fast = travel > fastest_ && outer == AxisFault::none;
+    const Increment travel = axis_.leading_travel();
+    const bool is_too_fast = (travel > fastest_ || travel < -fastest_) && outer == AxisFault::none;
     supervise(is_too_fast ? AxisFault::reference_out_of_limits : outer);
   }
 

@@ -54,6 +54,7 @@ std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& pa
       [](Telemetry& seen, float level) {
         seen.control_V = Scalar(level);
         seen.estimate.disturbance = Scalar(2.0f * level);
+        seen.estimate.velocity = Scalar(-100.0f);
       },
       motion));
   for (const std::int64_t sign : {1, -1}) {

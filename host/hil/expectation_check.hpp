@@ -1,0 +1,10 @@
+// Whether a run did what its scenario expects.
+#pragma once
+
+#include "host/hil/scenario_run.hpp"
+
+namespace host {
+
+CheckedExpectation check_expectation(const Expectation& expected, const ScenarioRun& run);
+
+}  // namespace host

@@ -1,0 +1,31 @@
+// The faults that can be injected into a machine, as one table: scenario files, the random tests and the documentation
+// use it.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "host/hil/machine.hpp"
+
+namespace host {
+
+struct InjectionInfo {
+  std::string_view kind;  ///< name in scenario files
+  std::string_view what;
+  std::string_view unit;  ///< of the value; "" where it has none
+  double usual = 0.0;     ///< value where a scenario gives none
+  double least = 0.0;     ///< smallest magnitude that must be found
+  bool of_board = false;  ///< concerns both axes
+  /// The faults that name this cause.
+  std::vector<firmware::AxisFault> named_by;
+  void (*apply)(Machine& machine, std::size_t axis, double value);
+  void (*heal)(Machine& machine, std::size_t axis);
+};
+
+std::span<const InjectionInfo> injections();
+
+/// nullptr for an unknown kind.
+const InjectionInfo* find_injection(std::string_view kind);
+
+}  // namespace host

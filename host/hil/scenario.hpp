@@ -1,0 +1,88 @@
+// A scenario: what is done to a machine, what goes wrong, and what must hold (`axis-scenario/1`).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/hil/injection.hpp"
+#include "host/hil/path.hpp"
+#include "host/identify/axis_parameters.hpp"
+
+namespace host {
+
+/// Where the controller's parameters come from.
+enum class Knowledge {
+  truth,       ///< designed from the drive as it is, its effects included where the board can compensate them
+  identified,  ///< commissioned by experiments on this drive: steps, jogs
+  model,       ///< a model file
+};
+
+struct ScenarioAxis {
+  sim::DriveDescription drive;
+  Knowledge knowledge = Knowledge::truth;
+  sim::DriveDescription believed;  ///< for Knowledge::model
+  bool zero_phase = true;
+  bool friction_feedforward = true;
+  bool disturbance_cancellation = false;
+  ReferenceLimits limits;
+  hal::pc::AxisWiring wiring;
+};
+
+enum class MoveKind { jog, move_to, stop, circle, square, enable, disable, clear };
+
+struct ScenarioMove {
+  double at_s = 0.0;
+  MoveKind kind = MoveKind::jog;
+  std::size_t axis = 0;      ///< not for paths
+  double speed_mm_s = 0.0;   ///< jog
+  double target_mm = 0.0;    ///< move_to
+  std::optional<Path> path;  ///< circle, square
+  PathLimits path_limits;
+};
+
+struct ScenarioFault {
+  double at_s = 0.0;
+  std::optional<double> until_s;  ///< healed then
+  const InjectionInfo* injection = nullptr;
+  std::size_t axis = 0;
+  double value = 0.0;
+};
+
+/// One thing that must hold: a fault by a time, a state at the end, or a bound on a signal between two times.
+struct Expectation {
+  std::size_t line = 0;
+  std::size_t axis = 0;
+  std::optional<firmware::AxisFault> fault;
+  std::optional<double> by_s;
+  std::optional<firmware::SupervisorState> state;
+  std::string signal;  ///< see kSignals; empty: none
+  double from_s = 0.0;
+  double to_s = 0.0;
+  std::optional<double> at_most, at_least;
+};
+
+/// Signals that expectations may bound; magnitudes count.
+inline constexpr std::array<std::string_view, 6> kSignals{"tracking_um",   "contour_um", "speed_rad_s",
+                                                          "disturbance_V", "command_V",  "position_mm"};
+
+struct Scenario {
+  std::string path;
+  std::string name;
+  std::string about;
+  std::uint64_t seed = 1;
+  double duration_s = 1.0;
+  std::array<ScenarioAxis, kMachineAxes> axes;
+  std::vector<ScenarioMove> moves;
+  std::vector<ScenarioFault> faults;
+  std::vector<Expectation> expectations;
+};
+
+/// Throws Failure(bad_input) naming file, line, field and remedy. Models named in it are read beside it.
+Scenario read_scenario(const std::string& path);
+Scenario parse_scenario(std::string_view text, const std::string& path);
+
+}  // namespace host

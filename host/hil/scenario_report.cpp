@@ -1,0 +1,213 @@
+#include "host/hil/scenario_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "host/identify/friction_law.hpp"
+#include "host/report/text_format.hpp"
+
+namespace host {
+
+namespace {
+
+std::string seconds(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3f}", *value) : std::string("–");
+}
+
+Table expectation_table(const ScenarioRun& run) {
+  Table table;
+  table.title = "Expectations";
+  table.headings = {"what must hold", "found", ""};
+  for (const CheckedExpectation& checked : run.expectations)
+    table.rows.push_back({checked.text, checked.found, checked.holds ? "holds" : "FAILS"});
+  return table;
+}
+
+Table stop_table(const ScenarioRun& run) {
+  Table table;
+  table.title = "Faults and stops";
+  table.caption = "Reaction: from the injection to the fault. Stop: from the fault until the axis stands, outputs off.";
+  table.headings = {"at, s", "axis", "fault", "reaction, s", "stop, s", "distance, mm", "cause"};
+  for (const StopEvent& stop : run.stops) {
+    const auto& info = firmware::fault_info(stop.fault);
+    table.rows.push_back({fmt::format("{:.3f}", stop.at_s), std::string(kAxisNames[stop.axis]), info.name,
+                          seconds(stop.reaction_s), seconds(stop.standing_s), fmt::format("{:.3f}", stop.distance_mm),
+                          info.cause});
+  }
+  return table;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+/// As the paper's Fig. 11: tracking errors of both axes, contour error.
+TimePlot error_plot(const ScenarioRun& run) {
+  TimePlot plot;
+  plot.title = run.contour_um.empty() ? "Tracking errors" : "Tracking and contour errors (as Fig. 11)";
+  plot.caption = "Reference less encoder.";
+  plot.t_s = run.records[0].t_s;
+  for (std::size_t i = 0; i < kMachineAxes; ++i)
+    plot.panels.push_back(
+        {fmt::format("axis {}", kAxisNames[i]), "µm", {{"tracking error", SeriesRole::residual, run.tracking_um[i]}}});
+  if (!run.contour_um.empty())
+    plot.panels.push_back({"contour error", "µm", {{"contour error", SeriesRole::before, run.contour_um}}});
+  for (const StopEvent& stop : run.stops)
+    plot.shaded.push_back({stop.at_s, stop.at_s + stop.standing_s.value_or(0.05)});
+  return plot;
+}
+
+/// As the paper's Fig. 9: speed, command and the disturbance that the Kalman filter sees.
+TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
+  const Record& record = run.records[axis];
+  TimePlot plot;
+  plot.title = fmt::format("Axis {}: motion and disturbance (as Fig. 9)", kAxisNames[axis]);
+  plot.caption = "The Kalman filter's disturbance is what friction feed-forward leaves over.";
+  plot.t_s = record.t_s;
+  plot.panels = {
+      {"position", "mm", {{"encoder", SeriesRole::measured, record.x}, {"reference", SeriesRole::model, record.x_ref}}},
+      {"speed",
+       "rad/s",
+       {{"tachometer", SeriesRole::measured, record.w}, {"reference", SeriesRole::model, record.w_ref}}},
+      {"command",
+       "V",
+       {{"D/A converter", SeriesRole::other, record.u_V},
+        {"disturbance", SeriesRole::residual, run.disturbance_V[axis]}}}};
+  return plot;
+}
+
+/// The path that was travelled, and where it deviates.
+ScatterPlot plane_plot(const ScenarioRun& run) {
+  ScatterPlot plot;
+  plot.title = "The path in the plane";
+  plot.x = {"x", "mm"};
+  plot.y = {"y", "mm"};
+  const auto every = [](const std::vector<double>& values) {
+    std::vector<double> some;
+    for (std::size_t k = 0; k < values.size(); k += 4) some.push_back(values[k]);
+    return some;
+  };
+  plot.series = {
+      {"reference",
+       SeriesRole::model,
+       SeriesStyle::line,
+       every(run.records[0].x_ref),
+       every(run.records[1].x_ref),
+       {},
+       {}},
+      {"encoders", SeriesRole::measured, SeriesStyle::line, every(run.records[0].x), every(run.records[1].x), {}, {}}};
+  return plot;
+}
+
+/// As the paper's Fig. 10: what the controller believes of friction, over what the drive's friction is.
+ScatterPlot friction_plot(const Scenario& scenario, const ScenarioRun& run, std::size_t axis) {
+  ScatterPlot plot;
+  plot.title = fmt::format("Axis {}: friction curve (as Fig. 10)", kAxisNames[axis]);
+  plot.x = {"speed", "rad/s"};
+  plot.y = {"friction torque", "Nm"};
+  const auto curve = [](const FrictionLaw& law, const char* name, SeriesRole role) {
+    ScatterSeries series{name, role, SeriesStyle::line, {}, {}, {}, {}};
+    for (int step = -200; step <= 200; ++step) {
+      const double part = step / 200.0;
+      const double speed = 63.0 * part * std::abs(part);  // closer together where the curve bends
+      series.x.push_back(speed);
+      series.y.push_back(step == 0 ? std::nan("") : law.effort(speed));
+    }
+    return series;
+  };
+  plot.series = {curve(friction_law(scenario.axes[axis].drive), "the drive's", SeriesRole::other),
+                 curve(friction_law(run.believed[axis]), "identified", SeriesRole::model)};
+  return plot;
+}
+
+Verdict verdict_of(const Scenario& scenario, const ScenarioRun& run) {
+  Verdict verdict;
+  verdict.tone = run.holds() ? Tone::good : Tone::bad;
+  verdict.label = run.expectations.empty() ? "ran" : (run.holds() ? "holds" : "fails");
+  const auto held = std::ranges::count_if(run.expectations, &CheckedExpectation::holds);
+  verdict.headline = fmt::format("{} of {} expectations hold.", held, run.expectations.size());
+  if (!scenario.about.empty()) verdict.sentences.push_back(scenario.about);
+  for (const StopEvent& stop : run.stops)
+    verdict.sentences.push_back(fmt::format("Axis {} stopped at {:.3f} s: {}.", kAxisNames[stop.axis], stop.at_s,
+                                            firmware::fault_info(stop.fault).cause));
+  return verdict;
+}
+
+Facts figures(const Scenario& scenario, const ScenarioRun& run) {
+  Facts facts;
+  facts.title = "Figures";
+  facts.items = {
+      {"simulated", fmt::format("{:g} s", run.simulated_s)},
+      {"seed", fmt::format("{}", scenario.seed)},
+      {"largest tracking error", fmt::format("x {} µm, y {} µm", format_value(largest(run.tracking_um[0]), 3),
+                                             format_value(largest(run.tracking_um[1]), 3))}};
+  if (!run.contour_um.empty())
+    facts.items.emplace_back("largest contour error", format_value(largest(run.contour_um), 3) + " µm");
+  return facts;
+}
+
+}  // namespace
+
+Report scenario_report(const Scenario& scenario, const ScenarioRun& run) {
+  Report report(scenario.name, scenario.path);
+  report.verdict(verdict_of(scenario, run));
+  report.section("What was expected, and what happened");
+  if (!run.expectations.empty()) report.add(expectation_table(run));
+  if (!run.stops.empty()) report.add(stop_table(run));
+  report.add(figures(scenario, run));
+  report.add(error_plot(run));
+  if (!run.contour_um.empty()) report.add(plane_plot(run));
+  report.section("Each axis");
+  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    report.add(motion_plot(run, i));
+    if (scenario.axes[i].knowledge == Knowledge::identified) report.add(friction_plot(scenario, run, i));
+  }
+  return report;
+}
+
+nlohmann::json scenario_json(const Scenario& scenario, const ScenarioRun& run) {
+  nlohmann::json document = {
+      {"format", "axis-hil/1"}, {"scenario", scenario.path},      {"name", scenario.name},
+      {"seed", scenario.seed},  {"simulated_s", run.simulated_s}, {"times_real_time", run.times_real_time()},
+      {"holds", run.holds()}};
+  for (std::size_t i = 0; i < kMachineAxes; ++i)
+    document["axes"][std::string(kAxisNames[i])] = {{"tracking_um", largest(run.tracking_um[i])},
+                                                    {"following_high_water_um", run.high_water_um[i]}};
+  if (!run.contour_um.empty()) document["contour_um"] = largest(run.contour_um);
+  document["expectations"] = nlohmann::json::array();
+  for (const CheckedExpectation& checked : run.expectations)
+    document["expectations"].push_back({{"what", checked.text}, {"found", checked.found}, {"holds", checked.holds}});
+  document["stops"] = nlohmann::json::array();
+  const auto optional = [](const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  for (const StopEvent& stop : run.stops) {
+    const auto& info = firmware::fault_info(stop.fault);
+    document["stops"].push_back({{"axis", kAxisNames[stop.axis]},
+                                 {"fault", info.name},
+                                 {"number", static_cast<int>(stop.fault)},
+                                 {"cause", info.cause},
+                                 {"remedy", info.remedy},
+                                 {"at_s", stop.at_s},
+                                 {"reaction_s", optional(stop.reaction_s)},
+                                 {"standing_s", optional(stop.standing_s)},
+                                 {"distance_mm", stop.distance_mm}});
+  }
+  return document;
+}
+
+std::string scenario_text(const Scenario& scenario, const ScenarioRun& run, const Terminal& terminal) {
+  std::string text =
+      fmt::format("{}: {:g} s simulated, {:.0f} × real time\n", scenario.name, run.simulated_s, run.times_real_time());
+  if (!run.stops.empty()) text += terminal_table(stop_table(run), terminal) + "\n";
+  if (!run.expectations.empty()) text += terminal_table(expectation_table(run), terminal) + "\n";
+  for (const auto& [what, value] : figures(scenario, run).items) text += fmt::format("{}: {}\n", what, value);
+  return text;
+}
+
+}  // namespace host

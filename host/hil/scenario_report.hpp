@@ -1,0 +1,18 @@
+// What a scenario's run shows: report, JSON, text for the terminal.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "host/hil/scenario_run.hpp"
+#include "host/report/report.hpp"
+#include "host/report/terminal.hpp"
+
+namespace host {
+
+Report scenario_report(const Scenario& scenario, const ScenarioRun& run);
+/// "axis-hil/1".
+nlohmann::json scenario_json(const Scenario& scenario, const ScenarioRun& run);
+std::string scenario_text(const Scenario& scenario, const ScenarioRun& run, const Terminal& terminal);
+
+}  // namespace host

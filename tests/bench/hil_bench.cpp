@@ -1,0 +1,20 @@
+// Speed of the whole machine: two axes with all monitors and captures around two simulated drives.
+#include <benchmark/benchmark.h>
+
+#include "host/hil/scenario_run.hpp"
+
+namespace {
+
+void hil_scenario(benchmark::State& state, const char* name) {
+  host::Scenario scenario = host::read_scenario(std::string(AXIS_TEST_DATA "/../../host/hil/scenarios/") + name);
+  for (auto& axis : scenario.axes)
+    axis.knowledge = host::Knowledge::truth;  // the run, not the identification before it
+  for (auto _ : state) benchmark::DoNotOptimize(host::run_scenario(scenario));
+  state.counters["x_real_time"] =
+      benchmark::Counter(scenario.duration_s, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK_CAPTURE(hil_scenario, circle, "circle.toml")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(hil_scenario, worn_machine, "worn-machine.toml")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(hil_scenario, emergency_stop, "fault-emergency-stop.toml")->Unit(benchmark::kMillisecond);
+
+}  // namespace
