@@ -25,7 +25,6 @@ void add_all_commands(CLI::App& app) {
   add_flash(app);
   add_info(app);
   add_list(app);
-  add_udev_rule(app);
   add_hil(app);
   add_parameters(app);
   add_get_params(app);
