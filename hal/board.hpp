@@ -10,13 +10,14 @@
 #include "hal/emergency_stop.hpp"
 #include "hal/flash.hpp"
 #include "hal/limit_inputs.hpp"
+#include "hal/supply.hpp"
 #include "hal/usb_hid.hpp"
 
 namespace hal {
 
 /// Contract: while an object of type ControlShutOut lives, the control interrupt does not run; they nest, and live for
 /// microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells the
-/// watchdog that the processor is about to stand still for as long as two erases of a sector may last; `end_stall`
+/// watchdog that the processor is about to stand still for as long as the erase of a sector may last; `end_stall`
 /// makes it quick again. `restart` starts the program anew, and may return before it does.
 template <typename T>
 concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
@@ -26,6 +27,7 @@ concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
   { board.axis(index) } -> std::same_as<typename T::AxisType&>;
   requires LimitInputs<std::remove_reference_t<decltype(board.axis(index).limits())>>;
   requires EmergencyStop<std::remove_reference_t<decltype(board.emergency_stop())>>;
+  requires Supply<std::remove_reference_t<decltype(board.supply())>>;
   requires Clock<std::remove_reference_t<decltype(board.clock())>>;
   requires UsbHid<std::remove_reference_t<decltype(board.usb())>>;
   requires Flash<std::remove_reference_t<decltype(board.parameter_flash())>>;

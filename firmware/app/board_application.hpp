@@ -38,11 +38,7 @@ class BoardApplication {
 
   void control_period() {
     const std::uint32_t now_us = board_.clock().now_us();
-    BoardInputs inputs;
-    inputs.now_us = now_us;
-    inputs.emergency_stop = board_.emergency_stop().is_pressed();
-    inputs.store_damaged = !store_is_usable();
-    axes_.step(inputs);
+    axes_.step({now_us, board_.emergency_stop().is_pressed(), board_.supply().is_low(), !store_is_usable()});
     capture_.take(axes_);
     note_timing(now_us);
   }

@@ -21,7 +21,7 @@ class CaptureStream {
   /// While the control interrupt is shut out. At least one channel and at most kWordsPerReport, every >= 1.
   void start(const CaptureRequest& request) {
     channels_ = request.channels;
-    words_ = static_cast<std::size_t>(std::popcount(channels_[0]) + std::popcount(channels_[1]));
+    words_ = request.words();
     every_ = request.every;
     until_next_ = 1;
     rows_taken_ = 0;

@@ -35,7 +35,9 @@ class Fixed {
     if (value <= -kLimit) return from_raw(kLeast);
     const Real scaled = value * kOne;
     constexpr Real kHalf = static_cast<Real>(0.5f);
-    return from_raw(saturate(static_cast<std::int64_t>(scaled < Real(0) ? scaled - kHalf : scaled + kHalf)));
+    // A float this large has no fraction to round up; converting it to 64 bits would be a library call in double.
+    using Whole = std::conditional_t<sizeof(Real) == sizeof(float), std::int32_t, std::int64_t>;
+    return from_raw(saturate(static_cast<Whole>(scaled < Real(0) ? scaled - kHalf : scaled + kHalf)));
   }
 
   constexpr std::int32_t raw() const { return raw_; }

@@ -28,6 +28,7 @@ class SimulatedBoard {
 
   SimulatedAxis& axis(std::size_t index) { return index == 0 ? x_ : y_; }
   SimulatedEmergencyStop& emergency_stop() { return stop_; }
+  SimulatedSupply& supply() { return supply_; }
   SimulatedClock& clock() { return clock_; }
   SimulatedUsb& usb() { return usb_; }
   SimulatedFlash& parameter_flash() { return flash_; }
@@ -52,6 +53,7 @@ class SimulatedBoard {
   std::array<sim::Plant, 2> plants_;
   SimulatedAxis x_, y_;
   SimulatedEmergencyStop stop_;
+  SimulatedSupply supply_;
   SimulatedClock clock_;
   SimulatedUsb usb_{16};
   SimulatedFlash flash_{2, 4096, 4};

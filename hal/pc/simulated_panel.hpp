@@ -1,10 +1,11 @@
-// What the simulated board shares between its axes: time and the emergency stop.
+// What the simulated board shares between its axes: time, emergency stop, supply.
 #pragma once
 
 #include <cstdint>
 
 #include "hal/clock.hpp"
 #include "hal/emergency_stop.hpp"
+#include "hal/supply.hpp"
 
 namespace hal::pc {
 
@@ -28,7 +29,17 @@ class SimulatedEmergencyStop {
   bool pressed_ = false;
 };
 
+class SimulatedSupply {
+ public:
+  void set_low(bool is_low) { is_low_ = is_low; }
+  bool is_low() const { return is_low_; }
+
+ private:
+  bool is_low_ = false;
+};
+
 static_assert(Clock<SimulatedClock>);
 static_assert(EmergencyStop<SimulatedEmergencyStop>);
+static_assert(Supply<SimulatedSupply>);
 
 }  // namespace hal::pc

@@ -16,6 +16,8 @@ class ParameterFlash {
  public:
   ParameterFlash(FlashInterface& registers, std::byte* first_sector) : registers_(registers), memory_(first_sector) {}
 
+  static constexpr std::uintptr_t kFirstAddress = 0x080C0000;  ///< of sector 10, table 5
+
   std::size_t sector_count() const { return 2; }
   std::size_t sector_size() const { return 128 * 1024; }
   std::size_t program_size() const { return sizeof(std::uint32_t); }

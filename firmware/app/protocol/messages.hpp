@@ -204,6 +204,14 @@ struct CaptureRequest {
   std::array<std::uint16_t, 2> channels{};  ///< for each axis: bit n is channel n; up to kWordsPerReport in all
   std::uint16_t every = 1;                  ///< control periods from one row to the next, at least 1
   std::uint16_t reserved = 0;
+
+  /// Words of a row.
+  constexpr std::size_t words() const {
+    std::size_t count = 0;
+    for (const unsigned mask : channels)
+      for (unsigned left = mask; left != 0; left &= left - 1) ++count;
+    return count;
+  }
 };
 
 struct CaptureReply {

@@ -265,10 +265,8 @@ class ProtocolServer {
   static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxisCount == 0; }
 
   Status start_capture(const CaptureRequest& request) {
-    const unsigned x = request.channels[0], y = request.channels[1];
-    const int words = std::popcount(x) + std::popcount(y);
-    const bool has_unknown = ((x | y) >> kChannels) != 0;
-    if (words == 0 || words > static_cast<int>(kWordsPerReport) || has_unknown || request.every == 0)
+    const bool has_unknown = ((request.channels[0] | request.channels[1]) >> kChannels) != 0;
+    if (request.words() == 0 || request.words() > kWordsPerReport || has_unknown || request.every == 0)
       return Status::malformed;
     app_.start_capture(request);
     return Status::ok;
@@ -285,13 +283,14 @@ class ProtocolServer {
   Status restart() {
     if (app_.any_enabled()) return Status::drive_enabled;
     restart_wanted_ = true;
-    restart_asked_us_ = app_.board().clock().now_us();
+    restart_asked_at_ = app_.control_periods();
     return Status::ok;
   }
 
   void restart_when_the_reply_is_gone() {
-    constexpr std::uint32_t kLongestWay_us = 20'000;  // through the queue and over the wire
-    if (app_.board().clock().now_us() - restart_asked_us_ < kLongestWay_us) return;
+    // 20 ms: through the queue and over the wire.
+    const std::uint32_t longest_way = static_cast<std::uint32_t>(app_.active().template get<"control.rate">()) / 50;
+    if (app_.control_periods() - restart_asked_at_ < longest_way) return;
     restart_wanted_ = false;
     app_.board().restart();
   }
@@ -322,7 +321,7 @@ class ProtocolServer {
   bool reply_waits_ = false;
   bool samples_wait_ = false;
   bool restart_wanted_ = false;
-  std::uint32_t restart_asked_us_ = 0;
+  std::uint32_t restart_asked_at_ = 0;
   std::uint16_t samples_sent_ = 0;
   std::uint32_t reports_ = 0;
   std::uint32_t rejected_ = 0;

@@ -12,6 +12,8 @@ namespace {
 constexpr std::uint32_t kTimer2Function = 1, kTimer5Function = 2, kSpi1Function = 5, kUsart1Function = 7,
                         kUsbFunction = 10;
 
+constexpr std::uint32_t kControlPrescaler = 8;  // 10.5 MHz: 250 Hz still fit 16 bits
+
 void connect_pins() {
   pins::dac_not_clear().make_output(false);  // the converter's own way to 0 V, whatever it holds
   pins::enable_x().make_output(false);
@@ -54,14 +56,17 @@ bool Board::start() {
   return clocks_run && converter_answers;
 }
 
-void Board::start_control(std::uint32_t rate_Hz) {
-  constexpr std::uint32_t kPrescaler = 8;  // 10.5 MHz: 250 Hz still fit 16 bits
+void Board::set_control_rate(std::uint32_t rate_Hz) {
+  timer3().ARR = kApb1TimerClock_Hz / kControlPrescaler / rate_Hz - 1;
+  timer3().EGR = Timer::kUpdate;  // a count beyond the new end would run on to 65535
+}
+
+void Board::start_control() {
   constexpr std::uint8_t kPriority = 1;
   start_tachometer_conversions(adc1(), adc_common_control(), dma2(), samples_);
   hal::cortex_m::enable_interrupt(kDma2Stream0Interrupt, kPriority);
   Timer& timer = timer3();
-  timer.PSC = kPrescaler - 1;
-  timer.ARR = kApb1TimerClock_Hz / kPrescaler / rate_Hz - 1;
+  timer.PSC = kControlPrescaler - 1;
   timer.CR2 = Timer::kTriggerOnUpdate;
   timer.EGR = Timer::kUpdate;
   timer.CR1 = Timer::kEnable;

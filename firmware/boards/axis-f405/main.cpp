@@ -1,6 +1,6 @@
-// The axis board: control interrupt, supervision, service port.
-#include "firmware/app/liveness.hpp"
-#include "firmware/boards/axis-f405/control.hpp"
+// The axis board's background: protocol, supervision, service port.
+#include "firmware/app/protocol/server.hpp"
+#include "firmware/boards/axis-f405/application.hpp"
 #include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/stack_use.hpp"
@@ -9,27 +9,22 @@ namespace firmware::boards {
 
 namespace {
 
-constexpr std::uint32_t kControlRate_Hz = 1000;
-constexpr std::uint32_t kWatchdog_ms = 50;
-
-constinit Liveness liveness;
-
 /// Shows the state of the axes; what acts on them runs in the control interrupt.
 void supervise() {
-  bool fault = board().emergency_stop().is_pressed();
-  for (std::size_t i = 0; i < kAxes; ++i) fault = fault || axis_fault(i) != AxisFault::none;
-  board().show(true, fault);
+  bool fault = board.emergency_stop().is_pressed() || !application.store_is_usable();
+  for (std::size_t i = 0; i < kAxisCount; ++i) fault = fault || application.axes()[i].fault() != AxisFault::none;
+  board.show(true, fault);
   liveness.supervisor_ran();
 }
 
 /// Letters on the service port: 'r' repeats the boot report, 'u' tells the use of stack and time.
 void serve(const LastRun& last_run, ImageState image) {
   std::byte letter{};
-  if (!board().serial().receive(letter)) return;
-  TextWriter out(board().serial());
+  if (!board.serial().receive(letter)) return;
+  TextWriter out(board.serial());
   switch (static_cast<char>(letter)) {
     case 'r':
-      report_boot(board().serial(), last_run, image);
+      report_boot(board.serial(), last_run, image);
       break;
     case 'u':
       out << "stack: used " << stack_used_bytes() << " of " << stack_size_bytes() << " bytes, control periods "
@@ -50,36 +45,31 @@ void serve(const LastRun& last_run, ImageState image) {
 
 }  // namespace firmware::boards
 
-extern "C" void control_interrupt() {
-  using namespace firmware::boards;
-  board().acknowledge_control();
-  control_period();
-  liveness.control_ran();
-  LastState& last = survival_record().running;
-  last.control_periods = liveness.control_periods();
-  last.supervisor_rounds = liveness.supervisor_rounds();
-}
-
-extern "C" void usb_interrupt() { firmware::boards::board().usb().handle_interrupt(); }
+extern "C" void usb_interrupt() { firmware::boards::board.usb().handle_interrupt(); }
 
 extern "C" [[noreturn]] void run_board() {
   using namespace firmware::boards;
-  const bool periphery_works = board().start();
+  const bool periphery_works = board.start();
   const LastRun last_run = take_over_survival_record(read_reset_cause());
   arm_fault_detection();
   using firmware::ImageState;
   const ImageState image = verify_this_image();
-  report_boot(board().serial(), last_run, image);
-  if (!periphery_works) TextWriter(board().serial()) << "periphery: the clock or the D/A converter does not start\n";
+  report_boot(board.serial(), last_run, image);
+  if (!periphery_works) TextWriter(board.serial()) << "periphery: the clock or the D/A converter does not start\n";
   if (!periphery_works || image != ImageState::whole) stay_safe(last_run, image);
   survival_record().watchdog_armed = 1;
-  board().start_control(kControlRate_Hz);
-  board().watchdog().start(kWatchdog_ms);
-  if (!board().start_usb()) TextWriter(board().serial()) << "periphery: the USB controller does not answer\n";
+  application.start();
+  const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
+                                 false};
+  firmware::ProtocolServer<Application> server(application, this_image(), boot);
+  board.start_control();
+  board.start_watchdog();
+  if (!board.start_usb()) TextWriter(board.serial()) << "periphery: the USB controller does not answer\n";
   for (;;) {
     supervise();
-    if (liveness.may_feed()) board().watchdog().feed();
-    board().usb().poll();
+    if (liveness.may_feed()) board.feed_watchdog();
+    board.usb().poll();
+    server.poll(board.usb(), {stack_used_bytes(), stack_size_bytes()});
     serve(last_run, image);
   }
 }

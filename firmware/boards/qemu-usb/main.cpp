@@ -12,6 +12,7 @@
 #include "firmware/boards/qemu-usb/memory_flash.hpp"
 #include "firmware/boards/qemu-usb/report_cable.hpp"
 #include "hal/board.hpp"
+#include "hal/cortex_m/control_shut_out.hpp"
 #include "hal/cortex_m/registers.hpp"
 #include "hal/stm32f4/usart_port.hpp"
 
@@ -29,23 +30,15 @@ class EmulatedBoard {
  public:
   using AxisType = ValueAxis;
 
-  class ControlShutOut {
-   public:
-    ControlShutOut() {
-      asm volatile("mrs %0, primask" : "=r"(before_));
-      asm volatile("cpsid i" ::: "memory");
-    }
-    ~ControlShutOut() { asm volatile("msr primask, %0" ::"r"(before_) : "memory"); }
-    ControlShutOut(const ControlShutOut&) = delete;
-    ControlShutOut& operator=(const ControlShutOut&) = delete;
-
-   private:
-    std::uint32_t before_ = 0;
-  };
+  using ControlShutOut = hal::cortex_m::ControlShutOut;
 
   /// No button is wired.
   struct Stop {
     bool is_pressed() const { return false; }
+  };
+
+  struct Supply {
+    bool is_low() const { return false; }
   };
 
   /// A control period is its step: nothing here is quicker.
@@ -55,6 +48,7 @@ class EmulatedBoard {
 
   ValueAxis& axis(std::size_t index) { return axes_[index]; }
   Stop& emergency_stop() { return stop_; }
+  Supply& supply() { return supply_; }
   Clock& clock() { return clock_; }
   BoardEnd<hal::stm32f4::UsartPort>& usb() { return usb_; }
   MemoryFlash& parameter_flash() { return flash_; }
@@ -72,6 +66,7 @@ class EmulatedBoard {
  private:
   std::array<ValueAxis, kAxisCount> axes_;
   Stop stop_;
+  Supply supply_;
   Clock clock_;
   BoardEnd<hal::stm32f4::UsartPort> usb_{serial};
   MemoryFlash flash_{flash_cells};
