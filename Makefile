@@ -73,6 +73,13 @@ pil: firmware ## Processor in the loop: the image under QEMU against the host bu
 	ninja -C $(BUILD) -j $(JOBS) axis_pil
 	$(BUILD)/bin/axis_pil $(IMAGE)
 
+.PHONY: sim
+sim: ## Run a simulated board for `axistool --device sim` (OPTIONS, for example OPTIONS='--x my-model.toml')
+	$(NEED) build
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	$(BUILD)/bin/axistool sim $(OPTIONS)
+
 .PHONY: hil
 hil: ## Run the scenarios: the firmware around simulated drives (SCENARIO=files; records and reports in build/hil)
 	$(NEED) build

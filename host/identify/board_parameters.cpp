@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numbers>
+#include <utility>
 
 #include "firmware/app/parameters/parameter_table.hpp"
 #include "host/identify/friction_law.hpp"
@@ -22,6 +24,22 @@ std::string value_text(const firmware::ParameterInfo& info, double value) {
   std::string number = fmt::format("{:.9g}", value);
   if (number.find_first_of(".en") == std::string::npos) number += ".0";
   return number;
+}
+
+/// The monitors' initial values are for a rotary drive with a screw; a linear drive's are those of the same machine
+/// seen from its table: lengths in m, and the paper's 10 mm a turn for what is a speed.
+void append_monitors(bool rotary, std::vector<BoardParameter>& list) {
+  constexpr double kLead_m_per_rad = 0.010 / (2.0 * std::numbers::pi);
+  const double length = rotary ? 1.0 : 1e-3;
+  const double speed = rotary ? 1.0 : kLead_m_per_rad;
+  for (const auto& [name, unit] : {std::pair{"monitor.following_error", length},
+                                   {"monitor.following_error_per_speed", length / speed},
+                                   {"monitor.disagreement", speed},
+                                   {"monitor.encoder_jump", speed},
+                                   {"monitor.overspeed", speed}}) {
+    const auto* const info = std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name);
+    list.push_back({name, static_cast<double>(info->initial) * unit});
+  }
 }
 
 }  // namespace
@@ -78,6 +96,7 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
   list.push_back({"limits.velocity", limits.velocity});
   list.push_back({"limits.acceleration", limits.acceleration});
   list.push_back({"limits.jerk", limits.jerk});
+  append_monitors(rotary, list);
   return list;
 }
 

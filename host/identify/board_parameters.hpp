@@ -23,7 +23,8 @@ struct BoardParameter {
   double value;      ///< 0 or 1 for a switch
 };
 
-/// Drive, sampled model (7), Kalman gain (43), feedback (50), friction feed-forward (19), limits; all compensations on.
+/// Drive, sampled model (7), Kalman gain (43), feedback (50), friction feed-forward (19), limits, monitors that depend
+/// on the kind of drive; all compensations on.
 /// Without a tachometer the second column of the Kalman gain is zero; without friction effects the levels are zero. The
 /// tachometer's gain and offset are the board's and do not occur.
 std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design,
