@@ -17,7 +17,8 @@ class SimulatedBoard {
  public:
   using AxisType = SimulatedAxis;
   struct ControlShutOut {
-    ControlShutOut() {}  // program and control period take turns in one thread
+    // Program and control period take turns in one thread.
+    ControlShutOut() {}  // NOLINT(modernize-use-equals-default): a guard that does nothing would be an unused variable
   };
 
   /// As many reports as TinyUSB's port queues, and the F405's two sectors; of these only as much as a set can need.

@@ -28,7 +28,7 @@ constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
   m.polarity_command_V = v.get<"monitor.polarity_command">();
   m.travel_min_counts = whole_counts(v.get<"monitor.travel_min">(), v.get<"drive.encoder_resolution">());
   m.travel_max_counts = whole_counts(v.get<"monitor.travel_max">(), v.get<"drive.encoder_resolution">());
-  m.saturation_samples = static_cast<std::int32_t>(v.get<"monitor.saturation_time">() * samples_a_second + 0.5F);
+  m.saturation_samples = ScalarTraits<float>::nearest_product(v.get<"monitor.saturation_time">(), samples_a_second);
   m.capture_stride = capture_stride(samples_a_second);
   return m;
 }

@@ -36,15 +36,16 @@ inline constexpr std::size_t kBoardRows =
     static_cast<std::size_t>(std::ranges::count(kRows, ParameterScope::board, &ParameterInfo::scope));
 inline constexpr std::size_t kAxisRows = kRows.size() - kBoardRows;
 
-/// The rows without their texts, which therefore stay out of the image.
-inline constexpr std::array<ParameterRule, kRows.size()> kRules = [] {
+constexpr std::array<ParameterRule, kRows.size()> rules_of_rows() {
   std::array<ParameterRule, kRows.size()> rules{};
-  for (std::size_t i = 0; i < kRows.size(); ++i) {
-    const ParameterInfo& row = kRows[i];
-    rules[i] = {row.id, row.type, row.change, row.minimum, row.maximum, row.initial};
-  }
+  std::ranges::transform(kRows, rules.begin(), [](const ParameterInfo& row) {
+    return ParameterRule{row.id, row.type, row.change, row.minimum, row.maximum, row.initial};
+  });
   return rules;
-}();
+}
+
+/// The rows without their texts, which therefore stay out of the image.
+inline constexpr std::array<ParameterRule, kRows.size()> kRules = rules_of_rows();
 
 /// A name as template argument.
 template <std::size_t size>
@@ -82,21 +83,21 @@ inline constexpr std::size_t kParameterCount = parameter_rows::kBoardRows + kAxi
 
 /// The row of the value at this place, as index into kParameters.
 constexpr std::size_t row_at(std::size_t place) {
-  using namespace parameter_rows;
+  using parameter_rows::kAxisRows, parameter_rows::kBoardRows;
   return place < kBoardRows ? place : kBoardRows + (place - kBoardRows) % kAxisRows;
 }
 
 constexpr const ParameterRule& rule_at(std::size_t place) { return parameter_rows::kRules[row_at(place)]; }
 
 constexpr ParameterKey key_at(std::size_t place) {
-  using namespace parameter_rows;
+  using parameter_rows::kAxisRows, parameter_rows::kBoardRows;
   const std::uint16_t id = rule_at(place).id;
   return place < kBoardRows ? ParameterKey::of_board(id) : ParameterKey::of_axis((place - kBoardRows) / kAxisRows, id);
 }
 
 /// Empty for a key that this table does not have.
 constexpr std::optional<std::size_t> place_of(ParameterKey key) {
-  using namespace parameter_rows;
+  using parameter_rows::kAxisRows, parameter_rows::kBoardRows, parameter_rows::kRules;
   const auto* const rule = std::ranges::lower_bound(kRules, key.id(), {}, &ParameterRule::id);
   if (rule == kRules.end() || rule->id != key.id() || key.owner() > kAxisCount) return std::nullopt;
   const auto row = static_cast<std::size_t>(rule - kRules.begin());

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/axis_fault.hpp"
+#include "firmware/core/scalar.hpp"
 
 namespace firmware {
 
@@ -25,8 +26,8 @@ class BoardWatch {
  public:
   /// Half a period late is an overrun; silence of 0.1 s is a lost host (ten of its 10 ms cycles).
   static constexpr BoardLimits default_limits(float sample_period_s) {
-    const auto period_us = static_cast<std::uint32_t>(sample_period_s * 1e6f + 0.5f);
-    return {period_us, period_us + period_us / 2, static_cast<std::int32_t>(0.1f / sample_period_s + 0.5f)};
+    const auto period_us = static_cast<std::uint32_t>(ScalarTraits<float>::nearest_product(sample_period_s, 1e6f));
+    return {period_us, period_us + period_us / 2, ScalarTraits<float>::nearest_product(0.1f, 1.0f / sample_period_s)};
   }
 
   constexpr void configure(const BoardLimits& limits) {
