@@ -8,6 +8,7 @@ std::optional<Record> read_fault_record(BoardClient& board, std::uint8_t axis, s
   using firmware::Channel;
   const firmware::ParameterValues values = board.read_values();
   ChannelScale scale(values.axis(axis), board.identify().fixed_point != 0, board.status().axis.at(axis).counts());
+  const bool has_tachometer = values.axis(axis).get<"tachometer.fitted">();
   Record record;
   record.drive = firmware::kAxisNames.at(axis);
   record.kind = kind;
@@ -22,8 +23,7 @@ std::optional<Record> read_fault_record(BoardClient& board, std::uint8_t axis, s
     record.t_s.push_back(n * static_cast<double>(row->every) / values.get<"control.rate">());
     record.u_V.push_back(scale(Channel::dac_code, row->dac_code));
     record.x.push_back(scale(Channel::counts, row->counts));
-    if (values.axis(axis).get<"tachometer.fitted">())
-      record.w.push_back(scale(Channel::tachometer_velocity, row->tachometer_velocity));
+    if (has_tachometer) record.w.push_back(scale(Channel::tachometer_velocity, row->tachometer_velocity));
     record.w_ref.push_back(scale(Channel::reference_velocity, row->reference_velocity));
     error.values.push_back(scale(Channel::position_error, row->position_error));
     speed.values.push_back(scale(Channel::velocity_estimate, row->velocity_estimate));

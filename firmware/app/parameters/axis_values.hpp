@@ -17,7 +17,8 @@ constexpr std::int64_t whole_counts(float travel, float encoder_resolution) {
 }
 
 constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
-  const float samples_a_second = 1.0F / v.get<"drive.sample_period">();
+  const float sample_period_s = v.get<"drive.sample_period">();
+  const float samples_a_second = 1.0F / sample_period_s;
   MonitorLimits<float> m;
   m.following_error_floor = v.get<"monitor.following_error">();
   m.following_error_per_velocity = v.get<"monitor.following_error_per_speed">();
@@ -34,7 +35,8 @@ constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
 }
 
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
-  const float volts_per_effort = 1.0F / v.get<"drive.effort_per_volt">();
+  const float effort_per_volt = v.get<"drive.effort_per_volt">();
+  const float volts_per_effort = 1.0F / effort_per_volt;
   AxisParameters<float> p;
   p.sample_period_s = v.get<"drive.sample_period">();
   p.lead = v.get<"drive.lead">();

@@ -1,6 +1,7 @@
 // Every fault in one table: what it is called, what causes it, what mends it, and how the axis is stopped.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -100,12 +101,18 @@ static_assert(numbers_are_positions(), "each fault has one row, in the order of 
 
 }  // namespace fault_table
 
-/// The reactions alone, for the control interrupt: the texts stay out of images that do not print them.
-inline constexpr auto kFaultReactions = [] {
+namespace fault_table {
+
+constexpr std::array<FaultReaction, kFaults.size()> reactions_alone() {
   std::array<FaultReaction, kFaults.size()> reactions{};
-  for (std::size_t i = 0; i < kFaults.size(); ++i) reactions[i] = kFaults[i].reaction;
+  std::ranges::transform(kFaults, reactions.begin(), &FaultInfo::reaction);
   return reactions;
-}();
+}
+
+}  // namespace fault_table
+
+/// For the control interrupt: the texts stay out of images that do not print them.
+inline constexpr auto kFaultReactions = fault_table::reactions_alone();
 
 constexpr const FaultInfo& fault_info(AxisFault fault) {
   const auto number = static_cast<std::size_t>(fault);
