@@ -46,7 +46,7 @@ test: ## Build and run all tests, again with sanitizers, and a short fuzz run of
 .PHONY: test-usb
 test-usb: all firmware ## Boards on Linux' own USB and GPIO stack, in an emulated PC (part of `make test`)
 	$(NEED) guest test
-	ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^guest/'
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) --tests-regex '^guest/'
 
 .PHONY: firmware
 firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images), with size and stack report

@@ -225,7 +225,7 @@ UsbipController::UsbipController(int socket, tinyusb::HidPort& port, std::chrono
 
 UsbipController::~UsbipController() { close(controller.socket); }
 
-bool UsbipController::serve(std::chrono::milliseconds wait) {
+bool UsbipController::serve(std::chrono::nanoseconds wait) {
   pollfd waiting{controller.socket, POLLIN, 0};
   const auto limit = std::chrono::duration_cast<std::chrono::nanoseconds>(time_to_next_frame(wait)).count();
   const timespec limit_ns{limit / 1'000'000'000, limit % 1'000'000'000};

@@ -20,7 +20,7 @@ class UsbipController {
 
   /// Waits for transfers at most as long as said, and handles those that are there. False when the host has gone, or
   /// does not speak USB/IP; the port is then not configured any more.
-  bool serve(std::chrono::milliseconds wait);
+  bool serve(std::chrono::nanoseconds wait);
 
  private:
   tinyusb::HidPort& port_;

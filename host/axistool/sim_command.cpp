@@ -9,6 +9,7 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/device/socket_board.hpp"
+#include "host/device/usb_board.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
 
@@ -18,8 +19,9 @@ namespace {
 
 struct SimArguments {
   std::string socket, flash, x, y;
+  std::string serial_number = "SIMULATED";
   std::uint64_t seed = 1;
-  bool forget = false;
+  bool forget = false, usb = false;
 };
 
 std::atomic<bool> stop = false;
@@ -35,6 +37,12 @@ sim::DriveDescription drive(const std::string& file, const char* axis) {
   return file.empty() ? host::paper_drive(axis).value() : host::read_model(file);
 }
 
+void tell(const std::string& place, const std::string& flash_file, const std::string& device) {
+  fmt::print("simulated board {}\nparameters {}\nuse it with --device {}; Ctrl-C ends it\n", place,
+             flash_file.empty() ? "are forgotten at the end" : "in " + flash_file, device);
+  std::fflush(stdout);
+}
+
 void run(SimArguments arguments) {
   if (arguments.socket.empty()) arguments.socket = host::default_socket_path();
   host::SimulatedDeviceOptions options{drive(arguments.x, "x"), drive(arguments.y, "y"), {}, arguments.seed};
@@ -44,13 +52,17 @@ void run(SimArguments arguments) {
       std::filesystem::create_directories(folder);
   }
   host::SimulatedDevice device(options);
-  const host::OwnedDescriptor listener = host::listen_at_socket(arguments.socket);
   std::signal(SIGINT, [](int) { stop = true; });
   std::signal(SIGTERM, [](int) { stop = true; });
-  fmt::print("simulated board at {}\nparameters {}\nuse it with --device {}; Ctrl-C ends it\n", arguments.socket,
-             arguments.forget ? "are forgotten at the end" : "in " + options.flash_file,
-             arguments.socket == host::default_socket_path() ? "sim" : "socket:" + arguments.socket);
-  std::fflush(stdout);
+  if (arguments.usb) {
+    const std::string name = "usb:" + arguments.serial_number;
+    tell("on USB", options.flash_file, name);
+    host::serve_simulated_device_on_usb(device, arguments.serial_number, stop);
+    return;
+  }
+  const host::OwnedDescriptor listener = host::listen_at_socket(arguments.socket);
+  tell("at " + arguments.socket, options.flash_file,
+       arguments.socket == host::default_socket_path() ? "sim" : "socket:" + arguments.socket);
   host::serve_simulated_device(device, listener, stop);
   std::filesystem::remove(arguments.socket);
 }
@@ -60,7 +72,14 @@ void run(SimArguments arguments) {
 void add_sim(CLI::App& app) {
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command = app.add_subcommand("sim", "Run a simulated board: the firmware's program with drives behind it");
-  command->add_option("--socket", arguments->socket, "where it listens; default: where --device sim looks");
+  CLI::Option* socket =
+      command->add_option("--socket", arguments->socket, "where it listens; default: where --device sim looks");
+  CLI::Option* usb = command->add_flag(
+      "--usb", arguments->usb, "make it a USB device of this computer instead (as root, after modprobe vhci-hcd)");
+  usb->excludes(socket);
+  command->add_option("--serial", arguments->serial_number, "its serial number on USB")
+      ->capture_default_str()
+      ->needs(usb);
   command->add_option("--x", arguments->x, "model of the drive on axis x (axis-model/1); default: the paper's x axis");
   command->add_option("--y", arguments->y, "likewise y");
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
@@ -70,6 +89,7 @@ void add_sim(CLI::App& app) {
       "Examples:\n"
       "  axistool sim &\n"
       "  axistool info --device sim\n"
+      "  sudo axistool sim --usb --serial BENCH-1 &\n"
       "  axistool sim --x my-model.toml --forget --socket /tmp/board.socket");
   command->callback([arguments] { run(*arguments); });
 }

@@ -1,6 +1,7 @@
-// A program in the background of a test.
+// A program in the background of a test; what it prints on standard output is nobody's.
 #pragma once
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +22,7 @@ class Child {
     process_ = fork();
     if (process_ < 0) throw std::runtime_error("cannot start " + words.front());
     if (process_ == 0) {
+      dup2(open("/dev/null", O_WRONLY), STDOUT_FILENO);
       execvp(arguments[0], arguments.data());
       _exit(127);
     }
@@ -28,6 +30,9 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   ~Child() { kill(); }
+
+  /// Does not run on, until it is killed.
+  void pause() const { ::kill(process_, SIGSTOP); }
 
   /// As a pulled plug: without warning.
   void kill() {

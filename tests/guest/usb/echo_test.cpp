@@ -63,7 +63,7 @@ TEST_P(Usb, FindsTheBoardByItsNamesAndExchangesReports) {
 }
 
 TEST_P(Usb, CarriesAThousandReportsASecondWithoutLoss) {
-  constexpr std::uint32_t kReports = 3000;
+  constexpr std::uint32_t kReports = 1000;
   const Child board({ECHO_BOARD, "STREAM"});
   wait_for_boards(1);
   const auto link = open_usb_board("STREAM", library());
