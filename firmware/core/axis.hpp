@@ -92,9 +92,6 @@ class Axis {
   /// The same after step_with(): takes the whole reference over.
   constexpr void stop_interpolated() { generator_.stop_from(preview_.newest()); }
 
-  /// What the reference travelled in the last sample, kPreviewSamples ahead of the axis.
-  constexpr Increment leading_travel() const { return preview_.newest(); }
-
   /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
     return plan_move(target - preview_.leading(), limits_);

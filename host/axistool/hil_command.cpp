@@ -7,6 +7,7 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/hil/fault_trial.hpp"
 #include "host/hil/scenario_report.hpp"
 #include "host/record/read_record.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 struct HilArguments {
   std::vector<std::string> scenarios;
   std::string output, json;
+  bool fault_page = false;
 };
 
 void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, const std::string& folder) {
@@ -33,6 +35,12 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
 }
 
 void run(const HilArguments& arguments) {
+  if (arguments.fault_page) {
+    fmt::print("{}", host::fault_page());
+    return;
+  }
+  if (arguments.scenarios.empty())
+    throw host::Failure(host::ExitCode::usage, "no scenario is named; the shipped ones are in host/hil/scenarios");
   nlohmann::json all = nlohmann::json::array();
   bool holds = true;
   for (const std::string& path : arguments.scenarios) {
@@ -57,12 +65,12 @@ void run(const HilArguments& arguments) {
 void add_hil(CLI::App& app) {
   auto arguments = std::make_shared<HilArguments>();
   CLI::App* command = app.add_subcommand("hil", "run scenarios: the board's firmware around simulated drives");
-  command->add_option("SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1)")
-      ->required()
-      ->check(CLI::ExistingFile);
+  command->add_option("SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1)")->check(CLI::ExistingFile);
   command->add_option("-o,--output", arguments->output,
                       "folder for records (x, y) and an HTML report of each scenario");
   add_json_option(*command, arguments->json);
+  command->add_flag("--fault-page", arguments->fault_page,
+                    "inject every fault and print the page of faults and reactions (Markdown)");
   command->footer(
       "Examples:\n"
       "  axistool hil host/hil/scenarios/circle.toml -o build/hil\n"

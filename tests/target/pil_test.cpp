@@ -51,6 +51,42 @@ TYPED_TEST(PilScenario, MovesBothAxesFarWithoutFaultOrRefusal) {
   }
 }
 
+std::uint32_t fault_of(const firmware::boards::PilReply& reply, std::size_t axis) {
+  return (reply.axis[axis].flags >> 8) & 0xFFu;
+}
+
+TYPED_TEST(PilScenario, FaultsOfTheFaultStoryAreNamedAndStopBothAxes) {
+  const auto& story = target_test::fault_story();
+  const Replies replies = run_on_host<TypeParam>(story.periods, story);
+  using firmware::AxisFault;
+  const auto expect = [&](std::uint32_t period, AxisFault x, AxisFault y) {
+    EXPECT_EQ(fault_of(replies[period], 0), static_cast<std::uint32_t>(x)) << period;
+    EXPECT_EQ(fault_of(replies[period], 1), static_cast<std::uint32_t>(y)) << period;
+    for (const auto& axis : replies[period].axis) {
+      EXPECT_EQ(axis.enable_line, 0u) << period;
+      EXPECT_EQ(axis.dac_code, 0) << period;
+    }
+  };
+  expect(590, AxisFault::limit_switch_positive, AxisFault::other_axis_stopped);
+  expect(1'290, AxisFault::control_overrun, AxisFault::control_overrun);
+  expect(2'090, AxisFault::other_axis_stopped, AxisFault::drive_fault);
+  expect(2'990, AxisFault::emergency_stop, AxisFault::emergency_stop);
+}
+
+template <typename Scalar>
+void expect_equal_faults(const std::string& image_name) {
+  const std::string why = obstacle(image_name);
+  if (!why.empty()) GTEST_SKIP() << why;
+  const auto& story = target_test::fault_story();
+  FileLink link(image_name);
+  const Replies seen = run_over<Scalar>(link, story.periods, story);
+  EXPECT_EQ(first_difference(run_on_host<Scalar>(story.periods, story), seen), "");
+  EXPECT_EQ(link.finish(), 0);
+}
+
+TEST(PilFaults, FloatEqualsTheHostBitForBit) { expect_equal_faults<float>("qemu-f405"); }
+TEST(PilFaults, FixedPointEqualsTheHostBitForBit) { expect_equal_faults<firmware::FixedPoint>("qemu-f405-fixed"); }
+
 TEST(PilComparison, AChangedBitIsFound) {
   const Replies expected = run_on_host<float>();
   Replies seen = expected;

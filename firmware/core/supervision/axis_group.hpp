@@ -48,7 +48,7 @@ class AxisGroup {
     const bool had_fault = axes_[index].fault() != AxisFault::none;
     step();
     const std::size_t other = 1 - index;
-    if (!had_fault && axes_[index].fault() != AxisFault::none && outputs_are_on(axes_[other].state()))
+    if (!had_fault && axes_[index].fault() != AxisFault::none && axes_[other].is_or_will_be_on())
       must_stop_[other] = true;
   }
 

@@ -24,7 +24,7 @@ class AxisMonitors {
 
   /// Before the first sample of a self-test: nothing is known of the time before.
   constexpr void restart() {
-    disagreement_ = last_velocity_ = Scalar(0);
+    disagreement_ = Scalar(0);
     saturated_samples_ = reversed_samples_ = 0;
   }
 
@@ -32,9 +32,8 @@ class AxisMonitors {
   constexpr AxisFault watch_sensors(const AxisTelemetry<Scalar>& seen) {
     const Scalar measured = tachometer_fitted_ ? seen.tachometer_velocity : seen.estimate.velocity;
     const Scalar difference = Traits::times(seen.encoder_travel, velocity_per_count_) - measured;
-    const Scalar expected = last_velocity_;
-    last_velocity_ = seen.estimate.velocity;
-    if (magnitude(difference) > limits_.encoder_jump) return which_jumped(difference + measured, measured, expected);
+    if (magnitude(difference) > limits_.encoder_jump)
+      return which_jumped(difference + measured, measured, seen.reference_velocity);
     disagreement_ = disagreement_ + (difference - disagreement_) * kFilterShare;
     if (magnitude(disagreement_) > limits_.disagreement_floor + limits_.disagreement_share * magnitude(measured))
       return AxisFault::encoder_tachometer_disagreement;
@@ -83,7 +82,7 @@ class AxisMonitors {
   constexpr void forget_high_water() { high_water_ = Scalar(0); }
 
  private:
-  /// Of two sensors that part within one sample, the one that left the estimate is the bad one.
+  /// Of two sensors that part within one sample, the one that left the reference is the bad one.
   static constexpr AxisFault which_jumped(Scalar encoder, Scalar tachometer, Scalar expected) {
     return magnitude(encoder - expected) >= magnitude(tachometer - expected)
                ? AxisFault::encoder_jump
@@ -101,9 +100,14 @@ class AxisMonitors {
   constexpr bool is_reversed(const AxisTelemetry<Scalar>& seen) {
     const bool forward = seen.control_V > Scalar(0);
     const auto along = [forward](Scalar value) { return forward ? value : Scalar(0) - value; };
+    if (along(seen.estimate.disturbance) < limits_.polarity_command_V) {  // nearly always
+      reversed_samples_ = 0;
+      return false;
+    }
     const Scalar given = seen.saturated ? dac_limit_V_ : along(seen.control_V);
     if (along(seen.estimate.disturbance) > given * Scalar(1.75f) &&
-        along(seen.estimate.velocity) < Scalar(0) - limits_.disagreement_floor * Scalar(0.25f))
+        along(seen.estimate.velocity) < Scalar(0) - limits_.disagreement_floor * Scalar(0.25f) &&
+        magnitude(disagreement_) < limits_.disagreement_floor)  // else the estimate has a bad sensor to blame
       return ++reversed_samples_ >= kPolaritySamples;
     reversed_samples_ = 0;
     return false;
@@ -114,7 +118,6 @@ class AxisMonitors {
   Scalar dac_limit_V_{};
   Scalar disagreement_{};
   Scalar high_water_{};
-  Scalar last_velocity_{};
   std::int32_t saturated_samples_ = 0;
   std::int32_t reversed_samples_ = 0;
   bool tachometer_fitted_ = true;

@@ -84,8 +84,8 @@ inline constexpr std::array<FaultInfo, 24> kFaults{{
     {AxisFault::supply_low, "supply_low", "the board's supply is below its threshold", "check supply and wiring",
      FaultReaction::drop_enable},
     {AxisFault::reference_out_of_limits, "reference_out_of_limits",
-     "an interpolator asked for more than the velocity limit", "check the path and its feed; check the limit",
-     FaultReaction::ramp_stop},
+     "an interpolator asked for more than the velocity limit, or for a jump",
+     "check the path and its feed; check the limit", FaultReaction::ramp_stop},
     {AxisFault::other_axis_stopped, "other_axis_stopped", "the other axis has a fault, and both stop together",
      "see the other axis", FaultReaction::ramp_stop},
 }};

@@ -36,8 +36,9 @@ class SupervisedAxis {
     if (error == ParameterError::none) error = axis_.configure(parameters);
     if (error != ParameterError::none) return error;
     monitors_.configure(parameters);
-    const Increment velocity = motion_limits(parameters).velocity;
-    fastest_ = velocity + (velocity >> 4);  // rounding of a path at its limit is no fault
+    const MotionLimits limits = motion_limits(parameters);
+    fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
+    largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
     happen(SupervisorEvent::configured);
@@ -64,15 +65,18 @@ class SupervisedAxis {
     if (state_ != SupervisorState::enabled) return false;
     limiting_.velocity_limited =
         velocity > axis_.parameters().velocity_limit || velocity < Scalar(0) - axis_.parameters().velocity_limit;
+    is_interpolated_ = false;
     return axis_.jog(velocity);
   }
-  constexpr bool start(const MovePlan& plan) { return state_ == SupervisorState::enabled && axis_.start(plan); }
+  constexpr bool start(const MovePlan& plan) {
+    is_interpolated_ = false;
+    return state_ == SupervisorState::enabled && axis_.start(plan);
+  }
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const { return axis_.plan_move_to(target); }
   constexpr void stop() { axis_.stop(); }
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) {
-    is_interpolated_ = false;
     axis_.step();
     supervise(outer);
   }
@@ -81,13 +85,21 @@ class SupervisedAxis {
   constexpr void step_with(Increment increment, AxisFault outer = AxisFault::none) {
     if (state_ != SupervisorState::enabled) return step(outer);
     is_interpolated_ = true;
+    if (!is_within_limits(increment)) {
+      axis_.stop_interpolated();  // what cannot be right never reaches the drive
+      axis_.step();
+      return supervise(outer == AxisFault::none ? AxisFault::reference_out_of_limits : outer);
+    }
+    last_increment_ = increment;
     axis_.step_with(increment);
-    const Increment travel = axis_.leading_travel();
-    const bool is_too_fast = (travel > fastest_ || travel < -fastest_) && outer == AxisFault::none;
-    supervise(is_too_fast ? AxisFault::reference_out_of_limits : outer);
+    supervise(outer);
   }
 
   constexpr SupervisorState state() const { return state_; }
+  /// The outputs are on, or will be in the next control period.
+  constexpr bool is_or_will_be_on() const {
+    return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
+  }
   /// The first fault since the last clear_fault().
   constexpr AxisFault fault() const { return fault_; }
   constexpr LimitingReasons limiting() const { return {axis_.telemetry().saturated, limiting_.velocity_limited}; }
@@ -101,6 +113,11 @@ class SupervisedAxis {
  private:
   static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
   static constexpr std::int32_t kStandingSamples = 20;
+
+  constexpr bool is_within_limits(Increment increment) const {
+    const Increment change = increment - last_increment_;
+    return increment <= fastest_ && increment >= -fastest_ && change <= largest_change_ && change >= -largest_change_;
+  }
 
   constexpr bool request(SupervisorEvent event) {
     requests_ = requests_ | event;
@@ -183,6 +200,7 @@ class SupervisedAxis {
     }
     if (!outputs_are_on(state_)) {
       is_interpolated_ = limiting_.velocity_limited = false;
+      last_increment_ = 0;
       if (axis_.telemetry().enabled) axis_.disable();
     }
   }
@@ -197,6 +215,8 @@ class SupervisedAxis {
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
   Increment fastest_ = 0;
+  Increment largest_change_ = 0;
+  Increment last_increment_ = 0;
   std::int64_t standing_at_ = 0;
   std::int32_t self_test_samples_ = 0;
   std::int32_t settling_samples_ = 0;

@@ -84,17 +84,18 @@ class SerialLink {
 
 /// The run of the scenario, or of its beginning, over a link.
 template <typename Scalar, typename Link>
-Replies run_over(Link& link, std::uint32_t periods = kPeriods) {
+Replies run_over(Link& link, std::uint32_t periods = kPeriods, const Story& story = motion_story()) {
   using firmware::boards::PilConfigured;
   using firmware::boards::PilReply;
   using firmware::boards::PilRequest;
   link.send(BoardUnits<Scalar>::parameters());
   for (const std::uint32_t error : link.template receive<PilConfigured>().error)
     if (error != 0) throw std::runtime_error("the board refuses the parameters: error " + std::to_string(error));
-  return run<Scalar>(periods, [&link](const PilRequest& request) {
+  const auto exchange = [&link](const PilRequest& request) {
     link.send(request);
     return link.template receive<PilReply>();
-  });
+  };
+  return run<Scalar>(periods, exchange, story);
 }
 
 }  // namespace target_test

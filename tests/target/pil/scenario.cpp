@@ -15,25 +15,51 @@ using firmware::boards::PilCommand;
 
 }  // namespace
 
-const std::vector<Order>& orders() {
-  static const std::vector<Order> all{
-      {60, 0, PilCommand::enable, 0},        {60, 1, PilCommand::enable, 0},
-      {100, 0, PilCommand::move, 40'000},    {150, 1, PilCommand::move, -25'000},
-      {1'400, 0, PilCommand::move, 39'990},  {1'500, 1, PilCommand::move, -24'999},
-      {1'900, 0, PilCommand::jog, 250},      {2'000, 1, PilCommand::jog, -250},
-      {2'600, 0, PilCommand::jog, -120},     {2'700, 1, PilCommand::jog, 0.05},
-      {3'600, 0, PilCommand::stop, 0},       {3'900, 1, PilCommand::jog, 3},
-      {4'200, 0, PilCommand::move, -60'000}, {4'400, 1, PilCommand::stop, 0},
-      {4'500, 0, PilCommand::stop, 0},  // cuts the move short
-      {4'800, 1, PilCommand::move, 10'000},  {5'200, 0, PilCommand::jog, 0.5},
-      {6'500, 1, PilCommand::disable, 0},    {6'700, 1, PilCommand::enable, 0},
-      {6'800, 1, PilCommand::jog, 200},      {6'900, 0, PilCommand::jog, -0.5},
-      {7'000, 1, PilCommand::disable, 0},  // in motion: it slows down first
-      {7'600, 1, PilCommand::enable, 0},     {7'700, 1, PilCommand::move, 0},
-      {7'900, 0, PilCommand::stop, 0},       {8'200, 0, PilCommand::move, 0},
-      {9'700, 0, PilCommand::move, 1},       {9'700, 1, PilCommand::stop, 0},
-  };
-  return all;
+const Story& motion_story() {
+  static const Story story{kPeriods,
+                           {
+                               {60, 0, PilCommand::enable, 0},        {60, 1, PilCommand::enable, 0},
+                               {100, 0, PilCommand::move, 40'000},    {150, 1, PilCommand::move, -25'000},
+                               {1'400, 0, PilCommand::move, 39'990},  {1'500, 1, PilCommand::move, -24'999},
+                               {1'900, 0, PilCommand::jog, 250},      {2'000, 1, PilCommand::jog, -250},
+                               {2'600, 0, PilCommand::jog, -120},     {2'700, 1, PilCommand::jog, 0.05},
+                               {3'600, 0, PilCommand::stop, 0},       {3'900, 1, PilCommand::jog, 3},
+                               {4'200, 0, PilCommand::move, -60'000}, {4'400, 1, PilCommand::stop, 0},
+                               {4'500, 0, PilCommand::stop, 0},  // cuts the move short
+                               {4'800, 1, PilCommand::move, 10'000},  {5'200, 0, PilCommand::jog, 0.5},
+                               {6'500, 1, PilCommand::disable, 0},    {6'700, 1, PilCommand::enable, 0},
+                               {6'800, 1, PilCommand::jog, 200},      {6'900, 0, PilCommand::jog, -0.5},
+                               {7'000, 1, PilCommand::disable, 0},  // in motion: it slows down first
+                               {7'600, 1, PilCommand::enable, 0},     {7'700, 1, PilCommand::move, 0},
+                               {7'900, 0, PilCommand::stop, 0},       {8'200, 0, PilCommand::move, 0},
+                               {9'700, 0, PilCommand::move, 1},       {9'700, 1, PilCommand::stop, 0},
+                           },
+                           {}};
+  return story;
+}
+
+const Story& fault_story() {
+  using Lines = std::array<std::uint32_t, 2>;
+  static const Story story{3'000,
+                           {{60, 0, PilCommand::enable, 0},         {60, 1, PilCommand::enable, 0},
+                            {70, 0, PilCommand::jog, 150},          {70, 1, PilCommand::jog, -200},
+                            {600, 0, PilCommand::clear_fault, 0},   {600, 1, PilCommand::clear_fault, 0},
+                            {660, 0, PilCommand::enable, 0},        {660, 1, PilCommand::enable, 0},
+                            {670, 0, PilCommand::move, 60'000},     {670, 1, PilCommand::jog, 100},
+                            {1'300, 0, PilCommand::clear_fault, 0}, {1'300, 1, PilCommand::clear_fault, 0},
+                            {1'400, 0, PilCommand::enable, 0},      {1'400, 1, PilCommand::enable, 0},
+                            {1'410, 0, PilCommand::jog, -250},      {1'410, 1, PilCommand::jog, 250},
+                            {2'100, 0, PilCommand::clear_fault, 0}, {2'100, 1, PilCommand::clear_fault, 0},
+                            {2'200, 0, PilCommand::enable, 0},      {2'200, 1, PilCommand::enable, 0},
+                            {2'210, 0, PilCommand::jog, 50}},
+                           {{300, Lines{1, 0}, 0},  // x reaches its positive end
+                            {500, Lines{0, 0}, 0},
+                            {900, Lines{0, 0}, 0, 700},  // a period comes late
+                            {1'700, Lines{0, 8}, 0},     // y's amplifier fails
+                            {1'800, Lines{0, 0}, 0},
+                            {2'500, Lines{0, 0}, 1},    // emergency stop
+                            {2'600, Lines{0, 0}, 2}}};  // supply low
+  return story;
 }
 
 Plants::Plants() {
@@ -66,16 +92,16 @@ void Plants::apply(const firmware::boards::PilReply& reply) {
 }
 
 template <typename Scalar>
-Replies run_on_host(std::uint32_t periods) {
+Replies run_on_host(std::uint32_t periods, const Story& story) {
   auto station = std::make_unique<firmware::boards::PilStation<Scalar>>();
   for (const std::uint32_t error : station->configure(BoardUnits<Scalar>::parameters()).error)
     if (error != 0) throw std::runtime_error(fmt::format("the host build refuses the parameters: error {}", error));
-  return run<Scalar>(periods,
-                     [&station](const firmware::boards::PilRequest& request) { return station->step(request); });
+  return run<Scalar>(
+      periods, [&station](const firmware::boards::PilRequest& request) { return station->step(request); }, story);
 }
 
-template Replies run_on_host<float>(std::uint32_t);
-template Replies run_on_host<firmware::FixedPoint>(std::uint32_t);
+template Replies run_on_host<float>(std::uint32_t, const Story&);
+template Replies run_on_host<firmware::FixedPoint>(std::uint32_t, const Story&);
 
 std::uint64_t hash(const Replies& replies) {
   std::uint64_t value = 0xCBF29CE484222325;

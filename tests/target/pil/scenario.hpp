@@ -61,8 +61,25 @@ struct Order {
   double argument;  ///< jog: mm/s; move: encoder counts
 };
 
+/// Lines as they are from one period on, in the bits of PilAxisRequest::lines and PilRequest::board.
+struct LineEvent {
+  std::uint32_t period;
+  std::array<std::uint32_t, 2> axis_lines;
+  std::uint32_t board;
+  std::uint32_t late_us = 0;  ///< by which this one period comes late
+};
+
+struct Story {
+  std::uint32_t periods;
+  std::vector<Order> orders;
+  std::vector<LineEvent> lines;
+};
+
 /// Moves long and short, cut moves, jogs up to the velocity limit, reversals, disabling in motion: 10 s on both axes.
-const std::vector<Order>& orders();
+const Story& motion_story();
+
+/// What goes wrong: limit switch, late control, drive fault, emergency stop, low supply; cleared and enabled again.
+const Story& fault_story();
 
 /// Two simulated drives behind the simulated board's connectors.
 class Plants {
@@ -80,9 +97,15 @@ class Plants {
 };
 
 template <typename Scalar>
-void add_orders(firmware::boards::PilRequest& request) {
+void add_orders(const Story& story, firmware::boards::PilRequest& request) {
   using firmware::boards::PilCommand;
-  for (const Order& order : orders()) {
+  for (const LineEvent& event : story.lines) {
+    if (event.period > request.number) continue;
+    request.board = event.board;
+    for (std::size_t i = 0; i < 2; ++i) request.axis[i].lines = event.axis_lines[i];
+    request.now_us += event.late_us;
+  }
+  for (const Order& order : story.orders) {
     if (order.period != request.number) continue;
     firmware::boards::PilAxisRequest& axis = request.axis[order.axis];
     axis.command = order.command;
@@ -100,13 +123,13 @@ using Replies = std::vector<firmware::boards::PilReply>;
 
 /// Closes the loop for as many periods: `exchange` stands for the board.
 template <typename Scalar, typename Exchange>
-Replies run(std::uint32_t periods, Exchange&& exchange) {
+Replies run(std::uint32_t periods, Exchange&& exchange, const Story& story = motion_story()) {
   Plants plants;
   Replies replies;
   replies.reserve(periods);
   for (std::uint32_t period = 0; period < periods; ++period) {
     firmware::boards::PilRequest request = plants.read(period);
-    add_orders<Scalar>(request);
+    add_orders<Scalar>(story, request);
     replies.push_back(exchange(request));
     plants.apply(replies.back());
   }
@@ -115,7 +138,7 @@ Replies run(std::uint32_t periods, Exchange&& exchange) {
 
 /// The same run with the control core built for this computer. Throws if it refuses the parameters.
 template <typename Scalar>
-Replies run_on_host(std::uint32_t periods = kPeriods);
+Replies run_on_host(std::uint32_t periods = kPeriods, const Story& story = motion_story());
 
 /// FNV-1a, 64 bits, over every bit of every reply.
 std::uint64_t hash(const Replies& replies);
