@@ -16,12 +16,18 @@ namespace {
 /// A candidate must lower the training error of a first look by this factor to be worth a serious fit.
 constexpr double kPromise = 0.98;
 
-/// Behind the best of a first look by this factor, only a few are worth a serious fit.
+/// Behind the best of a first look by this factor, only a few are worth a serious fit; none of those whose simulation
+/// takes many small steps.
 constexpr double kOutOfSight = 2.0;
+
+/// After the serious fits the last word is between those within this factor of the best.
+constexpr double kClose = 1.5;
 
 /// Two starts of one effect are both pursued while their errors are so close.
 constexpr double kOpenRace = 1.25;
 
+/// A new effect first comes into its own size; a base that was bent to make up for its absence would hold it down.
+constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
 constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3};
 constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5};
@@ -104,9 +110,16 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 namespace {
 
 /// Fits the last effect again from both sides of each of its parameters: an effect that acts at breakaway or on impact
-/// leaves valleys side by side.
-sim::DriveDescription shaken(const sim::DriveDescription& model, const RecordSet& set) {
+/// leaves valleys side by side. And once from the base as it was given, since a re-fit without the effect may have bent
+/// the base so far that it does not come back.
+sim::DriveDescription shaken(const sim::DriveDescription& model, const sim::DriveDescription* nominal,
+                             const RecordSet& set) {
   std::vector<sim::DriveDescription> starts{model};
+  if (nominal != nullptr) {
+    starts.push_back(model);
+    for (sim::EffectEntry& entry : starts.back().effects)
+      if (const sim::EffectEntry* original = nominal->find(entry.kind)) entry = *original;
+  }
   for (const auto& [id, value] : model.effects.back().parameters) {
     for (const double factor : {0.55, 1.8}) {
       const sim::ParameterInfo& info = *sim::find_effect(model.effects.back().kind)->parameter(id);
@@ -137,6 +150,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
                                     const SearchEffort& effort) {
   const RecordSet coarse = thinned(training, effort.coarse_windows);
   const RecordSet medium = thinned(training, effort.medium_windows);
+  const RecordSet last = thinned(training, effort.final_windows);
   std::vector<std::vector<Start>> starts_of(infos.size());
   for_each_in_parallel(infos.size(), [&](std::size_t k) {
     for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
@@ -159,11 +173,14 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     });
     std::ranges::stable_sort(list, {}, &Start::error);
   };
+  for_each_in_parallel(starts.size(),
+                       [&](std::size_t k) { starts[k].model = fit_model(starts[k].model, coarse, kOwnSize).model; });
   fit_all(starts, coarse, kFirstLook);
   std::vector<Start> race;
   for (const Start& start : starts) {
-    const bool far_behind = start.error > kOutOfSight * starts.front().error && race.size() >= effort.finalists;
-    if (start.error > kPromise || far_behind) continue;
+    const bool far_behind = start.error > kOutOfSight * starts.front().error;
+    const bool costly = needs_own_floors(start.model) && !needs_own_floors(model);
+    if (start.error > kPromise || (far_behind && (costly || race.size() >= effort.finalists))) continue;
     const auto rivals = std::ranges::count(race, start.info, &Start::info);
     const auto leader = std::ranges::find(race, start.info, &Start::info);
     if (rivals == 0 || (rivals == 1 && start.error < kOpenRace * leader->error)) race.push_back(start);
@@ -177,12 +194,13 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   if (!finalists.empty()) {
     RecordSet own = medium;
     if (needs_own_floors(finalists.front().model)) renew_floors(own, finalists.front().model);
-    finalists.front().model = shaken(finalists.front().model, own);
+    finalists.front().model = shaken(finalists.front().model, effort.nominal, own);
   }
+  const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
-    if (k < effort.finalists) fit_start(finalists[k], model, training, 1.0, kLastWord);
+    if (k < effort.finalists && finalists[k].error < within) fit_start(finalists[k], model, last, 1.0, kLastWord);
     candidates[k] = judged(all, finalists[k].model, model, training, validation);
   });
   std::ranges::stable_sort(candidates, {}, &Candidate::left);

@@ -28,7 +28,9 @@ using ShareDone = std::function<void(double)>;
 struct SearchEffort {
   std::size_t coarse_windows = 80;
   std::size_t medium_windows = 200;
+  std::size_t final_windows = 600;
   std::size_t finalists = 4;
+  const sim::DriveDescription* nominal = nullptr;  ///< the model as it was given, another start for its parameters
 };
 
 /// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates that

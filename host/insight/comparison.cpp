@@ -1,5 +1,6 @@
 #include "host/insight/comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace host {
@@ -18,11 +19,6 @@ RecordSet compare_on(const std::vector<const Record*>& records, const sim::Drive
   return set;
 }
 
-void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
-  const sim::Drive drive(reference);
-  for (ComparedRecord& compared : set.records) compared.floor = error_floor(drive, reference.data, compared.prepared);
-}
-
 namespace {
 
 /// Calls use(record index, window index, prediction) for every used window.
@@ -37,7 +33,7 @@ void for_each_window(const sim::Drive& drive, const RecordSet& set, Use use) {
 }
 
 /// Squared error of a window over its floor squared, as a fit weighs it.
-double weighed(double square) { return kCommonSquare * std::log1p(square / kCommonSquare); }
+double weighed(double square, double common) { return common * std::log1p(square / common); }
 
 double mean_square(const std::vector<double>& predicted, const std::vector<double>& measured, const Window& window) {
   double sum = 0.0;
@@ -47,6 +43,19 @@ double mean_square(const std::vector<double>& predicted, const std::vector<doubl
 }
 
 }  // namespace
+
+void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
+  const sim::Drive drive(reference);
+  std::vector<double> squares;
+  for (ComparedRecord& compared : set.records) compared.floor = error_floor(drive, reference.data, compared.prepared);
+  for (const WindowScore& score : error_of(drive, set).windows)
+    for (const double square : {score.x, score.w})
+      if (square > 0.0) squares.push_back(square);
+  if (squares.empty()) return;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  set.common_square = kCommonSquare * std::max(1.0, *middle);
+}
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   SetError error;
@@ -71,7 +80,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
       ++w_count;
     }
     combined += score.x + score.w;
-    robust += weighed(score.x) + weighed(score.w);
+    robust += weighed(score.x, set.common_square) + weighed(score.w, set.common_square);
     error.windows.push_back(score);
   });
   const auto root_mean = [](double sum, std::size_t count) {
@@ -110,7 +119,8 @@ void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out) {
     const auto append = [&](const std::vector<double>& predicted, const std::vector<double>& measured,
                             double deviation) {
       const double square = mean_square(predicted, measured, window) / (deviation * deviation);
-      const double scale = share / deviation * (square > 0.0 ? std::sqrt(weighed(square) / square) : 1.0);
+      const double scale =
+          share / deviation * (square > 0.0 ? std::sqrt(weighed(square, set.common_square) / square) : 1.0);
       for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
         *out++ = (predicted[k] - measured[k]) * scale;
     };

@@ -15,10 +15,16 @@ struct ComparedRecord {
   ErrorFloor floor;
 };
 
+/// Three floors: one impact or breakaway that comes a moment late must not outweigh all windows that fit.
+inline constexpr double kCommonSquare = 9.0;
+
 /// The records of one purpose (training, or validation).
 struct RecordSet {
   std::vector<ComparedRecord> records;
   std::size_t stride = 1;  ///< every so many-th window is used; more than 1 makes a search faster
+  /// Squared error over floor squared up to which a window counts in full in a fit; beyond, its weight grows as the
+  /// logarithm. At least three floors.
+  double common_square = kCommonSquare;
 
   std::size_t used_windows() const;
 };
@@ -27,7 +33,8 @@ struct RecordSet {
 RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
                      double window_s = kWindow_s);
 
-/// Computes the floors again with a better model.
+/// Computes the floors again with a better model, and with them what is common: where most windows of `reference` lie
+/// far above their floors, as those of a real machine may, three times their median error counts as common.
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference);
 
 /// Mean over the windows and channels of (error/floor)^2 of one window.
@@ -37,10 +44,6 @@ struct WindowScore {
   double x = 0.0;  ///< mean squared error of the channel over its floor squared; 0 where the record lacks it
   double w = 0.0;
 };
-
-/// Squared error over floor squared up to which a window counts in full in a fit, three floors. One impact or breakaway
-/// that comes a moment late must not outweigh all windows that fit.
-inline constexpr double kCommonSquare = 9.0;
 
 /// RMS errors of a model on a set.
 struct SetError {

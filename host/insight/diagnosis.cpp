@@ -119,15 +119,17 @@ Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const R
     renew_floors(result.validation, reference);
   };
 
+  SearchEffort effort;
+  effort.nominal = &model;
   std::vector<Candidate> singles =
-      search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5));
+      search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5), effort);
   std::vector<Candidate> pairs;
   if (!singles.empty()) {
     renew(singles.front().model);
     const double left = error_of(sim::Drive(singles.front().model), result.validation).combined;
     if (left > kExplained) {
       pairs = search_candidates(singles.front().model, singles.front().kinds, result.training, result.validation,
-                                part(progress, 0.5, 0.95));
+                                part(progress, 0.5, 0.95), effort);
       if (!pairs.empty()) renew(pairs.front().model);
     }
   }

@@ -87,7 +87,8 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
                   fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or these "
                               "records do not hold the channel in which it shows",
                               kind));
-  const std::vector<Candidate> found = search_kinds({info}, sets.base, {}, sets.training, sets.validation);
+  const std::vector<Candidate> found =
+      search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, {.nominal = &model});
   if (found.empty())
     throw Failure(ExitCode::refused,
                   fmt::format("{}: no start of the fit lowers the error; these records do not show the effect. {}",

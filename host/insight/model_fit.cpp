@@ -62,7 +62,7 @@ class WindowResiduals : public ceres::CostFunction {
 }  // namespace
 
 FitResult fit_model(const sim::DriveDescription& start, const RecordSet& training, const FitOptions& options) {
-  const ParameterVector vector(start);
+  const ParameterVector vector(start, options.freedom);
   const Eigen::VectorXd initial = vector.read(start);
   Eigen::VectorXd scaled(initial.size());
   for (Eigen::Index k = 0; k < scaled.size(); ++k)
@@ -80,6 +80,7 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   solver.max_num_iterations = options.most_iterations;
   solver.function_tolerance = options.least_gain;
   solver.parameter_tolerance = 1e-6;
+  solver.max_num_line_search_step_size_iterations = 6;  // a step that is still bad at a hundredth is bad
   solver.logging_type = ceres::SILENT;
   solver.num_threads = 1;  // candidates are fitted side by side
   ceres::Solver::Summary summary;

@@ -13,6 +13,7 @@ namespace host {
 struct FitOptions {
   int most_iterations = 25;
   double least_gain = 1e-4;  ///< relative gain of the squared error under which a step is the last one
+  Freedom freedom = Freedom::everything;
 };
 
 struct FitResult {

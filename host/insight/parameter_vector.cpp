@@ -20,23 +20,41 @@ const std::string* partner_of(const std::string& id) {
   return found == kMayBeEqual.end() ? nullptr : &found->second;
 }
 
+/// A contact that breaks away within a micrometre is as good as rigid, and takes thousands of steps to simulate.
+constexpr double kShortestBreakaway_mm = 1e-3;
+
+/// Stiffness of a contact that breaks away over the shortest travel, Nm/rad or N/m.
+double stiffest_contact(const sim::DriveDescription& description) {
+  const sim::EffectEntry* coulomb = description.find("coulomb");
+  if (coulomb == nullptr) return HUGE_VAL;
+  double level = 0.0;
+  for (const auto& [id, value] : coulomb->parameters) level = std::max(level, std::abs(value));
+  const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
+  return level * description.data.lead / (kShortestBreakaway_mm * millimetre);
+}
+
 }  // namespace
 
 std::string FreeParameter::name(const sim::DriveDescription& description) const {
   return fmt::format("{}.{}", description.effects[effect].kind, entries.front().first);
 }
 
-ParameterVector::ParameterVector(const sim::DriveDescription& description) {
-  for (std::size_t index = 0; index < description.effects.size(); ++index) {
+ParameterVector::ParameterVector(const sim::DriveDescription& description, Freedom freedom) {
+  const bool only_last = freedom == Freedom::last_effect;
+  for (std::size_t index = only_last ? description.effects.size() - 1 : 0; index < description.effects.size();
+       ++index) {
     const sim::EffectEntry& entry = description.effects[index];
     const sim::EffectInfo& info = *sim::find_effect(entry.kind);
     std::vector<std::string> taken;
     for (const sim::ParameterInfo& parameter : info.parameters) {
       const std::string id(parameter.id);
       if (!entry.has(id) || std::ranges::find(taken, id) != taken.end()) continue;
+      if (only_last && id == "period") continue;
       const double value = entry.at(id);
       const double magnitude = std::abs(value);
       FreeParameter free{index, {{id, 1.0}}, magnitude, parameter.lower, parameter.upper};
+      if (parameter.scale == sim::Scale::bristle_stiffness)
+        free.upper = std::max(magnitude, std::min(free.upper, stiffest_contact(description)));
       const std::string* partner = partner_of(id);
       if (partner != nullptr && entry.has(*partner) && entry.at(*partner) == value) {
         free.entries.emplace_back(*partner, 1.0);

@@ -20,10 +20,15 @@ struct FreeParameter {
   std::string name(const sim::DriveDescription& description) const;  ///< "cogging.cosine"
 };
 
+enum class Freedom {
+  everything,  ///< all parameters of all effects
+  last_effect  ///< those of the last effect, but not its period along the travel
+};
+
 class ParameterVector {
  public:
-  /// All parameters of all effects. Scales come from the values, or from the catalogue where a value is zero.
-  explicit ParameterVector(const sim::DriveDescription& description);
+  /// Scales come from the values, or from the catalogue where a value is zero.
+  explicit ParameterVector(const sim::DriveDescription& description, Freedom freedom = Freedom::everything);
 
   const std::vector<FreeParameter>& parameters() const { return parameters_; }
   std::size_t size() const { return parameters_.size(); }

@@ -28,9 +28,14 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
       command_volts(record, base.data),
       MotionSmoother(record, base.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"), friction_level),
       {},
-      record.sample_period_s};
-  for (std::size_t begin = 0; begin + length < record.size(); begin += length)
+      record.sample_period_s,
+      nullptr};
+  std::vector<ShiftWeights> weights;
+  for (std::size_t begin = 0; begin + length < record.size(); begin += length) {
     prepared.windows.push_back({begin, length});
+    weights.push_back(prepared.smoother.shift_weights(begin));
+  }
+  prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
   return prepared;
 }
 
@@ -48,8 +53,9 @@ class Restarts {
         memory_(static_cast<std::size_t>(std::ceil(drive.memory_s() / prepared.period_s))),
         shifts_(!drive.encoder_error.empty() || drive.shapes_effort()) {}
 
-  /// Rows must be asked for in rising order.
-  sim::DriveState at(std::size_t row) {
+  /// Windows must be asked for in rising order.
+  sim::DriveState at(const Window& window) {
+    const std::size_t row = window.begin;
     if (memory_ == 0 && !shifts_) return drive_.at(motion_.x[row], motion_.w[row]);
     // Rows further back than the drive remembers need not be gone through.
     const std::size_t needed = row - std::min(row, rows_back(row) + (shifts_ ? prepared_.smoother.reach() : 0));
@@ -58,10 +64,10 @@ class Restarts {
       row_ = needed;
       begun_ = true;
     }
-    const std::size_t first = shifts_ ? row - std::min(row, prepared_.smoother.reach()) : row;
+    const std::size_t first = shifts_ ? prepared_.weights_of(window).first : row;
     while (row_ < first) follow(state_, row_++);
     if (!shifts_) return state_;
-    return shifted(row, first);
+    return shifted(row, prepared_.weights_of(window));
   }
 
  private:
@@ -78,12 +84,12 @@ class Restarts {
                          prepared_.period_s);
   }
 
-  sim::DriveState shifted(std::size_t row, std::size_t first) {
-    const std::size_t last = std::min(row + prepared_.smoother.reach(), motion_.x.size() - 1);
+  sim::DriveState shifted(std::size_t row, const ShiftWeights& weights) {
+    const std::size_t last = weights.first + weights.x_of_reading.size();
     reading_.clear();
     command_V_.clear();
     sim::DriveState restart = state_, ahead = state_;
-    for (std::size_t k = first; k < last; ++k) {
+    for (std::size_t k = weights.first; k < last; ++k) {
       if (k == row) restart = ahead;
       if (!drive_.encoder_error.empty()) {
         const double x = motion_.x[k];
@@ -93,7 +99,7 @@ class Restarts {
       if (drive_.shapes_effort()) command_V_.push_back(effort / drive_.effort_per_volt - prepared_.u_V[k]);
     }
     if (row >= last) restart = ahead;
-    const MotionSmoother::Shift shift = prepared_.smoother.shift_at(row, first, reading_, command_V_);
+    const ShiftWeights::Shift shift = weights.shift(reading_, command_V_);
     restart.x += shift.x;
     restart.w += shift.w;
     if (!drive_.has_second_mass()) restart.load_x = restart.x;
@@ -117,7 +123,7 @@ std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const Prepa
   std::vector<sim::DriveState> states;
   states.reserve(prepared.windows.size());
   Restarts restarts(drive, prepared);
-  for (const Window& window : prepared.windows) states.push_back(restarts.at(window.begin));
+  for (const Window& window : prepared.windows) states.push_back(restarts.at(window));
   return states;
 }
 
@@ -128,7 +134,7 @@ void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction
   Restarts restarts(drive, prepared);
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
-    sim::DriveState state = restarts.at(window.begin);
+    sim::DriveState state = restarts.at(window);
     for (std::size_t k = window.begin; k < window.begin + window.length; ++k) {
       drive.step(state, prepared.u_V[k], t_s[k], prepared.period_s);
       out.x[k + 1] = drive.encoder(state);

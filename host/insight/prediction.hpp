@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "host/insight/smoothed_motion.hpp"
@@ -28,8 +29,10 @@ struct PreparedRecord {
   MotionSmoother smoother;
   std::vector<Window> windows;
   double period_s;
+  std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< of every window that the record has room for
 
   const SmoothedMotion& motion() const { return smoother.motion(); }
+  const ShiftWeights& weights_of(const Window& window) const { return (*shift_weights)[window.begin / window.length]; }
 };
 
 /// `base` gives the inertia and viscous friction that the smoother needs. Throws Failure(bad_input) for a record

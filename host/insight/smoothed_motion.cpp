@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "host/exit_codes.hpp"
@@ -223,27 +224,49 @@ void MotionSmoother::smooth(const std::vector<Observation>& observed, const std:
   }
 }
 
-MotionSmoother::Shift MotionSmoother::shift_at(std::size_t row, std::size_t first, const std::vector<double>& reading,
-                                               const std::vector<double>& command_V) const {
+ShiftWeights MotionSmoother::shift_weights(std::size_t row) const {
+  // The smoother's two passes, transposed: from the state of one row back to everything that reaches it.
   const Eigen::Index seen = by_position_ ? 0 : 1;
-  const std::size_t count = std::max(reading.size(), command_V.size());
-  static thread_local std::vector<Vector3d> filtered, predicted;
-  filtered.resize(count);
-  predicted.resize(count);
-  Vector3d state(by_position_ && !reading.empty() ? reading[0] : 0.0, 0.0, 0.0);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Gains& gains = gains_[first + k];
-    predicted[k] = state;
-    state += gains.measurement * ((reading.empty() ? 0.0 : reading[k]) - state(seen));
-    if (gains.standing) state -= gains.standstill * state(1);
-    filtered[k] = state;
-    state = A_ * state;
-    if (!command_V.empty()) state += B_ * command_V[k];
-  }
-  Vector3d later = filtered[count - 1];
-  for (std::size_t k = count - 1; k-- > row - first;)
-    later = filtered[k] + gains_[first + k].backward * (later - predicted[k + 1]);
-  return {later(0), gains_[row].standing ? 0.0 : later(1)};
+  ShiftWeights weights;
+  weights.first = row - std::min(row, reach_);
+  const std::size_t count = std::min(row + reach_, gains_.size() - 1) - weights.first;
+  std::vector<Vector3d> of_filtered(count), of_predicted(count + 1);
+  const auto run = [&](const Vector3d& wanted, std::vector<double>& of_reading, std::vector<double>& of_command) {
+    of_reading.assign(count, 0.0);
+    of_command.assign(count, 0.0);
+    std::ranges::fill(of_filtered, Vector3d::Zero());
+    std::ranges::fill(of_predicted, Vector3d::Zero());
+    Vector3d later = wanted;
+    for (std::size_t k = row - weights.first; k < count; ++k) {
+      of_filtered[k] = later;
+      if (k + 1 == count) break;
+      later = (gains_[weights.first + k].backward.transpose() * later).eval();
+      of_predicted[k + 1] -= later;
+    }
+    for (std::size_t k = count; k-- > 0;) {
+      const Gains& gains = gains_[weights.first + k];
+      Vector3d state = of_filtered[k] + A_.transpose() * of_predicted[k + 1];
+      of_command[k] = B_.dot(of_predicted[k + 1]);
+      if (gains.standing) state(1) -= gains.standstill.dot(state);
+      of_reading[k] = gains.measurement.dot(state);
+      state(seen) -= of_reading[k];
+      of_predicted[k] += state;
+    }
+    if (by_position_ && count > 0) of_reading[0] += of_predicted[0](0);
+  };
+  run(Vector3d::UnitX(), weights.x_of_reading, weights.x_of_command);
+  const double moves = gains_[row].standing ? 0.0 : 1.0;
+  run(moves * Vector3d::UnitY(), weights.w_of_reading, weights.w_of_command);
+  return weights;
+}
+
+ShiftWeights::Shift ShiftWeights::shift(const std::vector<double>& reading,
+                                        const std::vector<double>& command_V) const {
+  const auto product = [](const std::vector<double>& weights, const std::vector<double>& changes) {
+    return std::transform_reduce(changes.begin(), changes.end(), weights.begin(), 0.0);
+  };
+  return {product(x_of_reading, reading) + product(x_of_command, command_V),
+          product(w_of_reading, reading) + product(w_of_command, command_V)};
 }
 
 }  // namespace host

@@ -24,6 +24,20 @@ struct SmoothedMotion {
 /// Throws Failure(bad_input) where neither can be had.
 std::vector<double> command_volts(const Record& record, const sim::DataSheet& data);
 
+/// How the smoothed state of one row shifts when the encoder's readings and the command change around it. The smoother
+/// is linear: one weight a row, and shifts add up.
+struct ShiftWeights {
+  std::size_t first = 0;                           ///< row of the first weight
+  std::vector<double> x_of_reading, w_of_reading;  ///< per mm (m) of change of a row's reading
+  std::vector<double> x_of_command, w_of_command;  ///< per volt of change of a row's command
+
+  struct Shift {
+    double x, w;
+  };
+  /// Changes of the rows from `first` on; either may be empty.
+  Shift shift(const std::vector<double>& reading, const std::vector<double>& command_V) const;
+};
+
 /// Rauch-Tung-Striebel smoother of the model (15): travel, speed and a random-walk disturbance, driven by the command
 /// and corrected by the encoder alone, so that errors of the tachometer stay out of it. A record without a position is
 /// smoothed from its speed. The gains belong to the record: further signals pass through the same filter.
@@ -39,14 +53,8 @@ class MotionSmoother {
   /// Rows before and after a row whose signals still reach its smoothed state (some ten times the smoother's memory).
   std::size_t reach() const { return reach_; }
 
-  /// How the smoothed state of one row shifts when the encoder's readings and the command change around it.
-  struct Shift {
-    double x, w;
-  };
-  /// `reading` (mm or m) and `command_V` hold the changes of the rows first ... first + size - 1; either may be empty.
-  /// The smoother is linear, so that shifts add up.
-  Shift shift_at(std::size_t row, std::size_t first, const std::vector<double>& reading,
-                 const std::vector<double>& command_V) const;
+  /// How the smoothed state of one row answers changes around it, as far as reach() on both sides.
+  ShiftWeights shift_weights(std::size_t row) const;
 
  private:
   struct Observation;

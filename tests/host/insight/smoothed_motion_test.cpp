@@ -89,9 +89,9 @@ TEST(SmoothedMotion, OwesNothingToTheTachometer) {
 TEST(SmoothedMotion, ShiftsAddUpToTheSmoothingOfTheShiftedRecord) {
   host::Record record = HandMade::record(kDuration_s);
   const host::MotionSmoother smoother = smooth(record);
-  const std::size_t row = 1000, first = row - smoother.reach(), count = 2 * smoother.reach() + 1;
-  const std::vector<double> reading(count, 0.5);
-  const host::MotionSmoother::Shift shift = smoother.shift_at(row, first, reading, {});
+  const std::size_t row = 1000;
+  const std::vector<double> reading(2 * smoother.reach(), 0.5);
+  const host::ShiftWeights::Shift shift = smoother.shift_weights(row).shift(reading, {});
   // A constant offset of the encoder shifts the travel by itself and the speed not at all.
   EXPECT_NEAR(shift.x, 0.5, 1e-3);
   EXPECT_NEAR(shift.w, 0.0, 1e-3 * std::abs(smoother.motion().w[row]));
