@@ -26,7 +26,8 @@ constexpr double kClose = 1.5;
 /// Two starts of one effect are both pursued while their errors are so close.
 constexpr double kOpenRace = 1.25;
 
-/// A new effect first comes into its own size; a base that was bent to make up for its absence would hold it down.
+/// A spectrum sees an effect along the travel at the right place but weakened by smoothing, and a base that was bent to
+/// make up for its absence would hold it down: its amplitude comes first, alone.
 constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
 constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3};
 constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4};
@@ -71,6 +72,17 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
 
 }  // namespace
 
+SearchEffort SearchEffort::over(double window_s) const {
+  const auto scaled = [&](std::size_t windows) {
+    return static_cast<std::size_t>(static_cast<double>(windows) * kWindow_s / window_s);
+  };
+  SearchEffort effort = *this;
+  effort.coarse_windows = scaled(coarse_windows);
+  effort.medium_windows = scaled(medium_windows);
+  effort.final_windows = scaled(final_windows);
+  return effort;
+}
+
 sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training) {
   // From the given values, and from a drive 25 % heavier or lighter with friction that goes the other way.
   std::vector<sim::DriveDescription> starts(3, given);
@@ -80,7 +92,8 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
     if (sim::EffectEntry* coulomb = starts[k].find("coulomb"))
       for (auto& [id, value] : coulomb->parameters) value /= factors[k];
   }
-  const RecordSet thin = thinned(training, SearchEffort{}.medium_windows);
+  const double window_s = training.records.front().prepared.window_s();
+  const RecordSet thin = thinned(training, SearchEffort{}.over(window_s).medium_windows);
   std::vector<FitResult> results(starts.size());
   for_each_in_parallel(starts.size(), [&](std::size_t k) { results[k] = fit_model(starts[k], thin, kSeriousFit); });
   const FitResult& best = *std::ranges::min_element(results, {}, &FitResult::robust);
@@ -173,8 +186,9 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     });
     std::ranges::stable_sort(list, {}, &Start::error);
   };
-  for_each_in_parallel(starts.size(),
-                       [&](std::size_t k) { starts[k].model = fit_model(starts[k].model, coarse, kOwnSize).model; });
+  for_each_in_parallel(starts.size(), [&](std::size_t k) {
+    if (starts[k].info->periodic) starts[k].model = fit_model(starts[k].model, coarse, kOwnSize).model;
+  });
   fit_all(starts, coarse, kFirstLook);
   std::vector<Start> race;
   for (const Start& start : starts) {

@@ -30,6 +30,9 @@ struct SearchEffort {
   std::size_t medium_windows = 200;
   std::size_t final_windows = 600;
   std::size_t finalists = 4;
+  /// As many samples for windows of another length.
+  SearchEffort over(double window_s) const;
+
   const sim::DriveDescription* nominal = nullptr;  ///< the model as it was given, another start for its parameters
 };
 

@@ -1,21 +1,22 @@
 #include "host/insight/chance.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
 namespace host {
 
-double confidence_of_improvement(const SetError& before, const SetError& after) {
-  // Errors of neighbouring windows belong to the same motion: blocks of ten windows are drawn together.
-  constexpr std::size_t kBlock = 10;
+double confidence_of_improvement(const SetError& before, const SetError& after, std::size_t block,
+                                 double common_square) {
   constexpr int kDraws = 2000;
   const std::size_t count = std::min(before.windows.size(), after.windows.size());
   std::vector<double> gains;
-  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+  for (std::size_t begin = 0; begin < count; begin += block) {
     double gain = 0.0;
-    for (std::size_t k = begin; k < std::min(count, begin + kBlock); ++k)
-      gain += before.windows[k].x + before.windows[k].w - after.windows[k].x - after.windows[k].w;
+    for (std::size_t k = begin; k < std::min(count, begin + block); ++k)
+      gain += weighed_square(before.windows[k].x, common_square) + weighed_square(before.windows[k].w, common_square) -
+              weighed_square(after.windows[k].x, common_square) - weighed_square(after.windows[k].w, common_square);
     gains.push_back(gain);
   }
   if (gains.empty()) return 0.0;

@@ -32,9 +32,6 @@ void for_each_window(const sim::Drive& drive, const RecordSet& set, Use use) {
   }
 }
 
-/// Squared error of a window over its floor squared, as a fit weighs it.
-double weighed(double square, double common) { return common * std::log1p(square / common); }
-
 double mean_square(const std::vector<double>& predicted, const std::vector<double>& measured, const Window& window) {
   double sum = 0.0;
   for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
@@ -55,6 +52,10 @@ void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::ranges::nth_element(squares, middle);
   set.common_square = kCommonSquare * std::max(1.0, *middle);
+}
+
+double weighed_square(double square, double common_square) {
+  return common_square * std::log1p(square / common_square);
 }
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set) {
@@ -80,7 +81,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
       ++w_count;
     }
     combined += score.x + score.w;
-    robust += weighed(score.x, set.common_square) + weighed(score.w, set.common_square);
+    robust += weighed_square(score.x, set.common_square) + weighed_square(score.w, set.common_square);
     error.windows.push_back(score);
   });
   const auto root_mean = [](double sum, std::size_t count) {
@@ -120,7 +121,7 @@ void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out) {
                             double deviation) {
       const double square = mean_square(predicted, measured, window) / (deviation * deviation);
       const double scale =
-          share / deviation * (square > 0.0 ? std::sqrt(weighed(square, set.common_square) / square) : 1.0);
+          share / deviation * (square > 0.0 ? std::sqrt(weighed_square(square, set.common_square) / square) : 1.0);
       for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
         *out++ = (predicted[k] - measured[k]) * scale;
     };

@@ -56,6 +56,9 @@ struct SetError {
   std::vector<WindowScore> windows;
 };
 
+/// Squared error of a window over its floor squared, as a fit weighs it.
+double weighed_square(double square, double common_square);
+
 SetError error_of(const sim::Drive& drive, const RecordSet& set);
 
 /// Residuals (prediction - measurement)/floor of every used row, scaled so that their squares sum to robust^2.

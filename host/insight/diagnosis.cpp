@@ -48,6 +48,14 @@ ChannelError channel_error(std::string name, bool position, const SetError& befo
 
 }  // namespace
 
+namespace {
+
+std::size_t windows_per_second(const RecordSet& set) {
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(1.0 / set.records.front().prepared.window_s())));
+}
+
+}  // namespace
+
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before) {
   const sim::Drive drive(candidate.model);
@@ -56,7 +64,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
           before.combined,
           after.combined,
           error_of(drive, training).combined,
-          confidence_of_improvement(before, after),
+          confidence_of_improvement(before, after, windows_per_second(validation), validation.common_square),
           candidate.model};
 }
 
@@ -85,14 +93,15 @@ bool moves_enough(const RecordSet& set) {
 }  // namespace
 
 Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation) {
+                       const std::vector<const Record*>& validation, double window_s) {
   Diagnosis result;
+  result.window_s = window_s;
   result.held_back = validation.empty();
-  result.training = compare_on(training, model);
+  result.training = compare_on(training, model, window_s);
   if (validation.empty()) {
     hold_back(result.training, result.validation);
   } else {
-    result.validation = compare_on(validation, model);
+    result.validation = compare_on(validation, model, window_s);
   }
   result.base = result.best = model;
   if (!moves_enough(result.training)) return result;
@@ -102,9 +111,27 @@ Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<con
   return result;
 }
 
-Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const ShareDone& progress) {
-  Diagnosis result = prepare_sets(model, training, validation);
+namespace {
+
+/// Windows of a machine whose missing effects, not its sensors, set the limit, s: at 1 kHz ten samples, in which the
+/// position shows a force as a low-pass of 100 Hz would.
+constexpr double kRoughWindow_s = 0.01;
+
+/// A machine is rough when half of the windows of the best model lie this far above their floors.
+constexpr double kRoughError = 10.0;
+
+bool is_rough(const SetError& error) {
+  std::vector<double> squares;
+  for (const WindowScore& score : error.windows) squares.push_back(std::max(score.x, score.w));
+  if (squares.empty()) return false;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  return *middle > kRoughError * kRoughError;
+}
+
+Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                        const std::vector<const Record*>& validation, const ShareDone& progress) {
+  Diagnosis result = prepare_sets(model, training, validation, window_s);
   const sim::Drive given(model);
   if (!moves_enough(result.training)) {
     result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
@@ -119,7 +146,7 @@ Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const R
     renew_floors(result.validation, reference);
   };
 
-  SearchEffort effort;
+  SearchEffort effort = SearchEffort{}.over(window_s);
   effort.nominal = &model;
   std::vector<Candidate> singles =
       search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5), effort);
@@ -144,6 +171,10 @@ Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const R
   result.given_train = error_of(given, result.training).combined;
   result.given_validate = error_of(given, result.validation).combined;
   result.where = error_regions(result.base, result.validation);
+  result.rough =
+      is_rough(result.candidates.empty() ? before
+                                         : error_of(sim::Drive(result.candidates.front().model), result.validation)) ||
+      window_s < kWindow_s;
   result.verdict = reach_verdict(model, result);
   result.best = result.base;
   for (const JudgedCandidate& candidate : result.candidates)
@@ -168,6 +199,16 @@ Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const R
                                             before, after_train, after));
   if (progress) progress(1.0);
   return result;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                   const std::vector<const Record*>& validation, const ShareDone& progress) {
+  Diagnosis result = diagnose_over(kWindow_s, model, training, validation, progress);
+  const bool short_windows = training.front()->sample_period_s <= 0.1 * kRoughWindow_s * 1.001;
+  if (!result.rough || !short_windows) return result;
+  return diagnose_over(kRoughWindow_s, model, training, validation, progress);
 }
 
 }  // namespace host

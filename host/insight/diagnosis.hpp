@@ -43,6 +43,7 @@ struct DiagnosisVerdict {
 
 struct Diagnosis {
   double window_s = kWindow_s;
+  bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
   bool held_back = false;  ///< no validation record was given: blocks of the training data were kept back
   std::vector<ChannelError> channels;
   double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
@@ -59,13 +60,15 @@ struct Diagnosis {
 /// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
 /// be compared. Keeps references to the records.
 Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation);
+                       const std::vector<const Record*>& validation, double window_s = kWindow_s);
 
 /// A candidate on validation data, against the base's error there.
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before);
 
-/// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
+/// Over windows of kWindow_s; where the machine proves rough, again over shorter ones, in which an error of force shows
+/// before it adds up to a drift. Throws Failure(bad_input) for records that cannot be compared. Keeps references to the
+/// records.
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                    const std::vector<const Record*>& validation, const ShareDone& progress = {});
 

@@ -23,6 +23,10 @@ const std::string* partner_of(const std::string& id) {
 /// A contact that breaks away within a micrometre is as good as rigid, and takes thousands of steps to simulate.
 constexpr double kShortestBreakaway_mm = 1e-3;
 
+/// A Stribeck curve that fades below a few tenths of a millimetre a second (lubricated guides: 0.5 to 10 mm/s) is a
+/// step, which a fit does not leave again: the error no longer depends on its speeds.
+constexpr double kSlowestFading_mm_s = 0.3;
+
 /// Stiffness of a contact that breaks away over the shortest travel, Nm/rad or N/m.
 double stiffest_contact(const sim::DriveDescription& description) {
   const sim::EffectEntry* coulomb = description.find("coulomb");
@@ -31,6 +35,12 @@ double stiffest_contact(const sim::DriveDescription& description) {
   for (const auto& [id, value] : coulomb->parameters) level = std::max(level, std::abs(value));
   const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
   return level * description.data.lead / (kShortestBreakaway_mm * millimetre);
+}
+
+/// Lower bound of the speeds in a Stribeck curve, rad/s or m/s.
+double slowest_fading(const sim::DriveDescription& description) {
+  const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
+  return kSlowestFading_mm_s * millimetre / description.data.lead;
 }
 
 }  // namespace
@@ -55,6 +65,10 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
       FreeParameter free{index, {{id, 1.0}}, magnitude, parameter.lower, parameter.upper};
       if (parameter.scale == sim::Scale::bristle_stiffness)
         free.upper = std::max(magnitude, std::min(free.upper, stiffest_contact(description)));
+      if (id.starts_with("omega") && magnitude > 0.0) {
+        const double slowest = std::min(magnitude, slowest_fading(description));
+        (value > 0.0 ? free.lower : free.upper) = value > 0.0 ? slowest : -slowest;
+      }
       const std::string* partner = partner_of(id);
       if (partner != nullptr && entry.has(*partner) && entry.at(*partner) == value) {
         free.entries.emplace_back(*partner, 1.0);

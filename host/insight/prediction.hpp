@@ -32,6 +32,9 @@ struct PreparedRecord {
   std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< of every window that the record has room for
 
   const SmoothedMotion& motion() const { return smoother.motion(); }
+  double window_s() const {
+    return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
+  }
   const ShiftWeights& weights_of(const Window& window) const { return (*shift_weights)[window.begin / window.length]; }
 };
 

@@ -18,6 +18,8 @@ constexpr double kLeastGain = 0.05;
 constexpr double kLeastConfidence = 0.99;
 /// Part of what there is to explain, (before^2 - after^2)/(before^2 - 1), below which an effect is no explanation.
 constexpr double kLeastShare = 0.35;
+/// The same on a rough machine, whose residual has many small causes.
+constexpr double kLeastRoughShare = 0.1;
 /// A further effect must take half of what the first leaves, and a sixth of the error.
 constexpr double kLeastFurtherShare = 0.5;
 constexpr double kLeastFurtherGain = 0.15;
@@ -40,9 +42,9 @@ const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size
   return best;
 }
 
-bool earns_its_place(const JudgedCandidate& candidate) {
+bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   return candidate.after < (1.0 - kLeastGain) * candidate.before && candidate.confidence >= kLeastConfidence &&
-         explained_share(candidate.before, candidate.after) >= kLeastShare;
+         explained_share(candidate.before, candidate.after) >= (diagnosis.rough ? kLeastRoughShare : kLeastShare);
 }
 
 std::size_t parameters_added(const JudgedCandidate& candidate) {
@@ -53,7 +55,7 @@ std::size_t parameters_added(const JudgedCandidate& candidate) {
 std::vector<std::string> ties_of(const JudgedCandidate& best, const Diagnosis& diagnosis) {
   std::vector<std::string> tied;
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
-    if (&candidate == &best || candidate.kinds.size() != 1 || !earns_its_place(candidate)) continue;
+    if (&candidate == &best || candidate.kinds.size() != 1 || !earns_its_place(candidate, diagnosis)) continue;
     if (candidate.after > (1.0 + kTie) * best.after || candidate.train_after > (1.0 + kTie) * best.train_after)
       continue;
     if (parameters_added(candidate) > parameters_added(best)) continue;
@@ -118,14 +120,14 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const JudgedCandidate* single = best_of_size(diagnosis, 1);
   const JudgedCandidate* pair = best_of_size(diagnosis, 2);
   if (single != nullptr) single = simplest_near(single, diagnosis);
-  const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair) &&
+  const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
                            pair->after < (1.0 - kLeastFurtherGain) * single->after &&
                            pair->train_after < (1.0 - kLeastFurtherGain) * single->train_after &&
                            explained_share(single->after, pair->after) >= kLeastFurtherShare;
   const JudgedCandidate* chosen = pair_stands ? pair : single;
   const double before = diagnosis.before_validate;
 
-  if (chosen != nullptr && earns_its_place(*chosen)) {
+  if (chosen != nullptr && earns_its_place(*chosen, diagnosis)) {
     verdict.effects = chosen->kinds;
     verdict.status = Status::missing;
     const sim::EffectInfo& first = *sim::find_effect(chosen->kinds.front());
