@@ -1,5 +1,7 @@
 // axistool: finds out how a drive really behaves. One file a command; this one lists them and maps failures to exit
 // codes.
+#include <glog/logging.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -7,6 +9,7 @@
 #include "host/exit_codes.hpp"
 
 int main(int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs steps that it tried in vain
   CLI::App app{"Identify feed drives, compare models with measurements, and find the physical effect that is missing."};
   app.require_subcommand(1);
   app.footer(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/insight/speed_coverage.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -143,15 +144,23 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     }
     std::vector<std::string> titles;
     for (const std::string& kind : chosen->kinds) titles.push_back(title_of(kind));
-    verdict.next_experiment = std::string(first.separate_by);
+    verdict.next_experiment = std::string(first.separate_by) + ".";
+    const auto gap = widest_speed_gap(diagnosis.training, given.data);
+    const bool shapes_friction = std::ranges::any_of(
+        chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });
+    if (shapes_friction && gap) verdict.next_experiment += " " + speeds_to_record(*gap);
     verdict.explanation = fmt::format(
         "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the floor: {:.0f} % of what there is "
-        "to "
-        "explain. {}",
+        "to explain. {}.",
         fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
         chosen->after, 100.0 * explained_share(before, chosen->after), first.shows);
     if (verdict.status == Status::ambiguous)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(verdict.effects, ", "));
+    if (diagnosis.rough)
+      verdict.explanation += fmt::format(
+          " Much more than noise is left whatever is added, so the model is judged over windows of {:g} s, in which an "
+          "error of force shows before it adds up to a drift.",
+          diagnosis.window_s);
     return verdict;
   }
   if (before > 2.0 * kExplained) {
