@@ -27,9 +27,10 @@ trap 'rm -rf "$work"' EXIT
 work=$(readlink -f "$work")
 mkdir -p "$work/state/lists/partial" "$work/cache/archives/partial"
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Label: Debian' | head -n 1)
+[ -n "$mirror" ] || fail "apt knows no mirror of Debian: apt-get update first"
 keys=/usr/share/keyrings/debian-archive-keyring.gpg
 [ -r $keys ] || fail "$keys is missing: apt-get install debian-archive-keyring"
-echo "deb [signed-by=$keys] ${mirror:-http://deb.debian.org/debian} $suite main" >"$work/sources.list"
+echo "deb [signed-by=$keys] $mirror $suite main" >"$work/sources.list"
 
 apt="apt-get -qq -o Acquire::Retries=3 -o Acquire::Languages=none -o APT::Sandbox::User= -o Dir::Etc::SourceParts=-
   -o Dir::Etc::SourceList=$work/sources.list -o Dir::State=$work/state -o Dir::State::status=/var/lib/dpkg/status
