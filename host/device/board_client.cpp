@@ -153,7 +153,7 @@ std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
 
 void BoardClient::keep_samples(const Message& message) {
   constexpr std::size_t kMostWaiting = 100'000;  // more than a minute's worth: nobody takes them
-  if (message.length < 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of a length that cannot be");
+  if (message.length <= 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of a length that cannot be");
   if (samples_.size() == kMostWaiting) fail(ExitCode::protocol, "the board sends samples that were not asked for");
   Samples samples;
   std::memcpy(&samples.first_row, message.payload.data(), 4);
