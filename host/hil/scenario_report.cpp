@@ -92,15 +92,20 @@ ScatterPlot plane_plot(const ScenarioRun& run) {
     for (std::size_t k = 0; k < values.size(); k += 4) some.push_back(values[k]);
     return some;
   };
-  plot.series = {
-      {"reference",
-       SeriesRole::model,
-       SeriesStyle::line,
-       every(run.records[0].x_ref),
-       every(run.records[1].x_ref),
-       {},
-       {}},
-      {"encoders", SeriesRole::measured, SeriesStyle::line, every(run.records[0].x), every(run.records[1].x), {}, {}}};
+  plot.series = {{"reference",
+                  SeriesRole::model,
+                  SeriesStyle::points,
+                  every(run.records[0].x_ref),
+                  every(run.records[1].x_ref),
+                  {},
+                  {}},
+                 {"encoders",
+                  SeriesRole::measured,
+                  SeriesStyle::points,
+                  every(run.records[0].x),
+                  every(run.records[1].x),
+                  {},
+                  {}}};
   return plot;
 }
 
