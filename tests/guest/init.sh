@@ -13,9 +13,16 @@ mount -t devtmpfs none /host/dev
 mkdir -p /host/dev/shm
 mount -t tmpfs none /host/dev/shm
 mount -t tmpfs none /host/run
+mkdir /real_tmp
+mount -o bind /host/tmp /real_tmp
 mount -t tmpfs none /host/tmp
 mkdir /host/run/guest
 mount -t 9p -o trans=virtio,version=9p2000.L,msize=512000 shared /host/run/guest || poweroff -f
+# A checkout below /tmp stays in sight.
+project=$(cat /host/run/guest/project)
+case "$project" in
+  /tmp/*) mkdir -p "/host$project" && mount -o bind "/real_tmp${project#/tmp}" "/host$project" ;;
+esac
 ip link set lo up
 echo "guest: started"
 echo "guest: started" >/host/dev/kmsg

@@ -26,6 +26,7 @@ link=()
   -device virtserialport,chardev=link)
 shared=$(mktemp -d)
 trap 'rm -rf "$shared"' EXIT
+readlink -f "$here/../.." >"$shared/project"
 printf 'cd %q; exec %s\n' "$PWD" "$(printf '%q ' "$@")" >"$shared/command"
 timeout "${GUEST_LIMIT:-600}" $emulator -accel tcg,thread=multi -cpu max -machine pc -smp 1 -m 512 -nodefaults -no-reboot \
   -nographic -serial stdio -monitor none -kernel "$kernel/vmlinux" -initrd "$kernel/initrd.gz" \
