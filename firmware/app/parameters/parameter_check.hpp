@@ -86,7 +86,8 @@ inline constexpr float kPeriodTolerance = 1e-5F;
 template <typename Scalar>
 constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis) {
   const AxisValues v = values.axis(axis);
-  if (!v.get<"drive.fitted">()) return {};
+  const bool is_fitted = v.get<"drive.fitted">();
+  if (!is_fitted) return {};
   const float periods = v.get<"drive.sample_period">() * static_cast<float>(values.get<"control.rate">());
   if (periods < 1.0F - kPeriodTolerance || periods > 1.0F + kPeriodTolerance)
     return {SetProblemKind::rate_disagrees, ParameterKey::of_axis(axis, id_of<"drive.sample_period">())};

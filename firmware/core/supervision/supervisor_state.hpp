@@ -17,6 +17,7 @@ enum class SupervisorState : std::uint8_t {
 
 inline constexpr std::array<const char*, 6> kStateNames{"off", "self-test", "ready", "enabled", "stopping", "fault"};
 
+// cppcheck-suppress CastIntegerToAddressAtReturn
 constexpr const char* state_name(SupervisorState state) { return kStateNames[static_cast<std::size_t>(state)]; }
 
 /// The amplifier has its enable, and the D/A converter may be off 0 V, in these states only.
