@@ -22,7 +22,7 @@ inline bool boards_become(std::size_t count, const host::HidLibrary& library, st
     const bool readable =
         std::none_of(boards.begin(), boards.end(), [](const host::UsbBoard& one) { return one.serial_number.empty(); });
     if (boards.size() == count && readable) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
   } while (std::chrono::steady_clock::now() < end);
   return false;
 }
