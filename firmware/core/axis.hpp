@@ -213,13 +213,13 @@ class Axis {
   ReferenceGenerator generator_;
   ReferencePreview<Scalar> preview_;
   ReferenceFeedforward<Scalar> feedforward_{};
-  FrictionFeedforward<Scalar> friction_;
   DacConversion<Scalar> dac_;
   CountExtender counter_;
   Scalar model_input_V_{};
   AxisTelemetry<Scalar> telemetry_{};
   bool is_configured_ = false;
   bool is_synchronised_ = false;
+  FrictionFeedforward<Scalar> friction_;  // its tables last, so that one load reaches each of the others
 };
 
 }  // namespace firmware

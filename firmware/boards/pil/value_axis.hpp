@@ -12,11 +12,11 @@ class ValueAxis {
  public:
   struct Encoder {
     hal::EncoderReading reading;
-    hal::EncoderReading read() const { return reading; }
+    hal::EncoderReading read() const { return {reading.counts, reading.valid}; }
   };
   struct Tachometer {
     hal::TachometerReading reading;
-    hal::TachometerReading read() const { return reading; }
+    hal::TachometerReading read() const { return {reading.code, reading.valid}; }
   };
   struct Dac {
     std::int32_t code = 0;

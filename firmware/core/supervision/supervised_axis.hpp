@@ -206,9 +206,7 @@ class SupervisedAxis {
   }
 
   Hal& hal_;
-  Axis<Scalar, Hal> axis_;
   AxisMonitors<Scalar> monitors_;
-  CaptureRing<Scalar> capture_;
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;
   AxisFault fault_ = AxisFault::none;
@@ -221,6 +219,8 @@ class SupervisedAxis {
   std::int32_t self_test_samples_ = 0;
   std::int32_t settling_samples_ = 0;
   std::int32_t standing_samples_ = 0;
+  Axis<Scalar, Hal> axis_;  // the large tables come last: a load reaches no farther than 1 to 4 kB
+  CaptureRing<Scalar> capture_;
 };
 
 }  // namespace firmware

@@ -78,7 +78,10 @@ void bring_readings(std::size_t axis) {
   io[axis].tachometer().reading = {code + random_code() / 8, true};
 }
 
-[[gnu::noinline]] void step_one(std::size_t axis) { axes[axis].step(); }
+template <std::size_t axis>
+[[gnu::noinline]] void step_one() {
+  axes[axis].step();
+}
 [[gnu::noinline]] void step_both() { axes.step({now_us += 1000, false, false, false}); }
 
 struct EstimatorAndFeedback {
@@ -138,8 +141,8 @@ void count_steps() {
     command(period);
     for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
     if (period % 2 == 0) {
-      one.add(count([] { step_one(0); }));
-      step_one(1);
+      one.add(count([] { step_one<0>(); }));
+      step_one<1>();
     } else {
       both.add(count([] { step_both(); }));
     }
