@@ -19,6 +19,12 @@ void add_device_options(CLI::App& command, DeviceArguments& arguments) {
       ->envname("AXIS_DEVICE");
   command.add_flag_callback(
       "--sim", [&arguments] { arguments.device = "sim"; }, "the same as --device sim");
+  command
+      .add_option("--patience", arguments.patience_s,
+                  "seconds that the board may take to answer, more where it is emulated")
+      ->envname("AXIS_PATIENCE")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str();
   add_json_option(command, arguments.json);
 }
 
@@ -28,7 +34,9 @@ void add_change_options(CLI::App& command, DeviceArguments& arguments) {
 }
 
 host::BoardClient open_board(const DeviceArguments& arguments) {
-  return host::BoardClient(host::open_device(arguments.device));
+  const std::chrono::duration<double> patience(arguments.patience_s);
+  return host::BoardClient(host::open_device(arguments.device),
+                           std::chrono::duration_cast<std::chrono::milliseconds>(patience));
 }
 
 bool talks(const DeviceArguments& arguments) { return arguments.json != "-"; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -11,10 +12,11 @@ namespace axistool {
 
 struct DeviceArguments {
   std::string device, json;
+  double patience_s = std::chrono::duration<double>(host::BoardClient::kPatience).count();
   bool dry_run = false, yes = false;
 };
 
-/// --device, also from the environment variable AXIS_DEVICE, and --json.
+/// --device and --patience, also from the environment variables AXIS_DEVICE and AXIS_PATIENCE, and --json.
 void add_device_options(CLI::App& command, DeviceArguments& arguments);
 /// --dry-run and --yes, for commands that change something.
 void add_change_options(CLI::App& command, DeviceArguments& arguments);

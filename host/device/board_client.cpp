@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -91,20 +92,21 @@ Payload payload_of(const Message& reply) {
 
 }  // namespace
 
-BoardClient::BoardClient(std::unique_ptr<ReportLink> link) : link_(std::move(link)) {}
+BoardClient::BoardClient(std::unique_ptr<ReportLink> link, milliseconds patience)
+    : link_(std::move(link)), patience_(patience) {}
 
 template <typename Payload>
-Message BoardClient::request(MessageType type, const Payload& payload, milliseconds patience) {
+Message BoardClient::request(MessageType type, const Payload& payload) {
   Message message;
   message.type = type;
   message.put(payload);
-  return exchange(message, patience);
+  return exchange(message, patience_);
 }
 
-Message BoardClient::request(MessageType type, milliseconds patience) {
+Message BoardClient::request(MessageType type) {
   Message message;
   message.type = type;
-  return exchange(message, patience);
+  return exchange(message, patience_);
 }
 
 Message BoardClient::exchange(Message message, milliseconds patience) {
@@ -172,7 +174,7 @@ firmware::StatusPayload BoardClient::status() {
 
 firmware::TimingPayload BoardClient::timing(bool begin_anew) {
   const firmware::TimingRequest anew{static_cast<std::uint8_t>(begin_anew ? 1 : 0)};
-  return payload_of<firmware::TimingPayload>(request(MessageType::timing, anew, kPatience));
+  return payload_of<firmware::TimingPayload>(request(MessageType::timing, anew));
 }
 
 void BoardClient::require_same_table() {
@@ -189,7 +191,7 @@ firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
   std::size_t place = 0;
   while (place < firmware::kParameterCount) {
     const firmware::ReadRequest wanted{static_cast<std::uint16_t>(place), set, 0};
-    const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_values, wanted, kPatience));
+    const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_values, wanted));
     if (part.first != place || part.count == 0 || part.count > firmware::kValuesPerReport)
       fail(ExitCode::protocol, "the board's answer holds other parameters than were asked for");
     for (std::size_t i = 0; i < part.count && place < firmware::kParameterCount; ++i, ++place) {
@@ -203,10 +205,10 @@ firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
 
 void BoardClient::write_values(const firmware::ParameterValues& values, bool everything) {
   const firmware::ParameterValues before = read_values();
-  request(MessageType::begin_staging, firmware::BeginRequest{firmware::ValueSet::active}, kPatience);
+  request(MessageType::begin_staging, firmware::BeginRequest{firmware::ValueSet::active});
   firmware::ValuesPayload part;
   const auto flush = [&] {
-    if (part.count != 0) request(MessageType::stage, part, kPatience);
+    if (part.count != 0) request(MessageType::stage, part);
     part = {};
   };
   for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
@@ -217,7 +219,7 @@ void BoardClient::write_values(const firmware::ParameterValues& values, bool eve
     if (part.count == firmware::kValuesPerReport) flush();
   }
   flush();
-  request(MessageType::commit, firmware::CommitRequest{firmware::set_crc(values)}, kPatience);
+  request(MessageType::commit, firmware::CommitRequest{firmware::set_crc(values)});
   if (!(read_values() == values)) fail(ExitCode::protocol, "the board's parameters read back differently");
 }
 
@@ -225,7 +227,7 @@ std::vector<firmware::StoredEntry> BoardClient::read_stored() {
   std::vector<firmware::StoredEntry> entries;
   for (;;) {
     const firmware::ReadRequest wanted{static_cast<std::uint16_t>(entries.size()), {}, 0};
-    const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_stored, wanted, kPatience));
+    const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_stored, wanted));
     if (part.first != entries.size() || part.count > firmware::kValuesPerReport || entries.size() > 4096)
       fail(ExitCode::protocol, "the board's answer holds other entries than were asked for");
     for (std::size_t i = 0; i < part.count; ++i) entries.push_back({part.key[i], 0, part.bits[i]});
@@ -233,18 +235,22 @@ std::vector<firmware::StoredEntry> BoardClient::read_stored() {
   }
 }
 
-void BoardClient::save() { request(MessageType::save, kSavePatience); }
+void BoardClient::save() {
+  Message message;
+  message.type = MessageType::save;
+  exchange(message, std::max(patience_, kSavePatience));
+}
 
-void BoardClient::enable(std::uint8_t axes) { request(MessageType::enable, firmware::AxesRequest{axes}, kPatience); }
-void BoardClient::disable(std::uint8_t axes) { request(MessageType::disable, firmware::AxesRequest{axes}, kPatience); }
+void BoardClient::enable(std::uint8_t axes) { request(MessageType::enable, firmware::AxesRequest{axes}); }
+void BoardClient::disable(std::uint8_t axes) { request(MessageType::disable, firmware::AxesRequest{axes}); }
 void BoardClient::stop() { request(MessageType::stop); }
 
 void BoardClient::jog(std::uint8_t axis, double velocity) {
-  request(MessageType::jog, firmware::JogRequest{axis, {}, static_cast<float>(velocity)}, kPatience);
+  request(MessageType::jog, firmware::JogRequest{axis, {}, static_cast<float>(velocity)});
 }
 
 void BoardClient::move(std::uint8_t axis, std::int64_t target_counts) {
-  request(MessageType::move, firmware::MoveRequest::to(axis, target_counts), kPatience);
+  request(MessageType::move, firmware::MoveRequest::to(axis, target_counts));
 }
 
 void BoardClient::clear_faults() { request(MessageType::clear_faults); }
@@ -253,7 +259,7 @@ void BoardClient::restart() { request(MessageType::restart); }
 
 void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
   samples_.clear();
-  request(MessageType::start_capture, wanted, kPatience);
+  request(MessageType::start_capture, wanted);
 }
 
 firmware::CaptureReply BoardClient::stop_capture() {
@@ -264,7 +270,7 @@ std::optional<firmware::FaultRowPayload> BoardClient::fault_row(std::uint8_t axi
   Message message;
   message.type = MessageType::read_fault_capture;
   message.put(firmware::FaultRowRequest{axis, 0, row});
-  const Message reply = reply_to(message, kPatience);
+  const Message reply = reply_to(message, patience_);
   if (reply.status == Status::no_such_row) return std::nullopt;
   require_ok(reply);
   return payload_of<firmware::FaultRowPayload>(reply);

@@ -20,7 +20,10 @@ namespace host {
 /// refused (not in this state), device_fault, bad_input (a value that the board does not take).
 class BoardClient {
  public:
-  explicit BoardClient(std::unique_ptr<ReportLink> link);
+  static constexpr std::chrono::milliseconds kPatience{1000};
+
+  /// `patience`: how long an answer may take, as a rule; a board answers within milliseconds.
+  explicit BoardClient(std::unique_ptr<ReportLink> link, std::chrono::milliseconds patience = kPatience);
 
   firmware::IdentityPayload identify();
   firmware::StatusPayload status();
@@ -61,17 +64,16 @@ class BoardClient {
 
  private:
   template <typename Payload>
-  firmware::Message request(firmware::MessageType type, const Payload& payload, std::chrono::milliseconds patience);
-  firmware::Message request(firmware::MessageType type, std::chrono::milliseconds patience = kPatience);
+  firmware::Message request(firmware::MessageType type, const Payload& payload);
+  firmware::Message request(firmware::MessageType type);
   firmware::Message exchange(firmware::Message message, std::chrono::milliseconds patience);
   /// The reply, whatever its status.
   firmware::Message reply_to(firmware::Message message, std::chrono::milliseconds patience);
   std::optional<firmware::Message> receive(std::chrono::steady_clock::time_point deadline);
   void keep_samples(const firmware::Message& message);
 
-  static constexpr std::chrono::milliseconds kPatience{1000};
-
   std::unique_ptr<ReportLink> link_;
+  std::chrono::milliseconds patience_;
   std::uint16_t sequence_ = 0;
   std::deque<Samples> samples_;
 };
