@@ -7,6 +7,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/record/channel_checks.hpp"
 
 namespace host {
 
@@ -22,6 +23,15 @@ void require_same_rate(const std::vector<Record>& records) {
                       "(axistool import --resample)",
                       record.path, record.sample_period_s, records.front().path, records.front().sample_period_s));
     }
+  }
+}
+
+void require_enough(const std::vector<Record>& records) {
+  constexpr double kLowestRate_Hz = 50.0;  // five samples in a period of the lowest cut-off of the filters, 10 Hz
+  constexpr double kShortest_s = 0.2;      // twice the sliding that is asked of each direction
+  for (const Record& record : records) {
+    require_rate(record, kLowestRate_Hz, "see the axis accelerate");
+    require_duration(record, kShortest_s, "hold a movement");
   }
 }
 
@@ -114,6 +124,7 @@ IdentificationMethod default_method(const std::vector<Record>& records) {
 Identification identify_drive(const std::vector<Record>& given, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options) {
   require_same_rate(given);
+  require_enough(given);
   Identification result;
   result.method = method;
   result.tachometer = calibrate_tachometer(given, drive.data);

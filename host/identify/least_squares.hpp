@@ -46,25 +46,28 @@ class BlockedRegression {
     if (++rows_in_block_ == rows_per_block_) end_block();
   }
 
-  /// The same for rows [begin, end), fast: `row_of(k, phi)` fills phi and returns y. The sums of a block stay in
-  /// registers.
-  template <typename RowOf>
-  void add_rows(std::size_t begin, std::size_t end, const RowOf& row_of) {
+  /// The same for rows [begin, end), fast: `fill(k, row)` writes phi and, as the last of P + 1 numbers, y. A hundred
+  /// rows at a time stand in columns, whose inner products the processor forms several rows at once.
+  template <typename Fill>
+  void add_rows(std::size_t begin, std::size_t end, const Fill& fill) {
+    constexpr std::size_t kRows = 128;  // with P = 4: 5 kB, well inside the first cache
+    Eigen::Matrix<double, kRows, P + 1> rows;
     while (begin < end) {
-      const std::size_t stop = std::min(end, begin + rows_per_block_ - rows_in_block_);
-      Eigen::Matrix<double, P, P> moment = Eigen::Matrix<double, P, P>::Zero();
-      Row projection = Row::Zero(), phi;
-      for (std::size_t k = begin; k < stop; ++k) {
-        const double y = row_of(k, phi);
-        moment.noalias() += phi * phi.transpose();
-        projection.noalias() += phi * y;
+      const std::size_t count = std::min({kRows, end - begin, rows_per_block_ - rows_in_block_});
+      for (std::size_t k = 0; k < count; ++k) fill(begin + k, rows.row(static_cast<Eigen::Index>(k)));
+      rows.bottomRows(static_cast<Eigen::Index>(kRows - count)).setZero();
+      for (int c = 0; c < P; ++c) {
+        for (int other = 0; other < c; ++other) {
+          moment_(c, other) += rows.col(c).dot(rows.col(other));
+          moment_(other, c) = moment_(c, other);
+        }
+        moment_(c, c) += rows.col(c).squaredNorm();
+        projection_(c) += rows.col(c).dot(rows.col(P));
       }
-      moment_ += moment;
-      projection_ += projection;
-      rows_ += stop - begin;
-      rows_in_block_ += stop - begin;
+      rows_ += count;
+      rows_in_block_ += count;
       if (rows_in_block_ == rows_per_block_) end_block();
-      begin = stop;
+      begin += count;
     }
   }
 

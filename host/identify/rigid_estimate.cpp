@@ -74,15 +74,15 @@ Regression discrete_regression(const std::vector<Record>& records, const sim::Da
     const double* const speed = record.w.data();
     const double limit = volts ? data.dac_limit_V : HUGE_VAL;
     const double scale = volts ? 1.0 : 1.0 / data.effort_per_volt();
-    regression.add_rows(1, record.size(), [=](std::size_t k, typename BlockedRegression<P>::Row& phi) {
+    regression.add_rows(1, record.size(), [=](std::size_t k, auto&& row) {
       const double before = speed[k - 1];
-      phi(0) = before;
-      phi(1) = scale * std::clamp(command[k - 1], -limit, limit);
+      row(0) = before;
+      row(1) = scale * std::clamp(command[k - 1], -limit, limit);
       if constexpr (P == 4) {
-        phi(2) = before > deadband ? -1.0 : 0.0;
-        phi(3) = before < -deadband ? -1.0 : 0.0;
+        row(2) = before > deadband ? -1.0 : 0.0;
+        row(3) = before < -deadband ? -1.0 : 0.0;
       }
-      return speed[k];
+      row(P) = speed[k];
     });
     regression.end_block();
   }

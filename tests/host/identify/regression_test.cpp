@@ -1,10 +1,12 @@
 // The tools under the estimates: filters, least squares, tachometer calibration. Expected values are closed forms.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "host/identify/least_squares.hpp"
 #include "host/identify/tachometer.hpp"
@@ -81,6 +83,22 @@ TEST(LeastSquares, SolvesAnExactSystemAndReportsItsCondition) {
   EXPECT_NEAR(found.parameters(1), -0.5, 1e-12);
   EXPECT_NEAR(found.condition_number, 1.0, 1e-12);  // orthogonal columns, whatever their units
   EXPECT_EQ(found.rows, 100u);
+}
+
+TEST(LeastSquares, ManyRowsAtATimeAreTheSameRows) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<std::array<double, 3>> rows(1000);
+  for (auto& row : rows) row = {normal(random), 2.0 + normal(random), normal(random)};
+  host::BlockedRegression<2> together(300), singly(300);  // blocks end inside what goes in at a time
+  together.add_rows(0, rows.size(), [&](std::size_t k, auto&& row) {
+    for (int c = 0; c < 3; ++c) row(c) = rows[k][static_cast<std::size_t>(c)];
+  });
+  for (const auto& row : rows) singly.add({row[0], row[1]}, row[2]);
+  const host::Regression found = together.solve(), expected = singly.solve();
+  EXPECT_EQ(found.rows, expected.rows);
+  EXPECT_TRUE(found.parameters.isApprox(expected.parameters, 1e-12));
+  EXPECT_TRUE(found.covariance.isApprox(expected.covariance, 1e-10));
 }
 
 TEST(LeastSquares, SingularEquationsHaveNoEstimate) {

@@ -52,6 +52,23 @@ TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
   }
 }
 
+TEST_P(StepIdentification, ARecordTooSlowOrTooShortIsBadInput) {
+  const auto message_of = [](const host::Record& record) {
+    try {
+      host::identify_drive({record}, data_sheet_of(GetParam().axis), IdentificationMethod::sliding_ls);
+    } catch (const host::Failure& failure) {
+      EXPECT_EQ(failure.code, host::ExitCode::bad_input);
+      return std::string(failure.what());
+    }
+    return std::string("no failure");
+  };
+  host::Record record = steps(GetParam().axis, 10.0);
+  for (std::vector<double>* column : {&record.t_s, &record.u_V, &record.x, &record.w}) column->resize(150);
+  EXPECT_THAT(message_of(record), testing::AllOf(HasSubstr("lasts 0.15 s"), HasSubstr("record 0.2 s or more")));
+  record.sample_period_s = 0.05;
+  EXPECT_THAT(message_of(record), testing::AllOf(HasSubstr("sampled at 20 Hz"), HasSubstr("50 Hz or faster")));
+}
+
 TEST_P(StepIdentification, WarnsWhereStaticFrictionDominates) {
   for (const auto method : {IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
     const auto found = host::identify_drive({steps(GetParam().axis, 5.0)}, data_sheet_of(GetParam().axis), method);
