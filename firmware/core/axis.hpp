@@ -18,7 +18,7 @@ namespace firmware {
 /// step() runs once a sample period, in the control interrupt; everything else is called between steps. Nothing here
 /// allocates, waits or throws, and a step's work has a constant bound.
 ///
-///   u(k) = Kc1 (xref(k) - x_hat(k)) - Kc2 w_hat(k) + sum of weight[i] wref(k+i)     (50), or with zero phase error
+///   u(k) = Kc1 (xref(k) - x_hat(k)) - Kc2 w_hat(k) + feed-forward of wref(k ..)     (50), or with zero phase error
 ///        + friction(wref(k+1))                                                     if switched on, (19)
 ///        + d_hat(k)                                                                if switched on
 ///

@@ -14,7 +14,7 @@ namespace firmware {
 ///   position error      saturates at 1024 counts; the converter saturates long before if Kc1 > 8 / 1024 units a count
 ///   any voltage         saturates at 1024 units (1280 V with steps of 0.3 mV); the converter's limit is 8
 ///   gains               Kobs, Kc, drive model in these units: below 1024
-///   zero phase          its weights are exact to 5e-7 / (2 Bd1)^2 relatively: use it where Bd1 is above 0.1 counts a
+///   zero phase          its weights are exact to 1e-6 / (2 Bd1) relatively: use it where Bd1 is above 0.1 counts a
 ///   unit encoder, reference  unlimited: they are integers, 64 bits and more, as in float parameters          rounded
 ///   to 2.4e-7 of their unit: those of the order of 1 relatively to 2.4e-7, jerk limits (some
 ///                       0.02 counts a sample^3) to 1e-5, a tachometer's gain (some 0.01 counts a sample a code) to

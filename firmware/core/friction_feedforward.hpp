@@ -35,10 +35,11 @@ constexpr Scalar friction_curve(const FrictionDirection<Scalar>& side, Scalar sp
          side.viscous_V_s_per_rad * speed;
 }
 
-/// The curve as cubic pieces that agree with it in value and slope at their ends: narrow pieces up to four times the
-/// smaller omega, wide ones up to sixteen times the larger, a straight line beyond, where exp(-16) = 1e-7 is left. A
-/// piece spans at most a quarter, or half, of the omega that rules there, and so errs by at most h^4/384: 1.7e-4 of
-/// the level, half a step of the converter at 1 V.
+/// The curve as cubic pieces that agree with it in value and slope at their ends: narrow pieces up to eight times the
+/// smaller omega, where exp(-8) = 3e-4 of its exponential is left, wide ones up to sixteen times the larger, a straight
+/// line beyond, where exp(-16) = 1e-7 is left. A piece spans at most a quarter, or half, of the omega that rules there,
+/// and so errs by at most h^4/384: 1.7e-4 of the level, half a step of the converter at 1 V. That holds for omegas
+/// within a factor of ten; at fifty a thousandth of the level is lost.
 template <typename Scalar>
 class FrictionPieces {
  public:
@@ -48,7 +49,7 @@ class FrictionPieces {
     const Scalar b = side.omega2_rad_s > Scalar(0) ? side.omega2_rad_s : a;
     const Scalar smaller = a < b ? a : b;
     const Scalar larger = a < b ? b : a;
-    narrow_end_ = smaller * Scalar(4);
+    narrow_end_ = smaller * Scalar(8);
     wide_end_ = larger * Scalar(16);
     fill(0, Scalar(0), narrow_end_, narrow_per_speed_);
     fill(kNarrow, narrow_end_, wide_end_, wide_per_speed_);
@@ -61,16 +62,17 @@ class FrictionPieces {
   }
 
  private:
-  static constexpr std::int32_t kNarrow = 16, kWide = 32;
+  static constexpr std::int32_t kNarrow = 32, kWide = 32;
   using Cubic = std::array<Scalar, 4>;
 
-  /// Pieces of equal width from `begin` to `end`, over a variable that runs from 0 to 1 in each.
+  /// Pieces of equal width from `begin` to `end`, over a variable that runs from 0 to 1 in each; and one beyond,
+  /// because rounding may carry a speed just past the last.
   constexpr void fill(std::int32_t first, Scalar begin, Scalar end, Scalar& per_speed) {
     const std::int32_t number = first == 0 ? kNarrow : kWide;
     const Scalar width = (end - begin) / ScalarTraits<Scalar>::from_integer(number);
     if (!(width > Scalar(0))) return;
     per_speed = Scalar(1) / width;
-    for (std::int32_t i = 0; i < number; ++i) {
+    for (std::int32_t i = 0; i <= number; ++i) {
       const Scalar v0 = begin + width * ScalarTraits<Scalar>::from_integer(i);
       const Scalar v1 = v0 + width;
       const Scalar f0 = friction_curve(side_, v0), f1 = friction_curve(side_, v1);
@@ -98,7 +100,7 @@ class FrictionPieces {
 
   FrictionDirection<Scalar> side_{};
   Scalar narrow_end_{}, wide_end_{}, narrow_per_speed_{}, wide_per_speed_{};
-  std::array<Cubic, kNarrow + kWide + 1> piece_{};  // one more: rounding may carry a speed just past the last
+  std::array<Cubic, kNarrow + kWide + 1> piece_{};
 };
 
 template <typename Scalar>

@@ -14,17 +14,21 @@ using StateFeedbackGain = std::array<Scalar, 2>;
 /// Samples of the reference beyond the present one that feed-forward needs.
 inline constexpr int kPreviewSamples = 2;
 
-/// Weights of the reference velocities w(k), w(k+1), w(k+2), where w(k) = (x(k) - x(k-1)) / (lead Ts), in V per rad/s.
-/// The control law is u = Kc1 (xref(k) - x) - Kc2 w + sum of weight[i] * wref(k+i).
+/// Weights of the reference velocity and of its changes in the samples to come, in V per rad/s, where
+/// w(k) = (x(k) - x(k-1)) / (lead Ts). The control law is
+///     u = Kc1 (xref(k) - x) - Kc2 w + velocity * wref(k) + sum of change[i] * (wref(k+i+1) - wref(k+i)).
+/// Weights of wref(k), wref(k+1), wref(k+2) would be the same law, but large and of opposite signs: at speed their
+/// products leave the range of fixed point, and digits of float.
 template <typename Scalar>
 struct ReferenceFeedforward {
-  std::array<Scalar, kPreviewSamples + 1> weight{};
+  Scalar velocity{};
+  std::array<Scalar, kPreviewSamples> change{};
 };
 
 /// Eq. (50) with the reference velocity of eq. (52).
 template <typename Scalar>
 constexpr ReferenceFeedforward<Scalar> backward_difference_feedforward(const StateFeedbackGain<Scalar>& Kc) {
-  return {{Kc[1], Scalar(0), Scalar(0)}};
+  return {Kc[1], {}};
 }
 
 /// Zero phase error tracking control (Tomizuka 1987) for the loop that state feedback closes.
@@ -42,6 +46,9 @@ constexpr ReferenceFeedforward<Scalar> backward_difference_feedforward(const Sta
 ///     c(+2) = n0, c(+1) = n1 + d1 n0, c(0) = d1 n1 + d0 n0, c(-1) = d0 n1, all / (n0 + n1)^2.
 /// Its taps add up to D(1)/N(1) = Kc1, hence v(k) - Kc1 xref(k) depends on differences of the reference only, that is
 /// on reference velocities, and no position in millimetres is ever multiplied by a gain.
+///
+/// The first of those velocities takes them all; at a steady one x = xref, so its weight is, on travel,
+///     (Kc2 + h) / (Ad12 + Bd1 h),   h = (1 - Ad22) / Bd2, the volts that keep a velocity.
 template <typename Scalar>
 constexpr ReferenceFeedforward<Scalar> zero_phase_feedforward(const DiscreteDrive<Scalar>& drive,
                                                               const StateFeedbackGain<Scalar>& Kc,
@@ -49,16 +56,14 @@ constexpr ReferenceFeedforward<Scalar> zero_phase_feedforward(const DiscreteDriv
   const Scalar n1 = drive.Bd1;
   const Scalar n0 = drive.Ad12 * drive.Bd2 - drive.Ad22 * drive.Bd1;
   const Scalar a11 = Scalar(1) - drive.Bd1 * Kc[0];
-  const Scalar a12 = drive.Ad12 - drive.Bd1 * Kc[1];
-  const Scalar a21 = Scalar(0) - drive.Bd2 * Kc[0];
   const Scalar a22 = drive.Ad22 - drive.Bd2 * Kc[1];
   const Scalar d1 = Scalar(0) - (a11 + a22);
-  const Scalar d0 = a11 * a22 - a12 * a21;
-  const Scalar gain = travel_per_velocity / ((n0 + n1) * (n0 + n1));
-  const Scalar tap_plus2 = n0 * gain;
-  const Scalar tap_plus1 = (n1 + d1 * n0) * gain;
-  const Scalar tap_minus1 = d0 * n1 * gain;
-  return {{Scalar(0) - tap_minus1, tap_plus1 + tap_plus2, tap_plus2}};
+  const Scalar sum = n0 + n1;  // divided by twice: its square is small, and would lose digits in fixed point
+  const Scalar tap_plus2 = n0 / sum / sum * travel_per_velocity;
+  const Scalar tap_plus1 = (n1 + d1 * n0) / sum / sum * travel_per_velocity;
+  const Scalar hold = (Scalar(1) - drive.Ad22) / drive.Bd2;
+  const Scalar steady = (Kc[1] + hold) / (drive.Ad12 + drive.Bd1 * hold);
+  return {steady * travel_per_velocity, {tap_plus1 + tap_plus2 + tap_plus2, tap_plus2}};
 }
 
 }  // namespace firmware

@@ -44,8 +44,8 @@ class ReferencePreview {
   /// wref(k + ahead) by eq. (52), rad/s (m/s), 0 <= ahead <= kPreviewSamples.
   constexpr Scalar velocity(int ahead) const { return velocities_[ahead]; }
   constexpr Scalar weighted_sum(const ReferenceFeedforward<Scalar>& feedforward) const {
-    Scalar sum = feedforward.weight[0] * velocities_[0];
-    for (int i = 1; i <= kPreviewSamples; ++i) sum = sum + feedforward.weight[i] * velocities_[i];
+    Scalar sum = feedforward.velocity * velocities_[0];
+    for (int i = 0; i < kPreviewSamples; ++i) sum = sum + feedforward.change[i] * (velocities_[i + 1] - velocities_[i]);
     return sum;
   }
 

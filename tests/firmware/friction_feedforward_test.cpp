@@ -58,6 +58,28 @@ TEST_P(FrictionFeedforward, IsEquation19InBothDirections) {
   }
 }
 
+TEST(FrictionPieces, StayWithinTheirStatedErrorWhereTheOmegasDiffer) {
+  for (const double ratio : {0.1, 0.3, 0.9, 3.0, 10.0}) {
+    const double omega1 = 2.0, omega2 = omega1 * ratio, level = 1.0;
+    firmware::FrictionPieces<double> pieces;
+    pieces.configure({level, level, 0.0, omega1, omega2});
+    for (double speed = 0.0; speed < 20.0 * std::max(omega1, omega2); speed += 0.05 * std::min(omega1, omega2)) {
+      const double exact = level * std::exp(-speed / omega1) + level * (1.0 - std::exp(-speed / omega2));
+      ASSERT_NEAR(pieces(speed), exact, 1.7e-4 * level) << "at " << speed << ", omegas " << omega1 << " and " << omega2;
+    }
+  }
+}
+
+/// A speed just below a border may be rounded into the piece beyond it.
+TEST(FrictionPieces, AreWholeAtTheirLastBorder) {
+  for (int i = 1; i < 2000; ++i) {
+    const float omega = 0.01f * static_cast<float>(i);
+    firmware::FrictionPieces<float> pieces;
+    pieces.configure({1.0f, 1.0f, 0.0f, omega, omega});
+    ASSERT_NEAR(pieces(std::nextafter(16.0f * omega, 0.0f)), 1.0f, 1e-6f) << omega;
+  }
+}
+
 TEST_P(FrictionFeedforward, IsContinuousThroughZeroAndZeroAtRest) {
   EXPECT_EQ(friction(0.0f), 0.0f);
   EXPECT_EQ(friction(-0.0f), 0.0f);
