@@ -12,7 +12,10 @@ file(GLOB HID_FUNCTION_SOURCES CONFIGURE_DEPENDS "${AXIS_ROOT}/hal/tinyusb/*.cpp
 function(axis_usb_device TARGET MCU)
   set(C_SOURCES ${TINYUSB_SOURCES} ${ARGN})
   list(FILTER C_SOURCES INCLUDE REGEX "\\.c$")
-  set_source_files_properties(${C_SOURCES} PROPERTIES COMPILE_OPTIONS "-w;-ffunction-sections")
+  set(C_OPTIONS -w -ffunction-sections -fno-sanitize=pointer-overflow)  # it advances null pointers by nothing
+  set_source_files_properties(${C_SOURCES} PROPERTIES COMPILE_OPTIONS "${C_OPTIONS}")
+  set_source_files_properties("${TINYUSB}/device/usbd.c" PROPERTIES COMPILE_OPTIONS
+    "${C_OPTIONS};-Dtud_control_xfer=give_to_host")  # hal/tinyusb/hid_function.cpp
   target_sources(${TARGET} PRIVATE ${TINYUSB_SOURCES} ${HID_FUNCTION_SOURCES} ${ARGN})
   if(NOT CMAKE_SYSTEM_NAME STREQUAL "Generic")
     target_sources(${TARGET} PRIVATE "${AXIS_ROOT}/hal/usbip/stack_clock.cpp")

@@ -11,7 +11,19 @@
 #include "hal/usb_identity.hpp"
 
 // After tusb.h, on whose types it relies.
+#include <device/dcd.h>
 #include <device/usbd_pvt.h>
+
+/// What a request asks for goes to the host. A host that sends data with such a request instead would have them written
+/// over what it asked for, which may be gone or constant: it gets a stall. Every answer of TinyUSB's own takes this way
+/// too (cmake/modules/AxisTinyUsb.cmake), which does not look at the direction.
+extern "C" bool give_to_host(std::uint8_t port, const tusb_control_request_t* request, void* data, std::uint16_t size) {
+  if (request->bmRequestType_bit.direction == TUSB_DIR_IN || request->wLength == 0)
+    return tud_control_xfer(port, request, data, size);
+  dcd_edpt_stall(port, TUSB_DIR_OUT);
+  dcd_edpt_stall(port, TUSB_DIR_IN_MASK);
+  return false;
+}
 
 namespace hal::tinyusb {
 
@@ -78,7 +90,7 @@ std::uint16_t open(std::uint8_t port, const tusb_desc_interface_t* interface, st
 }
 
 bool answer(std::uint8_t port, const tusb_control_request_t* request, const void* data, std::size_t size) {
-  return tud_control_xfer(port, request, const_cast<void*>(data), static_cast<std::uint16_t>(size));
+  return give_to_host(port, request, const_cast<void*>(data), static_cast<std::uint16_t>(size));
 }
 
 bool standard_request(std::uint8_t port, const tusb_control_request_t* request) {

@@ -210,6 +210,26 @@ TEST_F(HidPortOnBus, StallsWhatItDoesNotKnowAndGoesOn) {
   ASSERT_EQ(bus.out(kOut, bytes_of(report_of(1))), Outcome::done);
 }
 
+TEST_F(HidPortOnBus, StallsDataThatComeWithARequestWhichAsksForThem) {
+  ASSERT_TRUE(bus.enumerate(3));
+  ASSERT_TRUE(port.send(report_of(7)));
+  constexpr std::array<Request, 9> backwards{{
+      {0x00, 0, 0, 0, 2},        // status of the device
+      {0x01, 0, 0, 0, 2},        // of the interface
+      {0x02, 0, 0, kIn, 2},      // of an endpoint
+      {0x00, 6, 0x0100, 0, 18},  // descriptor of the device
+      {0x01, 6, 0x2200, 0, 64},  // of the reports
+      {0x00, 8, 0, 0, 1},        // configuration
+      {0x01, 10, 0, 0, 1},       // alternate setting
+      {0x21, 2, 0, 0, 1},        // get idle
+      {0x21, 1, 0x0100, 0, 64},  // get report
+  }};
+  for (const Request& request : backwards)
+    EXPECT_EQ(bus.control(request, Bytes(64, 0xEE)).outcome, Outcome::stalled)
+        << std::hex << int{request.type} << " " << int{request.code};
+  EXPECT_EQ(bus.control({0xA1, 0x01, 0x0100, 0, 64}).data, bytes_of(report_of(7))) << "it has not been written over";
+}
+
 TEST_F(HidPortOnBus, AnswersTheRequestsOfItsClass) {
   ASSERT_TRUE(bus.enumerate(3));
   EXPECT_EQ(bus.control({0x21, 0x0A, 0x0400, 0, 0}).outcome, Outcome::done) << "set idle";

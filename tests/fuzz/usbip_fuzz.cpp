@@ -1,0 +1,108 @@
+// Any bytes as what a USB/IP host sends: the controller answers what it was asked and nothing else, and hangs up on
+// what is not USB/IP.
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "hal/usbip/usbip_controller.hpp"
+#include "hal/usbip/usbip_messages.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using hal::usbip::Command;
+using Bytes = std::vector<std::uint8_t>;
+
+/// What the host has asked and not yet been told.
+class OpenRequests {
+ public:
+  /// Takes the requests out of the stream, as far as they are whole.
+  void add(const std::uint8_t* data, std::size_t size) {
+    stream_.insert(stream_.end(), data, data + size);
+    while (stream_.size() >= hal::usbip::kHeaderSize) {
+      const hal::usbip::Request request = hal::usbip::parse(header_at_front(stream_));
+      const bool brings_data = request.command == Command::submit && !request.in;
+      const std::size_t length = hal::usbip::kHeaderSize + (brings_data ? request.length : 0);
+      if (stream_.size() < length) return;
+      stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(length));
+      requests_.push_back(request);
+    }
+  }
+
+  /// Takes the replies out of what was received, which must be whole and fit a request.
+  void settle(Bytes received) {
+    while (!received.empty()) {
+      if (received.size() < hal::usbip::kHeaderSize) std::abort();
+      const hal::usbip::Header header = header_at_front(received);
+      const auto command = static_cast<Command>(hal::usbip::read_word(header, 0));
+      const std::uint32_t sequence = hal::usbip::read_word(header, 4);
+      const std::uint32_t moved = command == Command::submit_reply ? hal::usbip::read_word(header, 24) : 0;
+      const auto asked = std::find_if(requests_.begin(), requests_.end(), [&](const hal::usbip::Request& one) {
+        const Command answer = one.command == Command::submit ? Command::submit_reply : Command::unlink_reply;
+        return one.sequence == sequence && answer == command && moved <= one.length;
+      });
+      if (asked == requests_.end()) std::abort();
+      const std::size_t length = hal::usbip::kHeaderSize + (asked->in && command == Command::submit_reply ? moved : 0);
+      if (received.size() < length) std::abort();
+      received.erase(received.begin(), received.begin() + static_cast<std::ptrdiff_t>(length));
+      requests_.erase(asked);
+    }
+  }
+
+ private:
+  static hal::usbip::Header header_at_front(const Bytes& bytes) {
+    hal::usbip::Header header{};
+    std::copy_n(bytes.begin(), header.size(), header.begin());
+    return header;
+  }
+
+  Bytes stream_;
+  std::vector<hal::usbip::Request> requests_;
+};
+
+Bytes receive_all(int socket) {
+  Bytes received;
+  std::array<std::uint8_t, 4096> part{};
+  for (;;) {
+    const ssize_t size = recv(socket, part.data(), part.size(), MSG_DONTWAIT);
+    if (size <= 0) return received;
+    received.insert(received.end(), part.begin(), part.begin() + size);
+  }
+}
+
+}  // namespace
+
+/// The first byte cuts the stream into pieces; the board sends every report back.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static hal::tinyusb::HidPort port;
+  static const bool started = port.start("FUZZ");
+  if (!started || size == 0) return 0;
+  const std::size_t piece = data[0] % 64 == 0 ? 4096 : 16 * (data[0] % 64);
+  ++data;
+  --size;
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) != 0) std::abort();
+  {
+    hal::usbip::UsbipController controller(ends[1], port, 0us);
+    OpenRequests open;
+    for (bool connected = true; connected && size > 0;) {
+      const std::size_t length = std::min(piece, size);
+      if (send(ends[0], data, length, 0) != static_cast<ssize_t>(length)) std::abort();
+      open.add(data, length);
+      data += length;
+      size -= length;
+      connected = controller.serve(0ns);
+      for (hal::HidReport report; port.receive(report);) port.send(report);
+      connected = connected && controller.serve(0ns);
+      open.settle(receive_all(ends[0]));
+    }
+  }
+  close(ends[0]);
+  return 0;
+}
