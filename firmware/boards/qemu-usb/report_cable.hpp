@@ -18,8 +18,9 @@ enum class CableMessage : std::uint8_t {
   taken = 'T',  ///< the receiver's program has taken a report: there is room for another
 };
 
-/// Reports for which each end has room. The computer has more, for it may be late.
-inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 64;
+/// Reports for which each end has room. The computer has many more: two emulators have two times, and its own may stand
+/// still while the board's runs on; these are 4 s of a report each control period at 1 kHz.
+inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 4096;
 
 /// One end. It sends as many reports as the other has room for, so none is lost and no end ever waits.
 template <hal::SerialPort Port, std::size_t own_room, std::size_t other_room>

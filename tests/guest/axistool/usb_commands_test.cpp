@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "host/record/read_record.hpp"
 #include "tests/guest/support/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
+#include "tests/host/axistool/run_workflow.hpp"
 #include "tests/host/temporary_folder.hpp"
 #include "tests/run_program.hpp"
 
@@ -155,7 +157,28 @@ TEST_P(UsbCommands, TellTwoBoardsApart) {
   EXPECT_THAT(unclear.output, AllOf(HasSubstr("usb:BENCH"), HasSubstr("usb:SECOND")));
 }
 
+/// What takes long, and is the same by either back end.
+class UsbBoard : public UsbCommands {};
+
+TEST_P(UsbBoard, IsMeasured) {
+  const ProgramRun bench = run("bench --for 20");
+  EXPECT_EQ(bench.exit_code, 0) << bench.output;
+  for (const char* figure : {"connect and identify", "parameters", "set, read back, verify", "one exchange, median"})
+    EXPECT_THAT(bench.output, HasSubstr(figure));
+  EXPECT_THAT(bench.output, AllOf(HasSubstr("capture of 20 s"), HasSubstr(" 0 lost")));
+  std::cout << bench.output;
+}
+
+TEST_P(UsbBoard, RunsTheWorkflow) {
+  const ProgramRun workflow = run_workflow("usb:BENCH", kCase, folder_.path(""));
+  ASSERT_EQ(workflow.exit_code, 0) << workflow.output;
+  EXPECT_EQ(host::read_record(folder_.path("jogs.csv")).size(), 2000u);
+  const nlohmann::json comparison = nlohmann::json::parse(std::ifstream(folder_.path("comparison.json")));
+  EXPECT_LT(comparison["relative_error"].get<double>(), 0.05) << "torque that the identified model leaves unexplained";
+}
+
 INSTANTIATE_TEST_SUITE_P(Hidapi, UsbCommands, testing::Values(host::HidBackend::hidraw, host::HidBackend::libusb),
                          [](const auto& chosen) { return std::string(host::name_of(chosen.param)); });
+INSTANTIATE_TEST_SUITE_P(Hidraw, UsbBoard, testing::Values(host::HidBackend::hidraw));
 
 }  // namespace

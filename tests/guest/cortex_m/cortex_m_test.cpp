@@ -1,23 +1,28 @@
 // The Cortex-M image, emulated, as a USB device of the guest: everything above the controller's driver is the target's
 // own code, from the reports to the parameter store.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "firmware/app/store/parameter_store.hpp"
 #include "host/device/board_client.hpp"
 #include "host/exit_codes.hpp"
+#include "host/record/read_record.hpp"
 #include "tests/firmware/app/paper_values.hpp"
 #include "tests/guest/support/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
+#include "tests/host/temporary_folder.hpp"
+#include "tests/run_program.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using guest_test::Child;
 using host::BoardClient;
+using testing::HasSubstr;
 
 /// The board beside the guest: tests/guest/with_cortex_m.sh.
 class CortexM : public testing::TestWithParam<host::HidBackend> {
@@ -40,18 +45,46 @@ class CortexM : public testing::TestWithParam<host::HidBackend> {
   /// Two emulators, each with its own time: the board's may pass slowly as seen from here.
   BoardClient client() const { return BoardClient(host::open_usb_board("CORTEX", library()), 30s); }
 
+  /// A reset takes the board off the bus for a moment; until then the board of before may still answer.
+  void restart() const {
+    std::uint32_t resets = 0;
+    {
+      BoardClient board = client();
+      resets = board.status().resets;
+      board.restart();
+    }
+    const auto has_restarted = [&] {
+      try {
+        return client().status().resets == resets + 1;
+      } catch (const host::Failure&) {
+        return false;
+      }
+    };
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      std::this_thread::sleep_for(100ms);
+      if (has_restarted()) return;
+    }
+    FAIL() << "the board did not come back";
+  }
+
+  ProgramRun run(const std::string& arguments, const std::string& streams = "2>&1") const {
+    return run_program("AXIS_PATIENCE=30 AXISTOOL_HIDAPI=" + std::string(host::name_of(GetParam())) + " timeout 120 " +
+                           AXISTOOL_PROGRAM + " " + arguments,
+                       streams);
+  }
+
+  TemporaryFolder folder_;
   static std::optional<Child> bridge;
 };
 std::optional<Child> CortexM::bridge;
 
-TEST_P(CortexM, KeepsParametersOverAResetAndCountsEveryRow) {
+TEST_P(CortexM, KeepsParametersOverAReset) {
   // Another set for each back end: the second must not find what it is to write.
   firmware::ParameterValues wanted = firmware_test::paper_values();
   if (GetParam() == host::HidBackend::libusb) firmware_test::fit_axis(wanted, "y", firmware_test::kPaperY);
-  firmware::StatusPayload before;
   {
     BoardClient board = client();
-    before = board.status();
+    const firmware::StatusPayload before = board.status();
     const firmware::IdentityPayload identity = board.identify();
     EXPECT_STREQ(identity.board.data(), "qemu-usb");
     EXPECT_EQ(identity.schema_hash, firmware::kSchemaHash);
@@ -60,49 +93,31 @@ TEST_P(CortexM, KeepsParametersOverAResetAndCountsEveryRow) {
     EXPECT_TRUE(board.read_values() == wanted);
     board.save();
     EXPECT_EQ(board.status().store_sequence, before.store_sequence + 1);
-
-    // The emulated board keeps real time, this computer may not keep up with it: then rows are dropped, but counted.
-    constexpr std::size_t kWords = 3;  // x: counts and speed; y: counts
-    constexpr std::uint32_t kRows = 2000;
-    board.start_capture({{0x0042, 0x0002}, 1, 0});
-    std::uint32_t received = 0, last = 0;
-    const auto take = [&](const BoardClient::Samples& samples) {
-      ASSERT_GE(samples.first_row, last);
-      received += static_cast<std::uint32_t>(samples.words.size() / kWords);
-      last = samples.first_row + static_cast<std::uint32_t>(samples.words.size() / kWords);
-    };
-    while (last < kRows) {
-      const auto samples = board.next_samples(30s);
-      ASSERT_TRUE(samples) << "after row " << last;
-      take(*samples);
-    }
-    const firmware::CaptureReply counted = board.stop_capture();
-    while (received + counted.dropped < counted.rows) {
-      const auto samples = board.next_samples(30s);
-      ASSERT_TRUE(samples) << received << " of " << counted.rows << " rows";
-      take(*samples);
-    }
-    EXPECT_EQ(received + counted.dropped, counted.rows) << "a row is neither here nor counted as lost";
-    std::cout << counted.rows << " rows at 1 kHz, " << counted.dropped << " dropped\n";
-    board.restart();
   }
-  // A reset takes the board off the bus for a moment; until then the board of before may still answer.
-  const auto has_restarted = [&] {
-    try {
-      return client().status().resets == before.resets + 1;
-    } catch (const host::Failure&) {
-      return false;
-    }
-  };
-  bool restarted = false;
-  for (int attempt = 0; attempt < 100 && !restarted; ++attempt) {
-    std::this_thread::sleep_for(100ms);
-    restarted = has_restarted();
-  }
-  ASSERT_TRUE(restarted);
+  ASSERT_NO_FATAL_FAILURE(restart());
   BoardClient board = client();
   EXPECT_EQ(board.status().store_state, static_cast<std::uint8_t>(firmware::StoreState::loaded));
   EXPECT_TRUE(board.read_values() == wanted);
+}
+
+TEST_P(CortexM, ServesTheCommands) {
+  const std::string params = folder_.path("params.toml"), record = folder_.path("idle.csv");
+  ASSERT_EQ(run("design " AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml -o " + params).exit_code, 0);
+  EXPECT_THAT(run("list").output, HasSubstr("usb:CORTEX"));
+  const ProgramRun info = run("info --json -", "2>/dev/null");
+  ASSERT_EQ(info.exit_code, 0) << info.output;
+  EXPECT_EQ(nlohmann::json::parse(info.output)["board"], "qemu-usb");
+  const ProgramRun set = run("set-params " + params);
+  ASSERT_EQ(set.exit_code, 0) << set.output;
+  ASSERT_EQ(run("save").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(restart());
+  EXPECT_THAT(run("get-params x.feedback.k1").output, HasSubstr("x.feedback.k1"));
+  EXPECT_EQ(run("diff-params " + params).exit_code, 0);
+  ASSERT_EQ(run("set-params x.feedback.k1=20").exit_code, 0);
+  EXPECT_EQ(run("diff-params " + params).exit_code, 1);
+  const ProgramRun capture = run("capture -o " + record + " --for 10");
+  ASSERT_EQ(capture.exit_code, 0) << capture.output;
+  EXPECT_EQ(host::read_record(record).size(), 10000u) << "at 1 kHz";
 }
 
 INSTANTIATE_TEST_SUITE_P(Hidapi, CortexM, testing::Values(host::HidBackend::hidraw, host::HidBackend::libusb),

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "host/record/read_record.hpp"
+#include "tests/host/axistool/run_workflow.hpp"
 #include "tests/host/axistool/simulated_board.hpp"
 #include "tests/host/temporary_folder.hpp"
 
@@ -46,22 +47,10 @@ class DeviceCommands : public testing::Test {
 };
 
 TEST_F(DeviceCommands, FromRecordToRecord) {
-  const std::string model = file("x.toml"), params = file("x-params.toml"), record = file("jogs.csv");
-  ASSERT_EQ(
-      run_axistool("identify " + kCase + "/train-steps.csv --drive " + kCase + "/model.toml -o " + model).exit_code, 0);
-  ASSERT_EQ(run_axistool("friction " + kCase + "/train-jog.csv --model " + model + " -o " + model).exit_code, 0);
-  ASSERT_EQ(run_axistool("design " + model + " -o " + params).exit_code, 0);
-  ASSERT_EQ(run("set-params " + params + " host.timeout=5 --save").exit_code, 0);
-  ASSERT_EQ(run("enable x --yes").exit_code, 0);
-  const ProgramRun jog = run("jog x 20 --for 0.3");
-  ASSERT_EQ(jog.exit_code, 0) << jog.output;
-  const ProgramRun capture = run("capture -o " + record + " --jog 20:0.6,-20:0.6,60:0.4,-60:0.4");
-  ASSERT_EQ(capture.exit_code, 0) << capture.output;
-  EXPECT_EQ(run("disable x").exit_code, 0);
-  const host::Record jogs = host::read_record(record);
-  EXPECT_EQ(jogs.size(), 2000u);
-  const ProgramRun compare = run_axistool("compare " + model + " " + record + " --json -", "2>/dev/null");
-  const nlohmann::json comparison = nlohmann::json::parse(compare.output);
+  const ProgramRun workflow = run_workflow(board_.address(), kCase, folder_.path(""));
+  ASSERT_EQ(workflow.exit_code, 0) << workflow.output;
+  EXPECT_EQ(host::read_record(file("jogs.csv")).size(), 2000u);
+  const nlohmann::json comparison = nlohmann::json::parse(std::ifstream(file("comparison.json")));
   EXPECT_LT(comparison["relative_error"].get<double>(), 0.05) << "torque that the identified model leaves unexplained";
 }
 

@@ -47,7 +47,8 @@ class SimulatedBoardProcess {
     process_ = -1;
   }
 
-  std::string device() const { return " --device socket:" + socket_ + " "; }
+  std::string address() const { return "socket:" + socket_; }
+  std::string device() const { return " --device " + address() + " "; }
   ProgramRun run(const std::string& command, const std::string& streams = "2>&1") const {
     const std::size_t blank = command.find(' ');
     return run_axistool(command.substr(0, blank) + device() + (blank == std::string::npos ? "" : command.substr(blank)),

@@ -1,0 +1,13 @@
+// The README's workflow as one script: workflow.sh, beside this file.
+#pragma once
+
+#include <string>
+
+#include "tests/run_program.hpp"
+
+/// `device` as --device takes it; `drive_case`: a folder of tests/data/drive-cases; `folder` gets what the script
+/// makes.
+inline ProgramRun run_workflow(const std::string& device, const std::string& drive_case, const std::string& folder) {
+  const std::string script = AXIS_TEST_DATA "/../host/axistool/workflow.sh";
+  return run_program("AXIS_DEVICE=" + device + " " + script + " " + AXISTOOL_PROGRAM + " " + drive_case + " " + folder);
+}
