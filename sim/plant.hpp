@@ -39,6 +39,8 @@ class Plant {
   /// The true motion, for comparison with what the sensors say.
   const DriveState& truth() const { return state_; }
   DriveState& truth() { return state_; }
+  /// True travel of the table, which may be a mass of its own behind a spring or a gap.
+  double table_travel() const { return drive_.has_second_mass() ? state_.load_x : state_.x; }
 
  private:
   DataSheet data_;

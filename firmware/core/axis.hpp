@@ -6,6 +6,7 @@
 #include "firmware/core/axis_check.hpp"
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
+#include "firmware/core/compensation/drive_compensation.hpp"
 #include "firmware/core/dac_conversion.hpp"
 #include "firmware/core/friction_feedforward.hpp"
 #include "firmware/core/kalman_estimator.hpp"
@@ -20,6 +21,7 @@ namespace firmware {
 ///
 ///   u(k) = Kc1 (xref(k) - x_hat(k)) - Kc2 w_hat(k) + feed-forward of wref(k ..)     (50), or with zero phase error
 ///        + friction(wref(k+1))                                                     if switched on, (19)
+///        + what compensation/ adds to it                                           if switched on
 ///        + d_hat(k)                                                                if switched on
 ///
 /// The estimator is given what the converter really put out, less the friction feed-forward: d_hat is the disturbance
@@ -45,6 +47,9 @@ class Axis {
                        ? zero_phase_feedforward(parameters.drive, parameters.Kc, travel_per_velocity)
                        : backward_difference_feedforward(parameters.Kc);
     if (parameters.friction_feedforward_on) friction_.configure(parameters.friction);
+    compensation_.configure(parameters.compensation, parameters.friction_feedforward_on, parameters.friction,
+                            parameters.sample_period_s);
+    backlash_.configure(parameters.compensation.backlash);
     generator_.configure(limits_);
     dac_.configure(parameters.dac_resolution_V, parameters.dac_limit_V);
     is_configured_ = true;
@@ -94,14 +99,18 @@ class Axis {
 
   /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
-    return plan_move(target - preview_.leading(), limits_);
+    CountPosition leading = preview_.leading();
+    leading.advance(-backlash_.offset(kPreviewSamples));
+    return plan_move(target - leading, limits_);
   }
 
   /// Starts a plan made while the reference was at rest, as it must still be. False otherwise, or while disabled.
   constexpr bool start(const MovePlan& plan) { return telemetry_.enabled && generator_.start(plan); }
 
   /// The reference, and what of it is still in the preview, has come to rest.
-  constexpr bool is_at_rest() const { return generator_.at_rest() && preview_.position() == preview_.leading(); }
+  constexpr bool is_at_rest() const {
+    return generator_.at_rest() && preview_.position() == preview_.leading() && !backlash_.is_crossing();
+  }
 
   /// One control period with the axis's own reference.
   constexpr const AxisTelemetry<Scalar>& step() { return follow(telemetry_.enabled ? generator_.next() : 0); }
@@ -114,6 +123,13 @@ class Axis {
 
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
   constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
+
+  /// The reference without what backlash compensation added to it: where the table is wanted.
+  constexpr CountPosition table_reference() const {
+    CountPosition table = preview_.position();
+    table.advance(-backlash_.offset(0));
+    return table;
+  }
 
   /// Opens the loop because of a fault that somebody else found.
   constexpr void trip(AxisFault fault) { fail(fault); }
@@ -129,7 +145,7 @@ class Axis {
       put_out_zero();
       return telemetry_;
     }
-    preview_.push(increment);
+    preview_.push(backlash_.is_on() ? increment + backlash_.next(increment) : increment);
     control();
     return telemetry_;
   }
@@ -141,6 +157,7 @@ class Axis {
       telemetry_.estimate = estimator_.at_rest(counter_.extend(encoder.counts));
       preview_.reset(CountPosition::at(counter_.counts()));
       model_input_V_ = Scalar(0);
+      backlash_.reset();
       is_synchronised_ = true;
     }
     telemetry_.encoder_travel = counter_.advance(encoder.counts);
@@ -164,7 +181,10 @@ class Axis {
     telemetry_.position_error =
         counts_near<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution -
         estimate.offset;
-    telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
+    if (compensation_.is_on())
+      telemetry_.friction_V = compensation_.advance(friction_, backlash_, preview_.velocity(1), preview_.halfway());
+    else
+      telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
     Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity +
                        preview_.weighted_sum(feedforward_) + telemetry_.friction_V;
     if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
@@ -184,6 +204,7 @@ class Axis {
 
   constexpr void hold_reference_here() {
     generator_.reset();
+    compensation_.reset();
     preview_.reset(CountPosition::at(telemetry_.encoder_counts));
     telemetry_.reference = preview_.position();
     telemetry_.reference_velocity = Scalar(0);
@@ -219,6 +240,8 @@ class Axis {
   AxisTelemetry<Scalar> telemetry_{};
   bool is_configured_ = false;
   bool is_synchronised_ = false;
+  BacklashCrossing backlash_;
+  DriveCompensation<Scalar> compensation_;
   FrictionFeedforward<Scalar> friction_;  // its tables last, so that one load reaches each of the others
 };
 

@@ -21,6 +21,33 @@ constexpr bool is_valid(const FrictionDirection<Scalar>& direction) {
          ScalarTraits<Scalar>::is_finite(direction.viscous_V_s_per_rad);
 }
 
+template <typename Scalar>
+constexpr bool is_valid(const TravelHarmonic<Scalar>& harmonic) {
+  return harmonic.is_zero() ||
+         (ScalarTraits<Scalar>::is_finite(harmonic.cosine) && ScalarTraits<Scalar>::is_finite(harmonic.sine) &&
+          harmonic.turns_per_count > 0 && harmonic.turns_per_count < kOneCount / 2);
+}
+
+/// Only what is switched on must make sense.
+template <typename Scalar>
+constexpr ParameterError check_compensation(const CompensationParameters<Scalar>& c) {
+  if (c.cogging_on)
+    for (const TravelHarmonic<Scalar>& harmonic : c.cogging_V)
+      if (!is_valid(harmonic)) return ParameterError::cogging;
+  if (c.position_friction_on && !is_valid(c.position_friction)) return ParameterError::position_friction;
+  const PreslidingParameters<Scalar>& contact = c.presliding;
+  if (contact.on && (!is_positive(contact.stiffness_V_per_rad) || !(contact.damping_V_s_per_rad >= Scalar(0)) ||
+                     !ScalarTraits<Scalar>::is_finite(contact.damping_V_s_per_rad)))
+    return ParameterError::presliding;
+  if (!c.backlash.on) return ParameterError::none;
+  constexpr Increment kWidest = kOneCount << 10;  // a scalar of fixed point holds it
+  if (c.backlash.gap <= 0 || c.backlash.gap >= kWidest || c.backlash.wind_up < 0 || c.backlash.wind_up >= kWidest)
+    return ParameterError::backlash;
+  const std::int32_t crossing = c.backlash.crossing_samples;
+  return crossing < 1 || crossing > BacklashCrossing::kLongestCrossing ? ParameterError::backlash_crossing
+                                                                       : ParameterError::none;
+}
+
 /// Length per second^order as an increment per sample^order; 0 where it is out of range.
 template <typename Scalar>
 constexpr Increment motion(Scalar limit, Scalar count_length, Scalar sample_period_s, int order) {
@@ -68,6 +95,8 @@ constexpr ParameterError check(const AxisParameters<Scalar>& p) {
     if (!is_valid(p.friction.positive) || !is_valid(p.friction.negative)) return ParameterError::friction_curve;
     if (!is_positive(p.friction.blend_velocity_rad_s)) return ParameterError::friction_blend;
   }
+  const ParameterError compensation = parameter_check::check_compensation(p.compensation);
+  if (compensation != ParameterError::none) return compensation;
   switch (check(motion_limits(p))) {
     case MotionLimitError::velocity_out_of_range:
       return ParameterError::velocity_limit;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "firmware/core/compensation/compensation_parameters.hpp"
 #include "firmware/core/discrete_drive.hpp"
 #include "firmware/core/friction_feedforward.hpp"
 #include "firmware/core/kalman_estimator.hpp"
@@ -38,6 +39,8 @@ struct AxisParameters {
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
   Scalar jerk_limit{};          ///< mm/s^3 (m/s^3)
+
+  CompensationParameters<Scalar> compensation{};  ///< last: no control period reads it here
 };
 
 enum class ParameterError : std::uint8_t {
@@ -64,6 +67,11 @@ enum class ParameterError : std::uint8_t {
   polarity_command = 20,       ///< not above 0
   travel = 21,                 ///< minimum not below maximum
   saturation_time = 22,        ///< or the capture's stride not above 0
+  cogging = 23,                ///< on, and an amplitude not finite, or a period not above two counts
+  position_friction = 24,      ///< likewise
+  presliding = 25,             ///< on, and the stiffness not above 0 or the damping below 0
+  backlash = 26,               ///< on, and the gap not above 0 or gap or wind-up of 2^10 counts and more
+  backlash_crossing = 27,      ///< on, and not 1..4096 samples
 };
 
 }  // namespace firmware

@@ -25,7 +25,7 @@ struct AxisTelemetry : AxisSample<Scalar> {
   std::int64_t encoder_counts = 0;
   std::int32_t encoder_travel = 0;  ///< counts since the last sample
   CountPosition reference{};        ///< xref(k), counts
-  Scalar friction_V{};              ///< friction feed-forward contained in the control signal
+  Scalar friction_V{};              ///< feed-forward of friction and cogging contained in the control signal
   Scalar control_V{};               ///< u(k) before limits and rounding
   bool saturated = false;           ///< u(k) was beyond the converter's range
   bool enabled = false;

@@ -63,6 +63,19 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.Kc = {fixed(p.Kc[0] * unit.length / unit.volts), fixed(p.Kc[1] * gain_velocity)};
   q.friction = {direction(p.friction.positive), direction(p.friction.negative),
                 fixed(p.friction.blend_velocity_rad_s / unit.velocity)};
+  const CompensationParameters<Real>& c = p.compensation;
+  const auto harmonic = [&](const TravelHarmonic<Real>& h, Real unit_of_value) {
+    return TravelHarmonic<FixedPoint>{fixed(h.cosine / unit_of_value), fixed(h.sine / unit_of_value),
+                                      h.turns_per_count};
+  };
+  q.compensation.cogging_on = c.cogging_on;
+  for (std::size_t i = 0; i < c.cogging_V.size(); ++i)
+    q.compensation.cogging_V[i] = harmonic(c.cogging_V[i], unit.volts);
+  q.compensation.position_friction_on = c.position_friction_on;
+  q.compensation.position_friction = harmonic(c.position_friction, Real(1));
+  q.compensation.presliding = {c.presliding.on, fixed(c.presliding.stiffness_V_per_rad * gain_velocity * unit.time_s),
+                               fixed(c.presliding.damping_V_s_per_rad * gain_velocity)};
+  q.compensation.backlash = c.backlash;
   q.friction_feedforward_on = p.friction_feedforward_on;
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
   q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;

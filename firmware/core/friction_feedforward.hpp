@@ -122,6 +122,12 @@ class FrictionFeedforward {
     return Scalar(0) - negative_(Scalar(0) - reference_velocity);
   }
 
+  /// The same without the blending: it steps at 0, where it is 0.
+  constexpr Scalar without_blend(Scalar reference_velocity) const {
+    if (reference_velocity > Scalar(0)) return positive_(reference_velocity);
+    return reference_velocity == Scalar(0) ? Scalar(0) : Scalar(0) - negative_(Scalar(0) - reference_velocity);
+  }
+
  private:
   FrictionPieces<Scalar> positive_{};
   FrictionPieces<Scalar> negative_{};

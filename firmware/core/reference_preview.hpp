@@ -40,6 +40,12 @@ class ReferencePreview {
     for (int i = 1; i <= kPreviewSamples; ++i) leading.advance(increments_[i]);
     return leading;
   }
+  /// Midway between xref(k) and xref(k+1).
+  constexpr CountPosition halfway() const {
+    CountPosition middle = position_;
+    middle.advance(increments_[1] >> 1);
+    return middle;
+  }
   constexpr Increment newest() const { return increments_[kPreviewSamples]; }  ///< of leading() in the last sample
   /// wref(k + ahead) by eq. (52), rad/s (m/s), 0 <= ahead <= kPreviewSamples.
   constexpr Scalar velocity(int ahead) const { return velocities_[ahead]; }

@@ -34,6 +34,37 @@ constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
   return m;
 }
 
+/// A number of counts that motion may reach as a whole and a fraction; 0 where it is out of range.
+constexpr Increment bounded_counts(float counts) {
+  constexpr float kMost = 16384;  // 2^14
+  return counts > 0 && counts <= kMost ? ScalarTraits<float>::to_increment(counts) : 0;
+}
+
+constexpr CompensationParameters<float> compensation(const AxisValues& v, float volts_per_effort) {
+  const float encoder_resolution = v.get<"drive.encoder_resolution">();
+  const auto harmonic = [&](float cosine, float sine, float period) {
+    return TravelHarmonic<float>{cosine, sine, bounded_counts(encoder_resolution / period)};
+  };
+  CompensationParameters<float> c;
+  c.cogging_on = v.get<"cogging.on">();
+  c.cogging_V = {harmonic(v.get<"cogging.cosine_1">() * volts_per_effort, v.get<"cogging.sine_1">() * volts_per_effort,
+                          v.get<"cogging.period_1">()),
+                 harmonic(v.get<"cogging.cosine_2">() * volts_per_effort, v.get<"cogging.sine_2">() * volts_per_effort,
+                          v.get<"cogging.period_2">()),
+                 harmonic(v.get<"cogging.cosine_3">() * volts_per_effort, v.get<"cogging.sine_3">() * volts_per_effort,
+                          v.get<"cogging.period_3">())};
+  c.position_friction_on = v.get<"position_friction.on">();
+  c.position_friction = harmonic(v.get<"position_friction.cosine">(), v.get<"position_friction.sine">(),
+                                 v.get<"position_friction.period">());
+  c.presliding = {v.get<"presliding.on">(), v.get<"presliding.stiffness">() * volts_per_effort,
+                  v.get<"presliding.damping">() * volts_per_effort};
+  c.backlash = {
+      v.get<"backlash.on">(), bounded_counts(v.get<"backlash.gap">() / encoder_resolution),
+      bounded_counts(v.get<"backlash.wind_up">() / encoder_resolution),
+      ScalarTraits<float>::nearest_product(v.get<"backlash.crossing_time">(), 1.0F / v.get<"drive.sample_period">())};
+  return c;
+}
+
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   const float effort_per_volt = v.get<"drive.effort_per_volt">();
   const float volts_per_effort = 1.0F / effort_per_volt;
@@ -44,8 +75,9 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.dac_resolution_V = v.get<"drive.dac_resolution">();
   p.dac_limit_V = v.get<"drive.dac_limit">();
   p.tachometer_fitted = v.get<"tachometer.fitted">();
-  p.tachometer_gain = v.get<"tachometer.gain">();
-  p.tachometer_offset = v.get<"tachometer.offset">();
+  const float true_per_read = 1.0F / v.get<"calibration.tachometer_gain">();
+  p.tachometer_gain = v.get<"tachometer.gain">() * true_per_read;
+  p.tachometer_offset = (v.get<"tachometer.offset">() + v.get<"calibration.tachometer_offset">()) * true_per_read;
   p.drive = {v.get<"model.a12">(), v.get<"model.a22">(), v.get<"model.b1">(), v.get<"model.b2">()};
   p.Kobs = {{{v.get<"kalman.k11">(), v.get<"kalman.k12">()},
              {v.get<"kalman.k21">(), v.get<"kalman.k22">()},
@@ -60,6 +92,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
                          v.get<"friction.viscous_negative">() * volts_per_effort, v.get<"friction.omega1_negative">(),
                          v.get<"friction.omega2_negative">()};
   p.friction.blend_velocity_rad_s = v.get<"friction.blend">();
+  p.compensation = compensation(v, volts_per_effort);
   p.friction_feedforward_on = v.get<"feedforward.friction">();
   p.disturbance_cancellation_on = v.get<"feedback.cancel_disturbance">();
   p.zero_phase_feedforward_on = v.get<"feedforward.zero_phase">();

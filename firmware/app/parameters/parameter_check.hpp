@@ -72,6 +72,16 @@ constexpr std::uint16_t id_behind(ParameterError error) {
       return id_of<"monitor.travel_max">();
     case ParameterError::saturation_time:
       return id_of<"monitor.saturation_time">();
+    case ParameterError::cogging:
+      return id_of<"cogging.period_1">();
+    case ParameterError::position_friction:
+      return id_of<"position_friction.period">();
+    case ParameterError::presliding:
+      return id_of<"presliding.stiffness">();
+    case ParameterError::backlash:
+      return id_of<"backlash.gap">();
+    case ParameterError::backlash_crossing:
+      return id_of<"backlash.crossing_time">();
     case ParameterError::none:
     case ParameterError::sample_period:
     case ParameterError::controller_is_enabled:

@@ -118,6 +118,46 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {152, axis, "monitor.travel_max", real, "mm", "m", -1e6F, 1e6F, 1e5F, while_disabled, "end of travel"},
     {153, axis, "monitor.saturation_time", real, "s", "s", 1e-3F, 10, 0.1F, while_disabled,
      "longest time at the D/A converter's limit"},
+
+    // What identification finds a drive to do besides: firmware/core/compensation.
+    {160, axis, "calibration.tachometer_gain", real, "1", "1", 0.5F, 2, 1, while_disabled,
+     "what the tachometer reads of the true speed; 1: it is right"},
+    {161, axis, "calibration.tachometer_offset", real, "rad/s", "m/s", -1e3F, 1e3F, 0, while_disabled,
+     "what it reads beyond that; subtracted besides tachometer.offset"},
+
+    {176, axis, "cogging.on", toggle, "", "", 0, 1, 0, while_disabled,
+     "take the cogging of the reference's position off the command"},
+    {177, axis, "cogging.cosine_1", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled,
+     "effort that cogging adds to the motor's, over the travel since the counter was 0"},
+    {178, axis, "cogging.sine_1", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "likewise"},
+    {179, axis, "cogging.period_1", real, "mm", "m", 1e-6F, 1e6F, 10, while_disabled, "travel of one period"},
+    {180, axis, "cogging.cosine_2", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "second harmonic"},
+    {181, axis, "cogging.sine_2", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "second harmonic"},
+    {182, axis, "cogging.period_2", real, "mm", "m", 1e-6F, 1e6F, 10, while_disabled, "second harmonic"},
+    {183, axis, "cogging.cosine_3", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "third harmonic"},
+    {184, axis, "cogging.sine_3", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "third harmonic"},
+    {185, axis, "cogging.period_3", real, "mm", "m", 1e-6F, 1e6F, 10, while_disabled, "third harmonic"},
+
+    {192, axis, "presliding.on", toggle, "", "", 0, 1, 0, while_disabled,
+     "let friction feed-forward build up over the travel after a reversal"},
+    {193, axis, "presliding.stiffness", real, "Nm/rad", "N/m", 0, 1e9F, 0, while_disabled,
+     "of the contact before it slips, sigma0"},
+    {194, axis, "presliding.damping", real, "Nm/(rad/s)", "N/(m/s)", 0, 1e6F, 0, while_disabled, "likewise, sigma1"},
+
+    {208, axis, "position_friction.on", toggle, "", "", 0, 1, 0, while_disabled,
+     "let friction feed-forward follow the travel"},
+    {209, axis, "position_friction.cosine", real, "1", "1", -0.95F, 0.95F, 0, while_disabled,
+     "what friction grows by, over the travel since the counter was 0"},
+    {210, axis, "position_friction.sine", real, "1", "1", -0.95F, 0.95F, 0, while_disabled, "likewise"},
+    {211, axis, "position_friction.period", real, "mm", "m", 1e-6F, 1e6F, 100, while_disabled, "travel of one period"},
+
+    {224, axis, "backlash.on", toggle, "", "", 0, 1, 0, while_disabled,
+     "shift the reference by half the gap and the wind-up, to the side to which it moves"},
+    {225, axis, "backlash.gap", real, "mm", "m", 0, 10, 0, while_disabled, "free travel of the table"},
+    {226, axis, "backlash.crossing_time", real, "s", "s", 1e-3F, 0.2F, 0.01F, while_disabled,
+     "time that the way across takes"},
+    {227, axis, "backlash.wind_up", real, "mm", "m", 0, 10, 0, while_disabled,
+     "twist behind the gap under friction; friction reaches the motor as it builds up"},
 });
 
 }  // namespace parameter_rows

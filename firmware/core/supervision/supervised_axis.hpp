@@ -106,6 +106,7 @@ class SupervisedAxis {
   constexpr bool is_at_rest() const { return axis_.is_at_rest(); }
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return axis_.telemetry(); }
   constexpr const AxisParameters<Scalar>& parameters() const { return axis_.parameters(); }
+  constexpr CountPosition table_reference() const { return axis_.table_reference(); }
   constexpr const AxisMonitors<Scalar>& monitors() const { return monitors_; }
   constexpr const CaptureRing<Scalar>& capture() const { return capture_; }
   constexpr Hal& hal() { return hal_; }

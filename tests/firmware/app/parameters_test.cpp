@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -74,19 +75,44 @@ class Parameters : public testing::Test {};
 using Scalars = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(Parameters, Scalars);
 
+/// Every part of the compensation on, each large enough to show within the travel of behaviour().
+void compensate(ParameterValues& values) {
+  for (const char* part : {"cogging", "presliding", "position_friction", "backlash"})
+    set(values, std::string("x.") + part + ".on", 1);
+  for (const char* harmonic : {"_1", "_2", "_3"}) {
+    set(values, std::string("x.cogging.cosine") + harmonic, 0.3);
+    set(values, std::string("x.cogging.sine") + harmonic, 0.2);
+  }
+  set(values, "x.cogging.period_2", 5);
+  set(values, "x.cogging.period_3", 2.5);
+  set(values, "x.presliding.stiffness", 150);
+  set(values, "x.presliding.damping", 0.3);
+  set(values, "x.position_friction.cosine", 0.2);
+  set(values, "x.position_friction.sine", 0.1);
+  set(values, "x.backlash.gap", 0.05);
+  set(values, "x.backlash.wind_up", 0.005);
+}
+
 TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   ParameterValues values = paper_values();
   set(values, "x.limits.velocity", 80);   // reached by the jogs
   set(values, "x.drive.dac_limit", 3.0);  // reached while they accelerate
   const auto before = behaviour<TypeParam>(values);
   ASSERT_EQ(before.first, SetProblem{});
+  ParameterValues compensated = values;  // presliding takes the place of friction.blend
+  compensate(compensated);
+  const auto before_compensated = behaviour<TypeParam>(compensated);
+  ASSERT_EQ(before_compensated.first, SetProblem{});
   for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
     if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
     // Needs a host: board_application_test.cpp, BoardMotion.StopsWhenTheHostFallsSilent.
     if (place == place_named("host.timeout")) continue;
-    ParameterValues other = values;
-    other.set(place, changed(firmware::rule_at(place), values.at(place)));
-    EXPECT_NE(behaviour<TypeParam>(other), before) << firmware::kParameters[firmware::row_at(place)].name;
+    const auto changes = [place](ParameterValues of, const auto& behaved) {
+      of.set(place, changed(firmware::rule_at(place), of.at(place)));
+      return behaviour<TypeParam>(of) != behaved;
+    };
+    EXPECT_TRUE(changes(values, before) || changes(compensated, before_compensated))
+        << firmware::kParameters[firmware::row_at(place)].name;
   }
 }
 
@@ -126,6 +152,21 @@ TYPED_TEST(Parameters, ValuesBeyondTheirRangeAreNamed) {
       values.set(place, value);
       EXPECT_EQ(firmware::check<TypeParam>(values), (SetProblem{kind, firmware::key_at(place)})) << place;
     }
+  }
+}
+
+TYPED_TEST(Parameters, CompensationThatMakesNoSenseIsRefusedOnlyWhereItIsOn) {
+  for (const auto& [part, wrong, value] : {std::tuple{"cogging", "cogging.period_1", 1e-4},
+                                           {"position_friction", "position_friction.period", 1e-4},
+                                           {"presliding", "presliding.stiffness", 0.0},
+                                           {"backlash", "backlash.gap", 0.0}}) {
+    ParameterValues values = paper_values();
+    compensate(values);
+    set(values, std::string("x.") + wrong, value);
+    EXPECT_EQ(firmware::check<TypeParam>(values),
+              (SetProblem{SetProblemKind::refused_by_core, firmware::key_at(place_named(std::string("x.") + wrong))}));
+    set(values, std::string("x.") + part + ".on", 0);
+    EXPECT_EQ(firmware::check<TypeParam>(values), SetProblem{}) << part;
   }
 }
 
@@ -192,6 +233,29 @@ TEST(ParameterTable, IdsAreFrozen) {
       {128, "limits.velocity"},
       {129, "limits.acceleration"},
       {130, "limits.jerk"},
+      {160, "calibration.tachometer_gain"},
+      {161, "calibration.tachometer_offset"},
+      {176, "cogging.on"},
+      {177, "cogging.cosine_1"},
+      {178, "cogging.sine_1"},
+      {179, "cogging.period_1"},
+      {180, "cogging.cosine_2"},
+      {181, "cogging.sine_2"},
+      {182, "cogging.period_2"},
+      {183, "cogging.cosine_3"},
+      {184, "cogging.sine_3"},
+      {185, "cogging.period_3"},
+      {192, "presliding.on"},
+      {193, "presliding.stiffness"},
+      {194, "presliding.damping"},
+      {208, "position_friction.on"},
+      {209, "position_friction.cosine"},
+      {210, "position_friction.sine"},
+      {211, "position_friction.period"},
+      {224, "backlash.on"},
+      {225, "backlash.gap"},
+      {226, "backlash.crossing_time"},
+      {227, "backlash.wind_up"},
   };
   for (const auto& [id, name] : kReleased)
     for (const firmware::ParameterInfo& row : firmware::kParameters)

@@ -1,0 +1,55 @@
+// Feed-forward of what a drive does besides inertia, from the reference alone.
+#pragma once
+
+#include "firmware/core/compensation/compensation_parameters.hpp"
+#include "firmware/core/friction_feedforward.hpp"
+
+namespace firmware {
+
+/// Friction feed-forward extended by cogging, friction that varies along the travel, presliding, and friction that does
+/// not reach the motor inside a gap. An axis that has none of them asks is_on() and nothing more.
+template <typename Scalar>
+class DriveCompensation {
+ public:
+  constexpr void configure(const CompensationParameters<Scalar>& parameters, bool friction_on,
+                           const FrictionParameters<Scalar>& friction, Scalar sample_period_s) {
+    parameters_ = parameters;
+    friction_on_ = friction_on;
+    presliding_on_ = friction_on && parameters.presliding.on;
+    varies_ = friction_on && parameters.position_friction_on;
+    is_on_ = parameters.cogging_on || presliding_on_ || varies_ || (friction_on && parameters.backlash.on);
+    if (presliding_on_) presliding_.configure(parameters.presliding, friction, sample_period_s);
+  }
+
+  constexpr bool is_on() const { return is_on_; }
+  constexpr void reset() { presliding_.reset(); }
+
+  /// Volts for the period in which the reference moves at `velocity`, with `middle` its position halfway.
+  constexpr Scalar advance(const FrictionFeedforward<Scalar>& friction, const BacklashCrossing& backlash,
+                           Scalar velocity, const CountPosition& middle) {
+    Scalar sum = friction_on_ ? friction_V(friction, backlash, velocity, middle) : Scalar(0);
+    if (!parameters_.cogging_on) return sum;
+    for (const TravelHarmonic<Scalar>& harmonic : parameters_.cogging_V)
+      if (!harmonic.is_zero()) sum = sum - harmonic(middle);
+    return sum;
+  }
+
+ private:
+  constexpr Scalar friction_V(const FrictionFeedforward<Scalar>& friction, const BacklashCrossing& backlash,
+                              Scalar velocity, const CountPosition& middle) {
+    Scalar sliding_V = presliding_on_ ? friction.without_blend(velocity) : friction(velocity);
+    if (varies_) sliding_V = sliding_V + sliding_V * parameters_.position_friction(middle);
+    if (backlash.is_on() && backlash.is_crossing()) {
+      const Scalar carried = backlash.carried<Scalar>();
+      sliding_V = velocity < Scalar(0) ? Scalar(0) - sliding_V * carried : sliding_V * carried;
+    }
+    return presliding_on_ ? presliding_.advance(velocity, sliding_V) : sliding_V;
+  }
+
+  bool is_on_ = false;  // first, within reach of every step's loads
+  bool friction_on_ = false, presliding_on_ = false, varies_ = false;
+  PreslidingFriction<Scalar> presliding_;
+  CompensationParameters<Scalar> parameters_{};
+};
+
+}  // namespace firmware
