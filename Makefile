@@ -87,6 +87,13 @@ hil: ## Run the scenarios: the firmware around simulated drives (SCENARIO=files;
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	$(BUILD)/bin/axistool hil $(or $(SCENARIO),host/hil/scenarios/*.toml) -o $(BUILD)/hil
 
+.PHONY: hidden-effect
+hidden-effect: ## Worked example: a circle spoilt by an effect that the model lacks; find it, compensate it, run again
+	$(NEED) build
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	host/hil/hidden_effect.sh $(BUILD)/bin/axistool $(BUILD)/hidden-effect
+
 .PHONY: cost
 cost: firmware ## Executed instructions of one control step, by number type and processor
 	$(NEED) build test

@@ -1,11 +1,13 @@
 // axistool design: Kalman gain and state feedback from a model, as board parameters.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
 #include "host/atomic_file.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/device/compensation_parameters.hpp"
 #include "host/identify/board_parameters.hpp"
 #include "host/identify/design_json.hpp"
 #include "host/model/model_file.hpp"
@@ -41,15 +43,27 @@ void print_table(const sim::DriveDescription& model, const host::AxisDesign& des
              travel, design.Kc(1), speed, design.used.bandwidth_Hz, design.used.damping);
 }
 
+void print_compensation(const sim::DriveDescription& model) {
+  std::vector<std::string> on;
+  for (const auto& [name, value] : host::compensation_parameters(model))
+    if (name.ends_with(".on") && value != 0.0) on.push_back(name.substr(0, name.find('.')));
+  if (model.find("tach_gain") != nullptr || model.find("tach_offset") != nullptr) on.emplace_back("tachometer");
+  if (!on.empty()) fmt::print("the board compensates     {}\n", fmt::join(on, ", "));
+  const auto rest = host::uncompensated_effects(model);
+  if (!rest.empty()) fmt::print("it does not compensate    {}\n", fmt::join(rest, ", "));
+}
+
 void run(const DesignArguments& arguments) {
   const sim::DriveDescription model = host::read_model(arguments.model);
   const host::AxisDesign design = host::design_axis(model, arguments.options);
   if (!arguments.output.empty()) {
-    host::write_file_atomically(arguments.output, host::board_parameters_toml(model, design));
+    host::write_file_atomically(arguments.output,
+                                host::board_parameters_toml(model, design) + host::compensation_toml(model));
   }
   if (!arguments.json.empty()) write_json(host::design_json(design), arguments.json);
   if (arguments.json == "-") return;
   print_table(model, design);
+  print_compensation(model);
   if (!arguments.output.empty()) fmt::print("\nboard parameters written to {}\n", arguments.output);
 }
 
@@ -75,7 +89,10 @@ void add_design(CLI::App& app) {
       "  axistool design x.toml -o x-params.toml\n"
       "  axistool design x.toml --fc 40 --zeta 0.8 --json -\n"
       "Larger --rwd: the disturbance estimate follows faster and is noisier. Larger --fc: stiffer, until noise or a\n"
-      "resonance limits it; keep it well below the observer's fn.");
+      "resonance limits it; keep it well below the observer's fn. The file also switches on what the board can\n"
+      "compensate of the model's effects (cogging, presliding, friction along the travel, backlash, tachometer): "
+      "after\n"
+      "`improve`, design again and set-params once.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -1,6 +1,7 @@
 // axistool hil: scenarios on the simulated machine.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/hil/fault_trial.hpp"
 #include "host/hil/scenario_report.hpp"
+#include "host/model/model_file.hpp"
 #include "host/record/read_record.hpp"
 
 namespace axistool {
@@ -16,7 +18,7 @@ namespace axistool {
 namespace {
 
 struct HilArguments {
-  std::vector<std::string> scenarios;
+  std::vector<std::string> scenarios, models;
   std::string output, json;
   bool fault_page = false;
 };
@@ -29,9 +31,21 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
                         fmt::format("{}: cannot make this folder: {}", folder, fault.message()));
   }
   const auto stem = std::filesystem::path(folder) / std::filesystem::path(scenario.path).stem();
-  for (std::size_t i = 0; i < host::kMachineAxes; ++i)
+  for (std::size_t i = 0; i < host::kMachineAxes; ++i) {
     host::write_record(run.records[i], fmt::format("{}-{}.csv", stem.string(), host::kAxisNames[i]));
+    host::write_model(run.believed[i], fmt::format("{}-{}.toml", stem.string(), host::kAxisNames[i]));
+  }
   host::scenario_report(scenario, run).write(stem.string() + ".html");
+}
+
+/// "x=FILE": what the controller of this axis is told in place of what the scenario says.
+void take_model(host::Scenario& scenario, const std::string& assignment) {
+  const auto* const axis = std::ranges::find(host::kAxisNames, assignment.substr(0, assignment.find('=')));
+  if (axis == host::kAxisNames.end() || assignment.find('=') == std::string::npos)
+    throw host::Failure(host::ExitCode::usage, fmt::format("--model {}: write x=FILE or y=FILE", assignment));
+  host::ScenarioAxis& told = scenario.axes[static_cast<std::size_t>(axis - host::kAxisNames.begin())];
+  told.believed = host::read_model(assignment.substr(assignment.find('=') + 1));
+  told.knowledge = host::Knowledge::model;
 }
 
 void run(const HilArguments& arguments) {
@@ -44,7 +58,8 @@ void run(const HilArguments& arguments) {
   nlohmann::json all = nlohmann::json::array();
   bool holds = true;
   for (const std::string& path : arguments.scenarios) {
-    const host::Scenario scenario = host::read_scenario(path);
+    host::Scenario scenario = host::read_scenario(path);
+    for (const std::string& model : arguments.models) take_model(scenario, model);
     const host::ScenarioRun result = host::run_scenario(scenario);
     holds = holds && result.holds();
     if (!arguments.output.empty()) write_files(scenario, result, arguments.output);
@@ -67,7 +82,11 @@ void add_hil(CLI::App& app) {
   CLI::App* command = app.add_subcommand("hil", "run scenarios: the board's firmware around simulated drives");
   command->add_option("SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1)")->check(CLI::ExistingFile);
   command->add_option("-o,--output", arguments->output,
-                      "folder for records (x, y) and an HTML report of each scenario");
+                      "folder for records (x, y), the controllers' models, and an HTML report of each scenario");
+  command
+      ->add_option("--model", arguments->models,
+                   "x=FILE or y=FILE: design this axis's controller from this model instead")
+      ->take_all();
   add_json_option(*command, arguments->json);
   command->add_flag("--fault-page", arguments->fault_page,
                     "inject every fault and print the page of faults and reactions (Markdown)");
@@ -75,6 +94,7 @@ void add_hil(CLI::App& app) {
       "Examples:\n"
       "  axistool hil host/hil/scenarios/circle.toml -o build/hil\n"
       "  axistool hil host/hil/scenarios/*.toml --json -\n"
+      "  axistool hil circle.toml --model x=better-x.toml --model y=better-y.toml\n"
       "Exit code 1: something that a scenario expects does not hold. Equal scenarios give equal records, bit for bit.");
   command->callback([arguments] { run(*arguments); });
 }

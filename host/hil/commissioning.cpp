@@ -1,17 +1,21 @@
 #include "host/hil/commissioning.hpp"
 
 #include "hal/pc/simulated_axis.hpp"
+#include "host/device/compensation_parameters.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/simulated_experiment.hpp"
 
 namespace host {
 
+Record commissioning_steps(const sim::DriveDescription& machine, double scaling, std::uint64_t seed) {
+  return record_open_loop(machine, doublet_series(scaling * kStepUnit_V, machine.data.sample_period_s), seed);
+}
+
 sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint64_t seed) {
   constexpr double kStepScaling = 15.0;  // Ku, p. 1499
   constexpr double kPitch_mm = 10.0;     // Table 1
-  const Record steps =
-      record_open_loop(machine, doublet_series(kStepScaling * kStepUnit_V, machine.data.sample_period_s), seed);
+  const Record steps = commissioning_steps(machine, kStepScaling, seed);
   sim::DriveDescription data_sheet = machine;
   data_sheet.effects.clear();
   const Identification rigid = identify_drive({steps}, data_sheet, IdentificationMethod::sliding_ls);
@@ -28,6 +32,11 @@ firmware::AxisParameters<float> contouring_parameters(const sim::DriveDescriptio
   parameters.zero_phase_feedforward_on = true;
   parameters.friction_feedforward_on = switches.friction;
   parameters.disturbance_cancellation_on = switches.cancellation;
+  if (!switches.effects) return parameters;
+  parameters.compensation = core_compensation(model);
+  const TachometerReading tachometer = tachometer_reading(model);
+  parameters.tachometer_gain /= static_cast<float>(tachometer.gain);
+  parameters.tachometer_offset = static_cast<float>(tachometer.offset / tachometer.gain);
   return parameters;
 }
 

@@ -5,6 +5,7 @@
 
 #include "firmware/core/axis_parameters.hpp"
 #include "host/identify/axis_parameters.hpp"
+#include "host/record/record.hpp"
 #include "sim/drive_description.hpp"
 
 namespace host {
@@ -13,9 +14,13 @@ namespace host {
 /// open-loop steps at Ku = 15 (p. 1499), the friction curve from jogs at the paper's eleven speeds (section 3.2).
 sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint64_t seed);
 
+/// The open-loop steps alone, `scaling` (Ku of the paper) times its series of doublets.
+Record commissioning_steps(const sim::DriveDescription& machine, double scaling, std::uint64_t seed);
+
 struct CompensationSwitches {
   bool friction = false;
   bool cancellation = false;
+  bool effects = true;  ///< what else the board can compensate of the model's effects
 };
 
 /// Board parameters from a model: pole placement and Kalman filter with the paper's values, ZPETC on.

@@ -37,22 +37,28 @@ CheckedExpectation check_state(const Expectation& expected, const ScenarioRun& r
           firmware::state_name(last), last == *expected.state};
 }
 
-const std::vector<double>& signal_of(const Expectation& expected, const ScenarioRun& run) {
-  const Record& record = run.records[expected.axis];
-  if (expected.signal == "tracking_um") return run.tracking_um[expected.axis];
+const std::vector<double>& signal_of(const Expectation& expected, std::size_t axis, const ScenarioRun& run) {
+  const Record& record = run.records[axis];
+  if (expected.signal == "tracking_um") return run.tracking_um[axis];
+  if (expected.signal == "table_um") return run.table_um[axis];
   if (expected.signal == "contour_um") return run.contour_um;
   if (expected.signal == "speed_rad_s") return record.w;
-  if (expected.signal == "disturbance_V") return run.disturbance_V[expected.axis];
+  if (expected.signal == "disturbance_V") return run.disturbance_V[axis];
   if (expected.signal == "command_V") return record.u_V;
   return record.x;
 }
 
-CheckedExpectation check_signal(const Expectation& expected, const ScenarioRun& run) {
+double largest_of(const Expectation& expected, std::size_t axis, const ScenarioRun& run) {
   double largest = 0.0;
-  const std::vector<double>& values = signal_of(expected, run);
-  const std::vector<double>& t_s = run.records[expected.axis].t_s;
+  const std::vector<double>& values = signal_of(expected, axis, run);
+  const std::vector<double>& t_s = run.records[axis].t_s;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (t_s[k] >= expected.from_s && t_s[k] <= expected.to_s) largest = std::max(largest, std::abs(values[k]));
+  return largest;
+}
+
+CheckedExpectation check_signal(const Expectation& expected, const ScenarioRun& run) {
+  const double largest = largest_of(expected, expected.axis, run);
   CheckedExpectation checked;
   checked.text = expected.signal == "contour_um"
                      ? std::string("largest contour_um")
@@ -63,6 +69,12 @@ CheckedExpectation check_signal(const Expectation& expected, const ScenarioRun& 
   checked.found = format_value(largest, 3);
   checked.holds =
       (!expected.at_most || largest <= *expected.at_most) && (!expected.at_least || largest >= *expected.at_least);
+  if (expected.at_most_share) {
+    const double other = largest_of(expected, *expected.of_axis, run);
+    checked.text += fmt::format(", at most {:g} of axis {}'s", *expected.at_most_share, kAxisNames[*expected.of_axis]);
+    checked.found += fmt::format(" of {}", format_value(other, 3));
+    checked.holds = checked.holds && largest <= *expected.at_most_share * other;
+  }
   return checked;
 }
 

@@ -28,6 +28,7 @@ struct ScenarioAxis {
   bool zero_phase = true;
   bool friction_feedforward = true;
   bool disturbance_cancellation = false;
+  bool compensation = true;  ///< of further effects that are known
   ReferenceLimits limits;
   hal::pc::AxisWiring wiring;
 };
@@ -63,11 +64,13 @@ struct Expectation {
   double from_s = 0.0;
   double to_s = 0.0;
   std::optional<double> at_most, at_least;
+  std::optional<std::size_t> of_axis;   ///< the axis that `at_most_share` refers to
+  std::optional<double> at_most_share;  ///< of the same signal of `of_axis`
 };
 
 /// Signals that expectations may bound; magnitudes count.
-inline constexpr std::array<std::string_view, 6> kSignals{"tracking_um",   "contour_um", "speed_rad_s",
-                                                          "disturbance_V", "command_V",  "position_mm"};
+inline constexpr std::array<std::string_view, 7> kSignals{"tracking_um", "contour_um",  "speed_rad_s", "disturbance_V",
+                                                          "command_V",   "position_mm", "table_um"};
 
 struct Scenario {
   std::string path;

@@ -93,6 +93,7 @@ class ScenarioReader {
     axis.zero_phase = from.toggle("zero_phase", true);
     axis.friction_feedforward = from.toggle("friction_feedforward", true);
     axis.disturbance_cancellation = from.toggle("disturbance_cancellation", false);
+    axis.compensation = from.toggle("compensation", true);
     axis.limits.velocity = from.positive("velocity_limit_mm_s", axis.limits.velocity);
     axis.limits.acceleration = from.positive("acceleration_limit_mm_s2", axis.limits.acceleration);
     axis.limits.jerk = from.positive("jerk_limit_mm_s3", axis.limits.jerk);
@@ -196,10 +197,12 @@ class ScenarioReader {
     expected.to_s = from.has("to_s") ? time(from, "to_s") : scenario_.duration_s;
     expected.at_most = from.optional_number("at_most");
     expected.at_least = from.optional_number("at_least");
+    expected.at_most_share = from.optional_number("at_most_share");
+    if (expected.at_most_share) expected.of_axis = from.choice("of_axis", kAxes);
     from.refuse_rest();
-    const bool bounded = expected.at_most || expected.at_least;
+    const bool bounded = expected.at_most || expected.at_least || expected.at_most_share;
     if (expected.signal.empty() == bounded)
-      from.fail(bounded ? "at_most" : "signal", "signal and at_most or at_least belong together");
+      from.fail(bounded ? "at_most" : "signal", "signal and at_most, at_least or at_most_share belong together");
     if (expected.signal.empty() && !expected.fault && !expected.state)
       from.fail("signal", "nothing is expected; add fault, state, or signal with a bound");
     scenario_.expectations.push_back(std::move(expected));

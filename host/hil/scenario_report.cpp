@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host/hil/identification_figures.hpp"
 #include "host/identify/friction_law.hpp"
 #include "host/report/text_format.hpp"
 
@@ -170,7 +171,9 @@ Report scenario_report(const Scenario& scenario, const ScenarioRun& run) {
   report.section("Each axis");
   for (std::size_t i = 0; i < kMachineAxes; ++i) {
     report.add(motion_plot(run, i));
-    if (scenario.axes[i].knowledge == Knowledge::identified) report.add(friction_plot(scenario, run, i));
+    if (scenario.axes[i].knowledge != Knowledge::identified) continue;
+    add_identification_figures(scenario.axes[i].drive, kAxisNames[i], commissioning_seed(scenario, i), report);
+    report.add(friction_plot(scenario, run, i));
   }
   return report;
 }

@@ -28,8 +28,11 @@ sim::DriveDescription believed_of(const ScenarioAxis& axis, std::uint64_t seed) 
 }
 
 MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& believed) {
-  auto parameters = contouring_parameters(
-      believed, {.friction = axis.friction_feedforward, .cancellation = axis.disturbance_cancellation}, axis.limits);
+  auto parameters = contouring_parameters(believed,
+                                          {.friction = axis.friction_feedforward,
+                                           .cancellation = axis.disturbance_cancellation,
+                                           .effects = axis.compensation},
+                                          axis.limits);
   parameters.zero_phase_feedforward_on = axis.zero_phase;
   return {axis.drive, parameters, axis.wiring};
 }
@@ -58,6 +61,7 @@ class ScenarioDriver {
       run.tracking_um[i] = recorder_.tracking_error_um(i);
       run.high_water_um[i] = 1e3 * static_cast<double>(machine_.axes()[i].monitors().high_water());
     }
+    run.table_um = table_um_;
     run.disturbance_V = disturbance_V_;
     run.contour_um = contour_um_;
     run.stops = stops_;
@@ -138,6 +142,7 @@ class ScenarioDriver {
   bool is_on_path() const { return path_place_ < path_increments_.size(); }
 
   void step() {
+    for (std::size_t i = 0; i < kMachineAxes; ++i) table_mm_[i] = machine_.plant(i).table_travel();
     if (is_on_path())
       machine_.step_with(path_increments_[path_place_++]);
     else
@@ -148,6 +153,9 @@ class ScenarioDriver {
     recorder_.take();
     for (std::size_t i = 0; i < kMachineAxes; ++i) {
       const auto& axis = machine_.axes()[i];
+      const double wanted_mm =
+          firmware::counts_from<double>(0, axis.table_reference()) * scenario_.axes[i].drive.data.encoder_resolution;
+      table_um_[i].push_back(1e3 * (wanted_mm - table_mm_[i]));
       disturbance_V_[i].push_back(static_cast<double>(axis.telemetry().estimate.disturbance));
       if (axis.fault() != last_fault_[i]) {
         last_fault_[i] = axis.fault();
@@ -197,6 +205,8 @@ class ScenarioDriver {
   std::vector<std::array<firmware::Increment, kMachineAxes>> path_increments_;
   std::size_t path_place_ = 0;
   std::array<double, kMachineAxes> path_origin_mm_{};
+  std::array<double, kMachineAxes> table_mm_{};  ///< when the control period began
+  std::array<std::vector<double>, kMachineAxes> table_um_;
   std::array<std::vector<double>, kMachineAxes> disturbance_V_;
   std::vector<double> contour_um_;
   std::optional<std::uint64_t> injected_at_;
@@ -208,13 +218,15 @@ class ScenarioDriver {
 
 }  // namespace
 
+std::uint64_t commissioning_seed(const Scenario& scenario, std::size_t axis) { return 100 * scenario.seed + 10 * axis; }
+
 bool ScenarioRun::holds() const { return std::ranges::all_of(expectations, &CheckedExpectation::holds); }
 
 ScenarioRun run_scenario(const Scenario& scenario) {
   std::array<sim::DriveDescription, kMachineAxes> believed;
   std::array<MachineAxis, kMachineAxes> axes;
   for (std::size_t i = 0; i < kMachineAxes; ++i) {
-    believed[i] = believed_of(scenario.axes[i], 100 * scenario.seed + 10 * i);
+    believed[i] = believed_of(scenario.axes[i], commissioning_seed(scenario, i));
     axes[i] = machine_axis(scenario.axes[i], believed[i]);
   }
   ScenarioDriver driver(scenario, axes);

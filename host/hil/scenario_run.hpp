@@ -30,6 +30,7 @@ struct CheckedExpectation {
 struct ScenarioRun {
   std::array<Record, kMachineAxes> records;
   std::array<std::vector<double>, kMachineAxes> tracking_um;
+  std::array<std::vector<double>, kMachineAxes> table_um;       ///< where the table is wanted less where it is
   std::array<std::vector<double>, kMachineAxes> disturbance_V;  ///< the Kalman filter's
   std::vector<double> contour_um;                               ///< empty without a path
   std::array<sim::DriveDescription, kMachineAxes> believed;     ///< what the controllers were designed from
@@ -42,6 +43,9 @@ struct ScenarioRun {
   bool holds() const;
   double times_real_time() const { return wall_s > 0.0 ? simulated_s / wall_s : 0.0; }
 };
+
+/// What makes the noise of an axis' commissioning, where the controller's knowledge is identified.
+std::uint64_t commissioning_seed(const Scenario& scenario, std::size_t axis);
 
 /// Time 0 is when both axes have passed their self-test and been enabled; a scenario whose store is damaged from 0 on
 /// begins before that. Deterministic by the scenario's seed.

@@ -1,4 +1,5 @@
 // The shipped scenarios hold; a scenario is deterministic; errors name file, line, field and remedy.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +69,22 @@ TEST(Scenario, AnExpectationThatDoesNotHoldIsSaid) {
   EXPECT_FALSE(run.holds());
 }
 
+TEST(Scenario, AnAxisMayBeHeldAgainstTheOther) {
+  const std::string moves =
+      "[[move]]\nat_s = 0\nkind = \"jog\"\naxis = \"x\"\nspeed_mm_s = 20\n"
+      "[[move]]\nat_s = 0\nkind = \"jog\"\naxis = \"y\"\nspeed_mm_s = 40\n";
+  const auto expected = [](const char* axis, const char* other, double share) {
+    return fmt::format("[[expect]]\naxis = \"{}\"\nsignal = \"speed_rad_s\"\nat_most_share = {}\nof_axis = \"{}\"\n",
+                       axis, share, other);
+  };
+  const auto run =
+      host::run_scenario(parsed(moves + expected("x", "y", 0.6) + expected("x", "y", 0.4) + expected("y", "x", 1.0)));
+  ASSERT_EQ(run.expectations.size(), 3u);
+  EXPECT_TRUE(run.expectations[0].holds) << run.expectations[0].found;
+  EXPECT_FALSE(run.expectations[1].holds);
+  EXPECT_FALSE(run.expectations[2].holds);
+}
+
 TEST(Scenario, AFaultInjectedAndHealedCanBeClearedAndTheAxisEnabledAgain) {
   host::Scenario scenario = parsed(
       "[[fault]]\nat_s = 0.05\nuntil_s = 0.06\nkind = \"emergency_stop\"\n"
@@ -103,6 +120,7 @@ TEST(BadScenario, NamesFileLineFieldAndRemedy) {
   EXPECT_THAT(error_with("[[fault]]\nat_s = nan\nkind = \"blocked\"\naxis = \"x\"\n"), HasSubstr("finite number"));
   EXPECT_THAT(error_with("[[expect]]\naxis = \"x\"\n"), HasSubstr("nothing is expected"));
   EXPECT_THAT(error_with("[[expect]]\nsignal = \"contour_um\"\n"), HasSubstr("belong together"));
+  EXPECT_THAT(error_with("[[expect]]\nsignal = \"table_um\"\nat_most_share = 0.5\n"), HasSubstr("of_axis"));
   EXPECT_THAT(error_with("[[x.effect]]\nkind = \"cogging\"\n"), HasSubstr("missing field"));
   EXPECT_THAT(error_of("format = \"axis-scenario/1\"\nname = \"n\"\n[x]\ndrive = \"nowhere.toml\"\n"),
               HasSubstr("there is no model file"));
