@@ -50,8 +50,8 @@ Table error_table(const ModelComparison& comparison) {
 std::vector<ErrorRegion> outstanding(const std::vector<ErrorRegion>& where, std::size_t most) {
   std::vector<ErrorRegion> regions;
   for (const ErrorRegion& region : where)
-    if (region.partition != "event" && region.partition != "frequency" && region.portion > 0.0 &&
-        region.share > region.portion && region.share > 0.05)
+    if (region.partition != "event" && region.partition != "place" && region.partition != "frequency" &&
+        region.portion > 0.0 && region.share > region.portion && region.share > 0.05)
       regions.push_back(region);
   std::ranges::sort(regions, std::greater(),
                     [](const ErrorRegion& region) { return region.share * std::log(region.share / region.portion); });

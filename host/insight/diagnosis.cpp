@@ -129,6 +129,13 @@ bool is_rough(const SetError& error) {
   return *middle > kRoughError * kRoughError;
 }
 
+/// Of all records: what recurs along the travel stands out more from several, what happened once stands out less.
+RecordSet together(const RecordSet& training, const RecordSet& validation) {
+  RecordSet all = training;
+  all.records.insert(all.records.end(), validation.records.begin(), validation.records.end());
+  return all;
+}
+
 Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, const std::vector<const Record*>& training,
                         const std::vector<const Record*>& validation, const ShareDone& progress) {
   Diagnosis result = prepare_sets(model, training, validation, window_s);
@@ -170,7 +177,7 @@ Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, con
   result.before_validate = before.combined;
   result.given_train = error_of(given, result.training).combined;
   result.given_validate = error_of(given, result.validation).combined;
-  result.where = error_regions(result.base, result.validation);
+  result.where = error_regions(result.base, together(result.training, result.validation));
   result.rough =
       is_rough(result.candidates.empty() ? before
                                          : error_of(sim::Drive(result.candidates.front().model), result.validation)) ||

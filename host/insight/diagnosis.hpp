@@ -49,7 +49,7 @@ struct Diagnosis {
   double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
-  std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on validation data
+  std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
   std::vector<JudgedCandidate> candidates;           ///< best first
   DiagnosisVerdict verdict;
   sim::DriveDescription base;  ///< the given model, re-fitted

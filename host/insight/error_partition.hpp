@@ -15,6 +15,7 @@ namespace host {
 struct RegionSum {
   std::string region, words;
   double squares = 0.0;
+  double magnitudes = 0.0;
   double weight = 0.0;
 };
 
@@ -29,20 +30,22 @@ class Partition {
   void add(long rank, double square, double weight = 1.0) {
     RegionSum& sum = sums_.at(rank);
     sum.squares += square;
+    sum.magnitudes += std::sqrt(square);
     sum.weight += weight;
   }
 
   void append_to(std::vector<ErrorRegion>& regions) const {
-    double squares = 0.0, weight = 0.0;
+    double squares = 0.0, magnitudes = 0.0, weight = 0.0;
     for (const auto& [rank, sum] : sums_) {
       squares += sum.squares;
+      magnitudes += sum.magnitudes;
       weight += sum.weight;
     }
     if (!(squares > 0.0)) return;
     for (const auto& [rank, sum] : sums_) {
       if (sum.weight <= 0.0) continue;
       regions.push_back({name_, sum.region, sum.words, sum.squares / squares, sum.weight / weight,
-                         std::sqrt(sum.squares / sum.weight)});
+                         std::sqrt(sum.squares / sum.weight), sum.magnitudes / magnitudes});
     }
   }
 

@@ -156,6 +156,52 @@ Partition by_position(const std::vector<ErrorRow>& rows, const RecordSet& set, c
   return partition;
 }
 
+/// The stretch of the travel that stands out most, found as by_event finds one of time. Absent where it is most of the
+/// travel.
+Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
+  constexpr std::size_t kBins = 200;
+  Partition partition("place");
+  std::vector<double> travel;
+  for (const ErrorRow& row : rows) {
+    const PreparedRecord& prepared = set.records[row.record].prepared;
+    if (!prepared.record->has_position()) return partition;
+    travel.push_back(prepared.motion().x[row.row]);
+  }
+  if (travel.empty()) return partition;
+  const auto [low, high] = std::ranges::minmax(travel);
+  if (!(high > low)) return partition;
+  const double width = (high - low) / kBins;
+  const auto bin_of = [&](double x) { return std::min(kBins - 1, static_cast<std::size_t>((x - low) / width)); };
+  std::vector<double> excess(kBins);
+  double mean = 0.0;
+  for (const ErrorRow& row : rows) mean += std::sqrt(row.square) / static_cast<double>(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) excess[bin_of(travel[k])] += std::sqrt(rows[k].square) - 2.0 * mean;
+  double sum = 0.0, best = 0.0;
+  std::size_t begin = 0, best_begin = 0, best_end = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    if (sum <= 0.0) {
+      sum = 0.0;
+      begin = bin;
+    }
+    sum += excess[bin];
+    if (sum > best) {
+      best = sum;
+      best_begin = begin;
+      best_end = bin + 1;
+    }
+  }
+  if (best_end == 0 || best_end - best_begin > kBins / 2) return partition;
+  const double from = low + static_cast<double>(best_begin) * width, to = low + static_cast<double>(best_end) * width;
+  const std::string span = fmt::format("x = {:.4g} to {:.4g} {}", from, to, units.travel);
+  partition.define(0, span, "where the axis passes " + span);
+  partition.define(1, "elsewhere", "everywhere but at " + span);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::size_t bin = bin_of(travel[k]);
+    partition.add(bin >= best_begin && bin < best_end ? 0 : 1, rows[k].square);
+  }
+  return partition;
+}
+
 std::string file_name(const PreparedRecord& prepared) {
   return std::filesystem::path(prepared.record->path).filename().string();
 }
@@ -258,6 +304,7 @@ std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const
   by_direction(rows, set).append_to(regions);
   by_speed(rows, set, units).append_to(regions);
   by_position(rows, set, units).append_to(regions);
+  by_place(rows, set, units).append_to(regions);
   append_error_orders(model, set, regions);
   by_time(rows, set).append_to(regions);
   by_rest(rows, set).append_to(regions);
@@ -267,30 +314,23 @@ std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const
 }
 
 const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions) {
-  constexpr double kLeastShare = 0.3;  // of the error beyond the floor: less is not where "it" fails
-  constexpr double kEventShare = 0.5;
+  constexpr double kLeastShare = 0.3;  // of the error: less is not where "it" fails
+  constexpr double kStretchShare = 0.5;
   constexpr double kEventPortion = 0.05;
   constexpr double kOrderPortion = 0.05;  // a line in a spectrum is about so surprising
   const ErrorRegion* worst = nullptr;
   double most = 0.0;
   for (const ErrorRegion& region : regions) {
     if (region.partition == "frequency") continue;  // errors grow over a window: most of them are always slow
-    double excess = region.share, portion = kOrderPortion;
-    if (region.partition == "order") {
-      if (region.region == "not periodic") continue;
-    } else {
-      // Beyond the floor: what the squares exceed 1 by, as a part of what they exceed it by everywhere.
-      if (!(region.rms > 1.0) || !(region.share > 0.0)) continue;
-      const double everywhere = region.portion * region.rms * region.rms / region.share;
-      if (everywhere <= 1.0) continue;
-      excess = region.portion * (region.rms * region.rms - 1.0) / (everywhere - 1.0);
-      portion = region.portion;
-    }
-    excess = std::min(excess, 1.0);
-    // A stretch was picked among all stretches: it must hold most of the error, and be short.
-    if (region.partition == "event" && (excess < kEventShare || portion > kEventPortion)) continue;
-    if (excess < kLeastShare || portion <= 0.0 || portion >= excess) continue;
-    const double surprise = excess * std::log(excess / portion);
+    const bool order = region.partition == "order";
+    if (order ? region.region == "not periodic" : !(region.rms > 1.0)) continue;
+    const double share = order ? region.share : region.prevalence;
+    const double portion = order ? kOrderPortion : region.portion;
+    // A stretch was picked among all stretches: it must hold most of the error, and one of time must be short.
+    if (region.partition == "event" && (share < kStretchShare || portion > kEventPortion)) continue;
+    if (region.partition == "place" && share < kStretchShare) continue;
+    if (share < kLeastShare || portion <= 0.0 || portion >= share) continue;
+    const double surprise = share * std::log(share / portion);
     if (surprise > most) {
       most = surprise;
       worst = &region;
