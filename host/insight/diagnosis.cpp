@@ -211,10 +211,12 @@ Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, con
 }  // namespace
 
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const ShareDone& progress) {
-  Diagnosis result = diagnose_over(kWindow_s, model, training, validation, progress);
+                   const std::vector<const Record*>& validation, const ShareDone& progress, bool known_rough) {
   const bool short_windows = training.front()->sample_period_s <= 0.1 * kRoughWindow_s * 1.001;
-  if (!result.rough || !short_windows) return result;
+  if (!known_rough || !short_windows) {
+    Diagnosis result = diagnose_over(kWindow_s, model, training, validation, progress);
+    if (!result.rough || !short_windows) return result;
+  }
   return diagnose_over(kRoughWindow_s, model, training, validation, progress);
 }
 

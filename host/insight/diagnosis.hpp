@@ -67,9 +67,10 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
                                 const SetError& before);
 
 /// Over windows of kWindow_s; where the machine proves rough, again over shorter ones, in which an error of force shows
-/// before it adds up to a drift. Throws Failure(bad_input) for records that cannot be compared. Keeps references to the
-/// records.
+/// before it adds up to a drift (`known_rough`: over these at once). Throws Failure(bad_input) for records that cannot
+/// be compared. Keeps references to the records.
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const ShareDone& progress = {});
+                   const std::vector<const Record*>& validation, const ShareDone& progress = {},
+                   bool known_rough = false);
 
 }  // namespace host

@@ -42,11 +42,13 @@ Improvement improve(const sim::DriveDescription& model, const std::vector<const 
                     const std::vector<const Record*>& validation, const ShareDone& progress) {
   Improvement result;
   sim::DriveDescription current = model;
+  bool rough = false;  // as the first diagnosis finds: errors on another kind of windows cannot stand in one ladder
   for (int step = 0; step < kMostRungs; ++step) {
     const auto part = [&](double share) {
       if (progress) progress((step + share) / (step + 2.0));
     };
-    Diagnosis diagnosis = diagnose(current, training, validation, part);
+    Diagnosis diagnosis = diagnose(current, training, validation, part, rough);
+    rough = diagnosis.rough;
     if (step == 0) result.ladder.push_back(rung_of(diagnosis, false, {}));
     result.verdict = diagnosis.verdict;
     result.model = diagnosis.best;

@@ -67,10 +67,13 @@ Verdict verdict_block(const DiagnosisVerdict& verdict) {
 
 /// Samples of all validation records, residual effort of one model.
 ResidualSamples residuals_on(const sim::DriveDescription& model, const RecordSet& set) {
-  constexpr std::size_t kStride = 3;
+  constexpr std::size_t kEnough = 30'000;  // samples, for curves of a hundred bins
+  std::size_t rows = 0;
+  for (const ComparedRecord& compared : set.records) rows += compared.prepared.record->size();
+  const std::size_t stride = 1 + rows / kEnough;
   ResidualSamples all;
   for (const ComparedRecord& compared : set.records) {
-    const ResidualSamples part = residual_samples(model, compared.prepared, kStride);
+    const ResidualSamples part = residual_samples(model, compared.prepared, stride);
     const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
       to.insert(to.end(), from.begin(), from.end());
     };
@@ -86,8 +89,10 @@ ResidualSamples residuals_on(const sim::DriveDescription& model, const RecordSet
 }
 
 ScatterSeries curve(const std::string& name, SeriesRole role, const std::vector<double>& x,
-                    const std::vector<double>& y, std::size_t bins) {
-  const BinnedCurve binned = binned_curve(x, y, bins);
+                    const std::vector<double>& y) {
+  constexpr std::size_t kMostBins = 160, kFewestBins = 8, kSamplesABin = 40, kFewestSamples = 5;
+  const BinnedCurve binned =
+      binned_curve(x, y, std::clamp(x.size() / kSamplesABin, kFewestBins, kMostBins), kFewestSamples);
   ScatterSeries series;
   series.name = name;
   series.role = role;
@@ -100,14 +105,13 @@ ScatterSeries curve(const std::string& name, SeriesRole role, const std::vector<
 ScatterPlot before_and_after(const std::string& title, const std::string& caption, const Axis& x, const Axis& y,
                              const std::vector<double>& before_x, const std::vector<double>& before_y,
                              const std::vector<double>& after_x, const std::vector<double>& after_y) {
-  constexpr std::size_t kBins = 160;
   ScatterPlot plot;
   plot.title = title;
   plot.caption = caption;
   plot.x = x;
   plot.y = y;
-  plot.series = {curve("before", SeriesRole::before, before_x, before_y, kBins),
-                 curve("after", SeriesRole::after, after_x, after_y, kBins)};
+  plot.series = {curve("before", SeriesRole::before, before_x, before_y),
+                 curve("after", SeriesRole::after, after_x, after_y)};
   return plot;
 }
 
@@ -133,23 +137,27 @@ void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveD
       "Where it shows",
       "What the motor gave beyond what the model explains, on validation data, averaged over each coordinate. A "
       "flat line at zero is what a complete model leaves.");
+  const auto add = [&report](ScatterPlot plot) {
+    if (std::ranges::any_of(plot.series, [](const ScatterSeries& series) { return series.x.size() < 2; })) return;
+    report.add(std::move(plot));
+  };
   const Axis effort{"unexplained effort", units.effort};
-  report.add(before_and_after("Against speed", "", {"speed", units.speed}, effort, before.w, before.missing, after.w,
-                              after.missing));
+  add(before_and_after("Against speed", "", {"speed", units.speed}, effort, before.w, before.missing, after.w,
+                       after.missing));
   const double period = period_of(best);
-  report.add(before_and_after(fmt::format("Against position within one period of {:.4g} {}", period, units.travel), "",
-                              {"position in the period", units.travel}, effort, folded(before.x, period),
-                              before.missing, folded(after.x, period), after.missing));
-  report.add(before_and_after("Along the travel", "", {"position", units.travel}, effort, before.x, before.missing,
-                              after.x, after.missing));
-  report.add(before_and_after("Against acceleration", "", {"acceleration", units.acceleration}, effort,
-                              before.acceleration, before.missing, after.acceleration, after.missing));
-  report.add(before_and_after("Over time", "", {"time since start", "s"}, effort, before.t_s, before.missing, after.t_s,
-                              after.missing));
+  add(before_and_after(fmt::format("Against position within one period of {:.4g} {}", period, units.travel), "",
+                       {"position in the period", units.travel}, effort, folded(before.x, period), before.missing,
+                       folded(after.x, period), after.missing));
+  add(before_and_after("Along the travel", "", {"position", units.travel}, effort, before.x, before.missing, after.x,
+                       after.missing));
+  add(before_and_after("Against acceleration", "", {"acceleration", units.acceleration}, effort, before.acceleration,
+                       before.missing, after.acceleration, after.missing));
+  add(before_and_after("Over time", "", {"time since start", "s"}, effort, before.t_s, before.missing, after.t_s,
+                       after.missing));
   if (!before.tach_error.empty())
-    report.add(before_and_after("Tachometer against speed", "Tachometer less the speed from the encoder.",
-                                {"speed", units.speed}, {"tachometer error", units.speed}, before.w, before.tach_error,
-                                after.w, after.tach_error));
+    add(before_and_after("Tachometer against speed", "Tachometer less the speed from the encoder.",
+                         {"speed", units.speed}, {"tachometer error", units.speed}, before.w, before.tach_error,
+                         after.w, after.tach_error));
 }
 
 void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "host/report/insight_report.hpp"
+#include "tests/host/insight/drive_case.hpp"
 #include "tests/host/report/sample_report.hpp"
 
 namespace host {
@@ -171,6 +173,25 @@ TEST_F(Browser, DrawsZoomsPansAndSharesTheCursorWithoutConsoleMessages) {
   EXPECT_NEAR(seen["panned"][1][1].get<double>() - seen["panned"][1][0].get<double>(), to_s - from_s, 1e-6);
   EXPECT_EQ(seen["panned"][0], seen["panned"][1]);
   EXPECT_EQ(seen["reset"], seen["whole"]);
+}
+
+TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
+  const DriveCase shipped("pairs/case-00");  // validated on 3 s of motion
+  std::vector<const Record*> train, validate;
+  for (const Record& record : shipped.train) train.push_back(&record);
+  for (const Record& record : shipped.validate) validate.push_back(&record);
+  Diagnosis diagnosis = prepare_sets(shipped.model, train, validate);
+  diagnosis.where = error_regions(diagnosis.base, diagnosis.validation);
+  const std::string path = (folder_ / "diagnosis.html").string();
+  write_diagnosis_report(diagnosis, "model.toml", path);
+  const std::string page = visit(content_of(path));
+  EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+  const nlohmann::json seen = seen_in(page);
+  ASSERT_TRUE(seen.is_object()) << "the page's scripts did not run to their end\n" << log_;
+  // Residual against speed, period, travel, acceleration, time and at the tachometer; speed, its error, position error.
+  EXPECT_EQ(seen["charts"], 9);
+  // The last curve lies on top: of a tachometer that no effect concerns, both are the same.
+  for (const nlohmann::json& chart : seen["pixels"]) EXPECT_GT(chart.back().get<int>(), 30) << seen["pixels"];
 }
 
 TEST_F(Browser, AnEmptyReportIsStillAPage) {
