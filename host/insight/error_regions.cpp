@@ -168,7 +168,7 @@ Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, cons
     travel.push_back(prepared.motion().x[row.row]);
   }
   if (travel.empty()) return partition;
-  const auto [low, high] = std::ranges::minmax(travel);
+  const double low = std::ranges::min(travel), high = std::ranges::max(travel);
   if (!(high > low)) return partition;
   const double width = (high - low) / kBins;
   const auto bin_of = [&](double x) { return std::min(kBins - 1, static_cast<std::size_t>((x - low) / width)); };
