@@ -24,12 +24,26 @@ struct BoardUnits {
   static Scalar velocity(double mm_per_s);
 };
 
-/// Between them, the two axes use every part of the control law.
-template <typename Scalar>
-firmware::AxisParameters<Scalar> with_all_parts(firmware::AxisParameters<Scalar> parameters, std::size_t axis) {
+/// Every part of the compensation, each large enough to show in the words.
+template <typename Real>
+firmware::CompensationParameters<Real> all_compensation() {
+  firmware::CompensationParameters<Real> c;
+  c.cogging_on = c.position_friction_on = true;
+  c.cogging_V[0] = {Real(0.1), Real(-0.05), firmware::kOneCount / 1024};
+  c.cogging_V[2] = {Real(0.02), Real(0.01), firmware::kOneCount / 341};
+  c.position_friction = {Real(0.2), Real(0.1), firmware::kOneCount / 28'672};
+  c.presliding = {true, Real(20), Real(0.3)};
+  c.backlash = {true, 16 * firmware::kOneCount, 5 * firmware::kOneCount, 10};
+  return c;
+}
+
+/// Between them, the two axes use every part of the control law; only the second compensates.
+template <typename Real>
+firmware::AxisParameters<Real> with_all_parts(firmware::AxisParameters<Real> parameters, std::size_t axis) {
   parameters.friction_feedforward_on = true;
   parameters.zero_phase_feedforward_on = axis == 0;
   parameters.disturbance_cancellation_on = axis == 1;
+  if (axis == 1) parameters.compensation = all_compensation<Real>();
   return parameters;
 }
 
@@ -45,8 +59,8 @@ struct BoardUnits<float> {
 template <>
 struct BoardUnits<firmware::FixedPoint> {
   static firmware::boards::PilStation<firmware::FixedPoint>::Parameters parameters() {
-    return {with_all_parts(firmware::to_fixed(firmware_test::parameters_of<double>(firmware_test::kPaperX)), 0),
-            with_all_parts(firmware::to_fixed(firmware_test::parameters_of<double>(firmware_test::kPaperY)), 1)};
+    return {firmware::to_fixed(with_all_parts(firmware_test::parameters_of<double>(firmware_test::kPaperX), 0)),
+            firmware::to_fixed(with_all_parts(firmware_test::parameters_of<double>(firmware_test::kPaperY), 1))};
   }
   static firmware::FixedPoint velocity(double mm_per_s) {
     return firmware::FixedPoint::from(mm_per_s * firmware_test::kSamplePeriod_s / firmware_test::kEncoderResolution_mm);
