@@ -57,6 +57,8 @@ class BoardClient {
     std::uint32_t first_row = 0;
     std::vector<std::uint32_t> words;
   };
+  std::chrono::milliseconds patience() const { return patience_; }
+
   /// Those that have come, or come within `patience`; empty otherwise.
   std::optional<Samples> next_samples(std::chrono::milliseconds patience);
 

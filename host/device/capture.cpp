@@ -81,7 +81,8 @@ class CaptureRun {
       }
       if (!triggered_ && now - began > std::chrono::duration<double>(settings_.patience_s))
         throw Failure(ExitCode::time_out, fmt::format("the trigger did not come within {:g} s", settings_.patience_s));
-      const double silence_s = 2.0 + 20.0 * capture_.row_period_s;
+      const double silence_s =
+          2.0 + std::chrono::duration<double>(board_.patience()).count() + 20.0 * capture_.row_period_s;
       if (now - std::max(last_row_, began) > std::chrono::duration<double>(silence_s))
         throw Failure(ExitCode::time_out, "the board sends no more samples");
       if (progress) progress(capture_.number.size());

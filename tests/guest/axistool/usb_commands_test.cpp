@@ -179,6 +179,7 @@ TEST_P(UsbBoard, RunsTheWorkflow) {
 
 INSTANTIATE_TEST_SUITE_P(Hidapi, UsbCommands, testing::Values(host::HidBackend::hidraw, host::HidBackend::libusb),
                          [](const auto& chosen) { return std::string(host::name_of(chosen.param)); });
-INSTANTIATE_TEST_SUITE_P(Hidraw, UsbBoard, testing::Values(host::HidBackend::hidraw));
+INSTANTIATE_TEST_SUITE_P(Hidapi, UsbBoard, testing::Values(host::HidBackend::hidraw),
+                         [](const auto& chosen) { return std::string(host::name_of(chosen.param)); });
 
 }  // namespace
