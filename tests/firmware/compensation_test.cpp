@@ -103,7 +103,7 @@ TEST(BacklashCrossing, EndsHalfTheGapOnTheSideOfTheMotionAndMovesMonotonously) {
   crossing.configure(kGap);
   EXPECT_FALSE(crossing.is_crossing());
   Increment sum = 0;
-  for (const int direction : {1, -1, 1}) {
+  for (const Increment direction : {1, -1, 1}) {
     const Increment begin = sum;
     for (int k = 0; k < 10; ++k) {
       const Increment added = crossing.next(direction * kOneCount);

@@ -90,7 +90,8 @@ class BacklashCrossing {
     if (sample == n) return target_;
     // The area under the triangle, in 2^-15 of the whole: 2 s^2 up to the middle, 1 - 2 (1 - s)^2 after it.
     const std::int32_t part = sample <= n / 2 ? sample : n - sample;
-    const auto area = static_cast<std::int32_t>((part * part * area_per_square_ + (std::int64_t{1} << 31)) >> 32);
+    const auto area =
+        static_cast<std::int32_t>((std::int64_t{part} * part * area_per_square_ + (std::int64_t{1} << 31)) >> 32);
     const std::int32_t share = sample <= n / 2 ? area : 32768 - area;
     return begin_ + ((target_ - begin_) >> 15) * share;
   }
