@@ -72,6 +72,15 @@ TEST(Compensation, SwitchedOffItsValuesDoNotMatter) {
   EXPECT_NE(words_of(compensating()), plain);
 }
 
+TEST(Compensation, SwitchedOffItsValuesNeedNoSense) {
+  auto off = with_friction();
+  off.compensation.cogging_V[0] = {0.1f, 0.1f, 0};
+  off.compensation.position_friction = {0.1f, 0.1f, -kOneCount};
+  off.compensation.presliding = {false, 0.0f, -1.0f};
+  off.compensation.backlash = {false, -kOneCount, -kOneCount, 0};
+  EXPECT_EQ(words_of(off), words_of(with_friction()));
+}
+
 TEST(Compensation, FrictionsPartsNeedFrictionFeedforward) {
   auto parameters = with_friction();
   parameters.friction_feedforward_on = false;

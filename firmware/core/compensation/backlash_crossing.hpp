@@ -25,7 +25,7 @@ class BacklashCrossing {
   constexpr void configure(const BacklashParameters& parameters) {
     parameters_ = parameters;
     const std::int64_t n = parameters.crossing_samples;
-    area_per_square_ = (std::int64_t{1} << 48) / (n * n);
+    area_per_square_ = n > 0 ? (std::int64_t{1} << 48) / (n * n) : 0;  // switched off, it is not checked
     const Increment wind_up = parameters.wind_up >> 32;
     share_per_wind_up_ = wind_up > 0 ? (std::int64_t{1} << 46) / wind_up : 0;
     reset();
