@@ -78,8 +78,8 @@ class FrictionPieces {
       const Scalar f0 = friction_curve(side_, v0), f1 = friction_curve(side_, v1);
       const Scalar s0 = slope(v0) * width, s1 = slope(v1) * width;
       const Scalar rise = f1 - f0;
-      piece_[static_cast<std::size_t>(first + i)] = {f0, s0, Scalar(3) * rise - Scalar(2) * s0 - s1,
-                                                     s0 + s1 - Scalar(2) * rise};
+      piece_[static_cast<std::size_t>(first) + static_cast<std::size_t>(i)] = {
+          f0, s0, Scalar(3) * rise - Scalar(2) * s0 - s1, s0 + s1 - Scalar(2) * rise};
     }
   }
 
@@ -94,7 +94,7 @@ class FrictionPieces {
   constexpr Scalar piece(std::int32_t first, Scalar place) const {
     const std::int32_t number = ScalarTraits<Scalar>::truncate(place);
     const Scalar t = place - ScalarTraits<Scalar>::from_integer(number);
-    const Cubic& c = piece_[static_cast<std::size_t>(first + number)];
+    const Cubic& c = piece_[static_cast<std::size_t>(first) + static_cast<std::size_t>(number)];
     return ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
   }
 

@@ -80,7 +80,9 @@ TEST(FrictionPieces, StayWithinTheirStatedErrorWhereTheOmegasDiffer) {
     const double omega1 = 2.0, omega2 = omega1 * ratio, level = 1.0;
     firmware::FrictionPieces<double> pieces;
     pieces.configure({level, level, 0.0, omega1, omega2});
-    for (double speed = 0.0; speed < 20.0 * std::max(omega1, omega2); speed += 0.05 * std::min(omega1, omega2)) {
+    const double step = 0.05 * std::min(omega1, omega2), fastest = 20.0 * std::max(omega1, omega2);
+    for (int i = 0; i * step < fastest; ++i) {
+      const double speed = i * step;
       const double exact = level * std::exp(-speed / omega1) + level * (1.0 - std::exp(-speed / omega2));
       ASSERT_NEAR(pieces(speed), exact, 1.7e-4 * level) << "at " << speed << ", omegas " << omega1 << " and " << omega2;
     }
