@@ -27,7 +27,10 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
   return friction + drive.transmitted_share * std::abs(motor_effort);
 }
 
-/// The record as the motor saw it: commands through the converter's effects, delayed by what the drive delays.
+/// The record as the motor saw it: commands through the converter's effects, delayed by what the drive delays. A model
+/// that tells when a command acts means one that is held for a sample: what moves the axis about the instant of a
+/// sample has then been sent half a sample earlier still. Without such an effect command and motion are taken as
+/// simultaneous, as published inverse models have them.
 Record as_the_motor_saw(const Record& record, const sim::Drive& drive) {
   Record seen = record;
   for (double& u : seen.u_V) {
@@ -35,7 +38,8 @@ Record as_the_motor_saw(const Record& record, const sim::Drive& drive) {
   }
   const double delay = drive.delay_s + drive.current_lag_s;  // a lag far below the motion's period acts as a delay
   if (delay > 0.0 && !seen.u_V.empty()) {
-    const double samples = delay / record.sample_period_s;
+    constexpr double kHold = 0.5;
+    const double samples = delay / record.sample_period_s + kHold;
     const auto whole = static_cast<std::size_t>(samples);
     const double part = samples - static_cast<double>(whole);
     const std::vector<double> sent = seen.u_V;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "host/exit_codes.hpp"
 
@@ -51,26 +52,39 @@ class Restarts {
         prepared_(prepared),
         motion_(prepared.motion()),
         memory_(static_cast<std::size_t>(std::ceil(drive.memory_s() / prepared.period_s))),
-        shifts_(!drive.encoder_error.empty() || drive.shapes_effort()) {}
+        errs_(!drive.encoder_error.empty()),
+        shapes_(drive.shapes_effort()) {
+    if (errs_) reading_.resize(motion_.x.size());
+    if (shapes_) command_V_.resize(motion_.x.size());
+  }
 
   /// Windows must be asked for in rising order.
   sim::DriveState at(const Window& window) {
     const std::size_t row = window.begin;
-    if (memory_ == 0 && !shifts_) return drive_.at(motion_.x[row], motion_.w[row]);
+    const bool shifts = errs_ || shapes_;
+    if (memory_ == 0 && !shifts) return drive_.at(motion_.x[row], motion_.w[row]);
     // Rows further back than the drive remembers need not be gone through.
-    const std::size_t needed = row - std::min(row, rows_back(row) + (shifts_ ? prepared_.smoother.reach() : 0));
-    if (!begun_ || needed > row_) {
-      state_ = drive_.at(motion_.x[needed], motion_.w[needed]);
-      row_ = needed;
-      begun_ = true;
-    }
-    const std::size_t first = shifts_ ? prepared_.weights_of(window).first : row;
-    while (row_ < first) follow(state_, row_++);
-    if (!shifts_) return state_;
-    return shifted(row, prepared_.weights_of(window));
+    const std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother.reach() : 0));
+    here_.begin_at(needed, *this);
+    while (here_.row < row) follow(here_);
+    return shifts ? shifted(here_.state, needed, prepared_.weights_of(window)) : here_.state;
   }
 
  private:
+  /// The drive's state as it goes along the measured motion.
+  struct Follower {
+    sim::DriveState state;
+    std::size_t row = 0;
+    bool begun = false;
+
+    void begin_at(std::size_t needed, const Restarts& restarts) {
+      if (begun && needed <= row) return;
+      state = restarts.drive_.at(restarts.motion_.x[needed], restarts.motion_.w[needed]);
+      row = needed;
+      begun = true;
+    }
+  };
+
   /// Rest keeps what the motion before it has left: where a second mass stands in its gap, how a bristle is bent.
   std::size_t rows_back(std::size_t row) const {
     if (memory_ == 0) return 0;
@@ -79,27 +93,29 @@ class Restarts {
     return std::min(row, back + memory_);
   }
 
-  double follow(sim::DriveState& state, std::size_t row) const {
-    return drive_.follow(state, prepared_.u_V[row], motion_.x[row + 1], motion_.w[row + 1], prepared_.record->t_s[row],
-                         prepared_.period_s);
+  /// Goes on by a row; returns the effort that the drive delivers meanwhile.
+  double follow(Follower& follower) const {
+    const std::size_t row = follower.row++;
+    return drive_.follow(follower.state, prepared_.u_V[row], motion_.x[row + 1], motion_.w[row + 1],
+                         prepared_.record->t_s[row], prepared_.period_s);
   }
 
-  sim::DriveState shifted(std::size_t row, const ShiftWeights& weights) {
-    const std::size_t last = weights.first + weights.x_of_reading.size();
-    reading_.clear();
-    command_V_.clear();
-    sim::DriveState restart = state_, ahead = state_;
-    for (std::size_t k = weights.first; k < last; ++k) {
-      if (k == row) restart = ahead;
-      if (!drive_.encoder_error.empty()) {
-        const double x = motion_.x[k];
-        reading_.push_back(-drive_.encoder_error_at(x - drive_.encoder_error_at(x)));
+  sim::DriveState shifted(sim::DriveState restart, std::size_t needed, const ShiftWeights& weights) {
+    const std::size_t count = weights.x_of_reading.size();
+    ahead_.begin_at(std::min(needed, weights.first), *this);
+    while (ahead_.row < weights.first + count) {
+      const std::size_t row = ahead_.row;
+      if (errs_) {
+        const double x = motion_.x[row];
+        reading_[row] = -drive_.encoder_error_at(x - drive_.encoder_error_at(x));
       }
-      const double effort = follow(ahead, k);
-      if (drive_.shapes_effort()) command_V_.push_back(effort / drive_.effort_per_volt - prepared_.u_V[k]);
+      const double effort = follow(ahead_);
+      if (shapes_) command_V_[row] = effort / drive_.effort_per_volt - prepared_.u_V[row];
     }
-    if (row >= last) restart = ahead;
-    const ShiftWeights::Shift shift = weights.shift(reading_, command_V_);
+    const auto reached = [&](const std::vector<double>& changes) {
+      return changes.empty() ? std::span<const double>{} : std::span(changes).subspan(weights.first, count);
+    };
+    const ShiftWeights::Shift shift = weights.shift(reached(reading_), reached(command_V_));
     restart.x += shift.x;
     restart.w += shift.w;
     if (!drive_.has_second_mass()) restart.load_x = restart.x;
@@ -110,10 +126,9 @@ class Restarts {
   const PreparedRecord& prepared_;
   const SmoothedMotion& motion_;
   std::size_t memory_;
-  bool shifts_;
-  bool begun_ = false;
-  std::size_t row_ = 0;
-  sim::DriveState state_;
+  bool errs_, shapes_;
+  Follower here_;
+  Follower ahead_;  ///< of here_, by what a row's readings reach back
   std::vector<double> reading_, command_V_;
 };
 

@@ -260,9 +260,8 @@ ShiftWeights MotionSmoother::shift_weights(std::size_t row) const {
   return weights;
 }
 
-ShiftWeights::Shift ShiftWeights::shift(const std::vector<double>& reading,
-                                        const std::vector<double>& command_V) const {
-  const auto product = [](const std::vector<double>& weights, const std::vector<double>& changes) {
+ShiftWeights::Shift ShiftWeights::shift(std::span<const double> reading, std::span<const double> command_V) const {
+  const auto product = [](const std::vector<double>& weights, std::span<const double> changes) {
     return std::transform_reduce(changes.begin(), changes.end(), weights.begin(), 0.0);
   };
   return {product(x_of_reading, reading) + product(x_of_command, command_V),

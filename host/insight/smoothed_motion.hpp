@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "host/record/record.hpp"
@@ -35,7 +36,7 @@ struct ShiftWeights {
     double x, w;
   };
   /// Changes of the rows from `first` on; either may be empty.
-  Shift shift(const std::vector<double>& reading, const std::vector<double>& command_V) const;
+  Shift shift(std::span<const double> reading, std::span<const double> command_V) const;
 };
 
 /// Rauch-Tung-Striebel smoother of the model (15): travel, speed and a random-walk disturbance, driven by the command
