@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -75,6 +76,23 @@ TEST(DiagnoseCommand, AMissingRecordIsABadFile) {
   const ProgramRun run = run_axistool("diagnose " + folder + "/model.toml --train " + folder + "/no-such.csv");
   EXPECT_EQ(run.exit_code, 9);
   EXPECT_THAT(run.output, HasSubstr("no-such.csv"));
+}
+
+TEST(ImproveCommand, InterruptedItLeavesNothingBehindAndWhatWasThereWhole) {
+  const TemporaryFolder folder;
+  const std::string model = folder.write("better.toml", "what was there\n");
+  const std::string data = (kCases / "pairs" / "case-00").string();
+  // Interrupted as by Ctrl-C, long before its end; 124 is how timeout says so.
+  const ProgramRun run =
+      run_program("timeout --signal=INT 1 \"" AXISTOOL_PROGRAM "\" improve " + data + "/model.toml --train " + data +
+                  "/train-jog.csv --validate " + data + "/validate.csv -o " + model + " --json " +
+                  folder.path("better.json") + " --report " + folder.path("better.html"));
+  ASSERT_EQ(run.exit_code, 124) << run.output;
+  std::ifstream in(model);
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "what was there");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path("")), fs::directory_iterator()), 1);
 }
 
 TEST(ScoreboardCommand, CountsAnAnswerThatIsTheTruth) {
