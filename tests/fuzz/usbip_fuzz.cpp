@@ -31,13 +31,17 @@ class OpenRequests {
       const std::size_t length = hal::usbip::kHeaderSize + (brings_data ? request.length : 0);
       if (stream_.size() < length) return;
       stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(length));
+      // No host gives one number to two requests: the replies could not be told apart.
+      unclear_ = unclear_ || std::any_of(requests_.begin(), requests_.end(), [&](const hal::usbip::Request& one) {
+                   return one.sequence == request.sequence;
+                 });
       requests_.push_back(request);
     }
   }
 
   /// Takes the replies out of what was received, which must be whole and fit a request.
   void settle(Bytes received) {
-    while (!received.empty()) {
+    while (!received.empty() && !unclear_) {
       if (received.size() < hal::usbip::kHeaderSize) std::abort();
       const hal::usbip::Header header = header_at_front(received);
       const auto command = static_cast<Command>(hal::usbip::read_word(header, 0));
@@ -64,6 +68,7 @@ class OpenRequests {
 
   Bytes stream_;
   std::vector<hal::usbip::Request> requests_;
+  bool unclear_ = false;
 };
 
 Bytes receive_all(int socket) {
