@@ -101,6 +101,31 @@ std::string parameters_in_words(const sim::EffectEntry& entry, sim::DriveKind ki
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// A ripple along the travel that lowers the training error alone: with an incremental encoder each homing gives the
+/// travel a new zero, and the ripple a new phase. Empty where there is none.
+std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::DriveKind kind) {
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    const sim::EffectEntry& last = candidate.model.effects.back();
+    if (last.kind != candidate.kinds.back() || !last.has("period")) continue;
+    double train = diagnosis.before_train, validate = diagnosis.before_validate;
+    if (candidate.kinds.size() == 2) {
+      const auto first =
+          std::ranges::find(diagnosis.candidates, std::vector{candidate.kinds.front()}, &JudgedCandidate::kinds);
+      if (first == diagnosis.candidates.end()) continue;
+      train = first->train_after;
+      validate = first->after;
+    }
+    if (candidate.train_after > (1.0 - kLeastGain) * train || candidate.after < validate) continue;
+    const double period_mm = kind == sim::DriveKind::rotary ? last.at("period") : 1e3 * last.at("period");
+    return fmt::format(
+        " A ripple every {:.4g} mm of travel ({}) lowers the error on training data from {:.2f} to {:.2f} times the "
+        "floor, but not on validation data: its phase does not transfer from record to record, as after a new homing, "
+        "so it is not claimed.",
+        period_mm, last.kind, train, candidate.train_after);
+  }
+  return {};
+}
+
 }  // namespace
 
 DiagnosisVerdict insufficient_data(const sim::DriveDescription& model) {
@@ -161,6 +186,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
           " Much more than noise is left whatever is added, so the model is judged over windows of {:g} s, in which an "
           "error of force shows before it adds up to a drift.",
           diagnosis.window_s);
+    verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }
   if (before > 2.0 * kExplained) {
@@ -172,6 +198,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
             ? std::string()
             : fmt::format("; the closest, {}, leaves {:.2f}", fmt::join(chosen->kinds, " + "), chosen->after));
     verdict.explanation += " What is left to explain: " + where_it_fails(diagnosis.where) + ".";
+    verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     verdict.next_experiment = "Look where the error lives, and record that motion alone, slowly and fast, both ways.";
     return verdict;
   }

@@ -46,6 +46,9 @@ TEST(EmpsDiagnosis, SuggestsTheViscousAsymmetryAndNoPositionEffect) {
   const sim::EffectEntry* coulomb = diagnosis.best.find("coulomb");
   EXPECT_LT(std::abs(0.5 * (coulomb->at("positive") + coulomb->at("negative"))), 0.5);
   EXPECT_THAT(diagnosis.verdict.next_experiment, testing::HasSubstr("No record holds a constant speed between"));
+  // Both runs have a ripple of 2.5 mm, of one amplitude and 95 degrees apart.
+  EXPECT_THAT(diagnosis.verdict.explanation,
+              testing::AllOf(testing::HasSubstr("A ripple every 2.5"), testing::HasSubstr("does not transfer")));
 }
 
 }  // namespace
