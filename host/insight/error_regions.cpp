@@ -156,6 +156,32 @@ Partition by_position(const std::vector<ErrorRow>& rows, const RecordSet& set, c
   return partition;
 }
 
+/// Values begin ... end-1.
+struct Stretch {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Neighbouring values of the largest sum (Kadane); empty where none is positive. A stretch that began at `begin` may
+/// go on to k where `joins(begin, k)`.
+template <typename Joins>
+Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
+  Stretch best;
+  double sum = 0.0, most = 0.0;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (sum <= 0.0 || !joins(begin, k)) {
+      sum = 0.0;
+      begin = k;
+    }
+    sum += values[k];
+    if (sum > most) {
+      most = sum;
+      best = {begin, k + 1};
+    }
+  }
+  return best;
+}
+
 /// The stretch of the travel that stands out most, found as by_event finds one of time. Absent where it is most of the
 /// travel.
 Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
@@ -176,28 +202,15 @@ Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, cons
   double mean = 0.0;
   for (const ErrorRow& row : rows) mean += std::sqrt(row.square) / static_cast<double>(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) excess[bin_of(travel[k])] += std::sqrt(rows[k].square) - 2.0 * mean;
-  double sum = 0.0, best = 0.0;
-  std::size_t begin = 0, best_begin = 0, best_end = 0;
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    if (sum <= 0.0) {
-      sum = 0.0;
-      begin = bin;
-    }
-    sum += excess[bin];
-    if (sum > best) {
-      best = sum;
-      best_begin = begin;
-      best_end = bin + 1;
-    }
-  }
-  if (best_end == 0 || best_end - best_begin > kBins / 2) return partition;
-  const double from = low + static_cast<double>(best_begin) * width, to = low + static_cast<double>(best_end) * width;
+  const Stretch worst = largest_stretch(excess, [](std::size_t, std::size_t) { return true; });
+  if (worst.end == 0 || worst.end - worst.begin > kBins / 2) return partition;
+  const double from = low + static_cast<double>(worst.begin) * width, to = low + static_cast<double>(worst.end) * width;
   const std::string span = fmt::format("x = {:.4g} to {:.4g} {}", from, to, units.travel);
   partition.define(0, span, "where the axis passes " + span);
   partition.define(1, "elsewhere", "everywhere but at " + span);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::size_t bin = bin_of(travel[k]);
-    partition.add(bin >= best_begin && bin < best_end ? 0 : 1, rows[k].square);
+    partition.add(bin >= worst.begin && bin < worst.end ? 0 : 1, rows[k].square);
   }
   return partition;
 }
@@ -268,28 +281,19 @@ Partition by_event(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   if (rows.empty()) return partition;
   double mean = 0.0;
   for (const ErrorRow& row : rows) mean += row.square / static_cast<double>(rows.size());
-  double sum = 0.0, best = 0.0;
-  std::size_t begin = 0, best_begin = 0, best_end = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (sum <= 0.0 || rows[begin].record != rows[k].record) {
-      sum = 0.0;
-      begin = k;
-    }
-    sum += rows[k].square - 2.0 * mean;
-    if (sum > best) {
-      best = sum;
-      best_begin = begin;
-      best_end = k + 1;
-    }
-  }
-  if (best_end == 0) return partition;
-  const PreparedRecord& prepared = set.records[rows[best_begin].record].prepared;
-  const double from_s = prepared.record->t_s[rows[best_begin].row];
-  const double to_s = prepared.record->t_s[rows[best_end - 1].row];
+  std::vector<double> excess(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) excess[k] = rows[k].square - 2.0 * mean;
+  const Stretch worst =
+      largest_stretch(excess, [&](std::size_t begin, std::size_t k) { return rows[begin].record == rows[k].record; });
+  if (worst.end == 0) return partition;
+  const PreparedRecord& prepared = set.records[rows[worst.begin].record].prepared;
+  const double from_s = prepared.record->t_s[rows[worst.begin].row];
+  const double to_s = prepared.record->t_s[rows[worst.end - 1].row];
   const std::string span = fmt::format("t = {:.2f} s to {:.2f} s of {}", from_s, to_s, file_name(prepared));
   partition.define(0, span, "from " + span);
   partition.define(1, "elsewhere", "everywhere but " + span);
-  for (std::size_t k = 0; k < rows.size(); ++k) partition.add(k >= best_begin && k < best_end ? 0 : 1, rows[k].square);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    partition.add(k >= worst.begin && k < worst.end ? 0 : 1, rows[k].square);
   return partition;
 }
 
