@@ -20,18 +20,6 @@ constexpr std::uint64_t kStepSeed = 1, kJogSeed = 11;
 constexpr double kPitch_mm = 10.0;
 constexpr double kTachometerError = 1.01;
 
-sim::DriveDescription data_sheet_of(const sim::DriveDescription& machine) {
-  sim::DriveDescription drive = machine;
-  drive.effects.clear();
-  return drive;
-}
-
-/// Speed that the identified model reaches when it is given the same commands, from rest to the end without restart.
-std::vector<double> free_run_speed(sim::DriveDescription model, const Record& record) {
-  model.data.tach_noise_variance = 0.0;
-  return record_open_loop(model, record.u_V, 0).w;
-}
-
 void add_step_methods(const Record& steps, const sim::DriveDescription& machine, Report& report) {
   const FrictionLaw truth = friction_law(machine);
   Table table;

@@ -16,9 +16,7 @@ sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint
   constexpr double kStepScaling = 15.0;  // Ku, p. 1499
   constexpr double kPitch_mm = 10.0;     // Table 1
   const Record steps = commissioning_steps(machine, kStepScaling, seed);
-  sim::DriveDescription data_sheet = machine;
-  data_sheet.effects.clear();
-  const Identification rigid = identify_drive({steps}, data_sheet, IdentificationMethod::sliding_ls);
+  const Identification rigid = identify_drive({steps}, data_sheet_of(machine), IdentificationMethod::sliding_ls);
   const AxisDesign design = design_axis(rigid.model, {});
   const auto programme = jogging_programme({kPaperJogSpeeds_mm_s.begin(), kPaperJogSpeeds_mm_s.end()}, kPitch_mm);
   const Record jogs = record_jogs(machine, design, programme, seed + 1);

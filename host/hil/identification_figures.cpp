@@ -15,18 +15,6 @@ namespace {
 /// Section 3.1: scalings with enough excitation to overcome static friction.
 constexpr double kScalings[] = {5.0, 7.5, 10.0, 12.5, 15.0};
 
-sim::DriveDescription data_sheet_of(const sim::DriveDescription& machine) {
-  sim::DriveDescription drive = machine;
-  drive.effects.clear();
-  return drive;
-}
-
-/// Speed that a model reaches when it is given the same commands, from rest to the end without restart.
-std::vector<double> predicted_speed(sim::DriveDescription model, const Record& steps) {
-  model.data.tach_noise_variance = 0.0;
-  return record_open_loop(model, steps.u_V, 0).w;
-}
-
 TimePlot prediction_plot(const Record& steps, const sim::DriveDescription& machine, std::string_view axis) {
   TimePlot plot;
   plot.title = fmt::format("Axis {}: steps, speeds and their prediction (as Figs 6 and 8)", axis);
@@ -40,7 +28,7 @@ TimePlot prediction_plot(const Record& steps, const sim::DriveDescription& machi
     const SeriesRole role = is_simple ? SeriesRole::before : SeriesRole::model;
     const char* name = is_simple ? "simple least squares" : "unbiased least squares";
     const std::vector<double> predicted =
-        predicted_speed(identify_drive({steps}, data_sheet_of(machine), method).model, steps);
+        free_run_speed(identify_drive({steps}, data_sheet_of(machine), method).model, steps);
     std::vector<double> off(predicted.size());
     for (std::size_t k = 0; k < off.size(); ++k) off[k] = steps.w[k] - predicted[k];
     speed.traces.push_back({name, role, predicted});

@@ -6,6 +6,12 @@
 
 namespace host {
 
+sim::DriveDescription data_sheet_of(const sim::DriveDescription& machine) {
+  sim::DriveDescription drive = machine;
+  drive.effects.clear();
+  return drive;
+}
+
 Record record_open_loop(const sim::DriveDescription& machine, const std::vector<double>& command, std::uint64_t seed) {
   sim::Plant plant(machine, seed);
   Record record = empty_record(machine);
@@ -18,6 +24,12 @@ Record record_open_loop(const sim::DriveDescription& machine, const std::vector<
     plant.advance(record.sample_period_s);
   }
   return record;
+}
+
+std::vector<double> free_run_speed(const sim::DriveDescription& model, const Record& record) {
+  sim::DriveDescription noiseless = model;
+  noiseless.data.tach_noise_variance = 0.0;
+  return record_open_loop(noiseless, record.u_V, 0).w;
 }
 
 Record record_jogs(const sim::DriveDescription& machine, const AxisDesign& design, const std::vector<Jog>& programme,

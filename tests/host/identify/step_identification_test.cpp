@@ -23,11 +23,7 @@ struct Truth {
 };
 constexpr Truth kTruths[] = {{"x", 7.65e-3, 0.0321, {2.205, -1.656}}, {"y", 9.79e-3, 0.0287, {3.058, -2.739}}};
 
-sim::DriveDescription data_sheet_of(const char* axis) {
-  sim::DriveDescription drive = *host::paper_drive(axis);
-  drive.effects.clear();
-  return drive;
-}
+sim::DriveDescription data_sheet_of(const char* axis) { return host::data_sheet_of(*host::paper_drive(axis)); }
 
 host::Record steps(const char* axis, double Ku) {
   return host::record_open_loop(*host::paper_drive(axis), host::doublet_series(Ku * host::kStepUnit_V, 0.001), 1);
