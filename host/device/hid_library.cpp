@@ -37,8 +37,12 @@ std::optional<HidLibrary> load(HidBackend backend) {
 }
 
 const std::optional<HidLibrary>& loaded(HidBackend backend) {
-  static const std::optional<HidLibrary> hidraw = load(HidBackend::hidraw), libusb = load(HidBackend::libusb);
-  return backend == HidBackend::hidraw ? hidraw : libusb;
+  if (backend == HidBackend::hidraw) {
+    static const std::optional<HidLibrary> hidraw = load(HidBackend::hidraw);
+    return hidraw;
+  }
+  static const std::optional<HidLibrary> libusb = load(HidBackend::libusb);
+  return libusb;
 }
 
 }  // namespace

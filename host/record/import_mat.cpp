@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -7,16 +6,17 @@
 
 #include "host/exit_codes.hpp"
 #include "host/record/import_log.hpp"
+#include "host/record/mat_library.hpp"
 
 namespace host {
 
 namespace {
 
 struct CloseMat {
-  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(mat_t* file) const { mat_library().close(file); }
 };
 struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  void operator()(matvar_t* variable) const { mat_library().free_variable(variable); }
 };
 
 std::string_view class_name(const matvar_t& variable) {
@@ -141,24 +141,25 @@ void append_variable(matvar_t& variable, const std::string& name, int depth, Log
     append_array(variable, name, kind, log);
     return;
   }
-  const unsigned fields = Mat_VarGetNumberOfFields(&variable);
-  char* const* names = Mat_VarGetStructFieldnames(&variable);
+  const unsigned fields = mat_library().field_count(&variable);
+  char* const* names = mat_library().field_names(&variable);
   for (unsigned k = 0; k < fields; ++k)
-    if (matvar_t* field = Mat_VarGetStructFieldByIndex(&variable, k, 0))
+    if (matvar_t* field = mat_library().field(&variable, k, 0))
       append_variable(*field, fmt::format("{}.{}", name, names[k]), depth + 1, log);
 }
 
 }  // namespace
 
 Log read_mat(const std::string& path) {
-  Mat_LogInitFunc("axistool", [](int, char*) {});  // failures are told by the exceptions below, not by the library
-  const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  const MatLibrary& matio = mat_library();
+  matio.log_to("axistool", [](int, char*) {});  // failures are told by the exceptions below, not by the library
+  const std::unique_ptr<mat_t, CloseMat> file(matio.open(path.c_str(), MAT_ACC_RDONLY));
   if (!file)
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: not a MATLAB file that can be read; save it again with save -v7 or -v7.3", path));
   Log log;
   log.path = path;
-  while (const std::unique_ptr<matvar_t, FreeVariable> variable{Mat_VarReadNext(file.get())})
+  while (const std::unique_ptr<matvar_t, FreeVariable> variable{matio.read_next(file.get())})
     append_variable(*variable, variable->name != nullptr ? variable->name : "", 0, log);
   if (log.columns.empty())
     throw Failure(ExitCode::bad_input,

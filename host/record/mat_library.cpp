@@ -1,0 +1,41 @@
+#include "host/record/mat_library.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+MatLibrary load_mat_library(const std::string& file) {
+  void* library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr)
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("MATLAB files are read by {}, which cannot be loaded: apt-get install {}\n({})", file,
+                              AXIS_MATIO_PACKAGE, dlerror()));
+  MatLibrary functions;
+  const auto find = [&](auto& function, const char* name) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+    if (function == nullptr)
+      throw Failure(ExitCode::bad_input, fmt::format("{} has no function {}: apt-get install --reinstall {}", file,
+                                                     name, AXIS_MATIO_PACKAGE));
+  };
+  find(functions.log_to, "Mat_LogInitFunc");
+  find(functions.open, "Mat_Open");
+  find(functions.close, "Mat_Close");
+  find(functions.read_next, "Mat_VarReadNext");
+  find(functions.free_variable, "Mat_VarFree");
+  find(functions.field_count, "Mat_VarGetNumberOfFields");
+  find(functions.field_names, "Mat_VarGetStructFieldnames");
+  find(functions.field, "Mat_VarGetStructFieldByIndex");
+  return functions;
+}
+
+const MatLibrary& mat_library() {
+  static const MatLibrary library = load_mat_library(AXIS_MATIO_LIBRARY);
+  return library;
+}
+
+}  // namespace host
