@@ -1,6 +1,6 @@
 #!/bin/bash
 # kernel.sh CACHE: fetches Debian's kernel and a static busybox by their package names, only unpacked, never installed, and
-# makes of them what the guest boots. Prints the folder, CACHE/VERSION, with vmlinux and initrd.gz; quick when it is there.
+# makes of them what the guest boots. Prints the folder, CACHE/VERSION, with vmlinux and initrd; quick when it is there.
 # Exit code 77, with the reason on standard error, where the packages cannot be had.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
@@ -8,7 +8,7 @@ mkdir -p "$1"
 cache=$(readlink -f "$1")
 PATH=$PATH:/usr/sbin:/sbin
 
-modules="virtio_pci virtio_console 9pnet_virtio 9p vhci-hcd usbhid hid-generic uhid hid-cp2112"
+modules="virtio_pci virtio_console vhci-hcd usbhid hid-generic uhid hid-cp2112"
 
 skip() {
   echo "guest: $*" >&2
@@ -19,15 +19,23 @@ for tool in apt-get dpkg-deb cpio modinfo xz; do
   command -v $tool >/dev/null || skip "$tool is not installed"
 done
 
+# Asking apt takes longer than the rest; its answer holds until its lists change.
+scripts=$(cat "$here/init.sh" "$here/kernel.sh" | sha256sum | cut -c 1-12)
+answer=$cache/folder-$scripts
+if [ "$answer" -nt /var/lib/apt/lists ] && [ -e "$(cat "$answer")/initrd" ]; then
+  cat "$answer"
+  exit 0
+fi
+
 package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends:/ { print $2; exit }')
 [ -n "$package" ] || skip "apt knows no package linux-image-amd64: apt-get update"
 version=$(apt-cache show --no-all-versions "$package" | awk '/^Version:/ { print $2 }')
-folder=$cache/$package-$version-$(cat "$here/init.sh" "$here/kernel.sh" | sha256sum | cut -c 1-12)
+folder=$cache/$package-$version-$scripts
 
 exec 9>"$cache/lock"
 flock 9
-if [ -e "$folder/initrd.gz" ]; then
-  echo "$folder"
+if [ -e "$folder/initrd" ]; then
+  echo "$folder" | tee "$answer"
   exit 0
 fi
 
@@ -38,8 +46,7 @@ apt-get -qq -o Acquire::Retries=3 -o APT::Sandbox::User= download "$package" bus
   skip "the packages $package and busybox-static cannot be downloaded: apt-get update"
 dpkg-deb --fsys-tarfile busybox-static_*.deb | tar x ./bin/busybox
 dpkg-deb --fsys-tarfile "$package"_*.deb | tar x --wildcards './boot/vmlinuz-*' './lib/modules/*/kernel/drivers/usb/*' \
-  './lib/modules/*/kernel/drivers/hid/*' './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/char/virtio_console*' './lib/modules/*/kernel/net/9p/*' \
-  './lib/modules/*/kernel/fs/9p/*' './lib/modules/*/kernel/fs/fscache/*' './lib/modules/*/kernel/fs/netfs/*'
+  './lib/modules/*/kernel/drivers/hid/*' './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/char/virtio_console*'
 
 # Decompressed here it boots 3 s sooner than by its own code. xz complains of what follows the compressed kernel.
 offset=$(LC_ALL=C grep -abo -m 1 -P '\xfd7zXZ\x00' boot/vmlinuz-* | head -n 1 | cut -d : -f 1 || true)
@@ -48,8 +55,8 @@ if [ -n "$offset" ]; then
 fi
 [ "$(head -c 4 vmlinux 2>/dev/null)" = $'\x7fELF' ] || cp boot/vmlinuz-* vmlinux
 
-mkdir -p root/bin root/proc root/modules
-cp bin/busybox root/bin/
+mkdir -p root/busybox root/modules
+cp bin/busybox root/busybox/
 install -m 755 "$here/init.sh" root/init
 
 # Each module after those that it needs; what is not found is built into the kernel.
@@ -70,8 +77,8 @@ add_module() {
 for module in $modules; do add_module "$module"; done
 
 mkdir finished
-(cd root && find . | LC_ALL=C sort | cpio -o -H newc --quiet) | gzip -1 >finished/initrd.gz
+(cd root && find . | LC_ALL=C sort | cpio -o -H newc --quiet) >finished/initrd
 mv vmlinux finished/
 rm -rf "$folder"
 mv finished "$folder"
-echo "$folder"
+echo "$folder" | tee "$answer"

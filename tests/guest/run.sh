@@ -1,15 +1,15 @@
 #!/bin/bash
 # run.sh CACHE PROGRAM [ARGUMENT...]: runs a program of this machine as root under Debian's own kernel, in an emulated PC
-# with the modules of USB/IP, HID and CP2112. The program sees this machine's files read-only; /run and /tmp are its own.
+# with the modules of USB/IP, HID and CP2112. The program has udev, a shell, its own file and libraries, and those named.
 # Its output and its exit code are this script's; 77 where the guest cannot be had, with the reason.
+# GUEST_FILES: files and folders that the guest has too, separated by colons, programs with their libraries.
 # GUEST_LIMIT: seconds that the guest may take (1500). GUEST_LINK: a Unix socket that the guest sees as /dev/vport*.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 cache=$1
 shift
+PATH=$PATH:/usr/sbin:/sbin
 
-# Without /dev/kvm: where it is itself emulated, it hangs. The guest's time goes by its instructions, a thousand million a
-# second, and by the clock only while it waits: a loaded computer makes it slow, but makes it miss nothing.
 emulator=qemu-system-x86_64
 if ! command -v $emulator >/dev/null; then
   echo "SKIPPED: $emulator is not installed"
@@ -21,24 +21,51 @@ if [ "$status" -ne 0 ]; then
   [ "$status" -ne 77 ] || echo "SKIPPED: the guest has no kernel"
   exit "$status"
 fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
+# All of the guest's files lie in its memory: it waits for nothing outside, so its time is its own.
+root=$work/root
+mkdir -p "$root$PWD"
+for folder in bin lib lib64 sbin; do
+  mkdir -p "$root/usr/$folder"
+  [ ! -L /$folder ] || ln -s "usr/$folder" "$root/$folder"
+done
+IFS=: read -ra programs <<<"$(realpath -s "$(command -v "$1")"):${GUEST_FILES:-}"
+for name in bash sh getent setpriv timeout udevadm /lib/systemd/systemd-udevd; do
+  programs+=("$(command -v $name)") || { echo "SKIPPED: $name is not installed"; exit 77; }
+done
+for name in hidraw libusb; do
+  programs+=($(ldconfig -p | awk -v name="libhidapi-$name.so.0" '$1 == name && /x86-64/ { print $NF }'))
+done
+{
+  printf '%s\n' "${programs[@]}" /etc/group /etc/ld.so.cache /etc/nsswitch.conf /etc/passwd /lib/udev/rules.d
+  printf '%s\n' /usr/lib/locale/C.utf8 /usr/lib/x86_64-linux-gnu/gconv/{gconv-modules.cache,UTF-16.so} # for wide texts
+  { ldd "${programs[@]}" 2>/dev/null || true; } | grep -o '/[^ ]* (0x' | cut -d ' ' -f 1
+} | sort -u | xargs -d '\n' cp -Lr --parents -t "$root"
+printf 'cd %q; exec %s\n' "$PWD" "$(printf '%q ' "$@")" >"$root/command"
+{
+  cat "$kernel/initrd"
+  cd "$root" && find . | cpio -o -H newc -R 0:0 --quiet
+} >"$work/initrd"
+
+# Without /dev/kvm: where it is itself emulated, it hangs. The guest's time goes by its instructions, a thousand million a
+# second: a loaded computer makes it slow, but makes it miss nothing. Time in which it only waits is skipped; where it
+# waits for what is outside, the clock counts. A plain processor is the quickest to emulate.
 link=()
-[ -z "${GUEST_LINK:-}" ] || link=(-chardev "socket,id=link,path=$GUEST_LINK" -device virtio-serial
-  -device virtserialport,chardev=link)
-shared=$(mktemp -d)
-trap 'rm -rf "$shared"' EXIT
-readlink -f "$here/../.." >"$shared/project"
-printf 'cd %q; exec %s\n' "$PWD" "$(printf '%q ' "$@")" >"$shared/command"
-timeout "${GUEST_LIMIT:-1500}" $emulator -accel tcg -icount shift=0,sleep=on -cpu max -machine pc -smp 1 \
-  -m 512 -nodefaults -no-reboot -nographic -serial stdio -monitor none -kernel "$kernel/vmlinux" -initrd "$kernel/initrd.gz" \
-  -append "console=ttyS0 quiet loglevel=3 panic=-1" \
-  -virtfs local,path=/,mount_tag=root,security_model=none,readonly=on,multidevs=remap \
-  -virtfs local,path="$shared",mount_tag=shared,security_model=none "${link[@]}" </dev/null |
-  tr -d '\r' | sed -e '1,/guest: started$/d' -e '/reboot: Power down$/d' || status=$?
-if [ ! -e "$shared/exit_code" ]; then
+waiting=off
+if [ -n "${GUEST_LINK:-}" ]; then
+  link=(-chardev "socket,id=link,path=$GUEST_LINK" -device virtio-serial -device virtserialport,chardev=link)
+  waiting=on
+fi
+timeout "${GUEST_LIMIT:-1500}" $emulator -accel tcg -icount shift=0,sleep=$waiting -cpu qemu64 -machine pc -smp 1 -m 768 \
+  -nodefaults -no-reboot -nographic -serial stdio -monitor none -kernel "$kernel/vmlinux" -initrd "$work/initrd" \
+  -append "console=ttyS0 quiet loglevel=3 panic=-1 mitigations=off" "${link[@]}" </dev/null |
+  tr -d '\r' | tee "$work/console" | sed -u -e '1,/guest: started$/d' -e '/^guest: ended with/,$d' || status=$?
+code=$(sed -n 's/^guest: ended with //p' "$work/console" | tail -n 1)
+if [ -z "$code" ]; then
+  cat "$work/console"
   echo "guest: it ended without an exit code (status $status)"
   exit 1
 fi
-code=$(cat "$shared/exit_code")
-[ "$code" = 0 ] || sed 's/^/kernel: /' "$shared/kernel.log"
 exit "$code"
