@@ -59,7 +59,7 @@ DemoPart show_emps(const std::string& folder, Report& report) {
                  "A ball-screw carriage measured by others, with an encoder only. Model: mass, viscous and Coulomb "
                  "friction, offset. The force that the model needs for the measured motion against the motor's force.");
   const Motion motion = prepare_motion(seen.record, drive.data, {});
-  TimePlot plot = model_plot("force", "N", motion.t_s, motion.effort, inverse_effort(found.model, motion));
+  TimePlot plot = model_plot("force", "N", motion.t_s, motion.effort, inverse_effort(sim::Drive(found.model), motion));
   plot.title = "Measured and modelled force (DATA_EMPS)";
   plot.caption = "What is left at the reversals and in the strokes is what this simple model lacks.";
   report.add(std::move(plot));

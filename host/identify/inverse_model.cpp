@@ -27,41 +27,14 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
   return friction + drive.transmitted_share * std::abs(motor_effort);
 }
 
-/// The record as the motor saw it: commands through the converter's effects, delayed by what the drive delays. A model
-/// that tells when a command acts means one that is held for a sample: what moves the axis about the instant of a
-/// sample has then been sent half a sample earlier still. Without such an effect command and motion are taken as
-/// simultaneous, as published inverse models have them.
-Record as_the_motor_saw(const Record& record, const sim::Drive& drive) {
-  Record seen = record;
-  for (double& u : seen.u_V) {
-    for (const auto& stage : drive.command) u = stage(u);
-  }
-  const double delay = drive.delay_s + drive.current_lag_s;  // a lag far below the motion's period acts as a delay
-  if (delay > 0.0 && !seen.u_V.empty()) {
-    constexpr double kHold = 0.5;
-    const double samples = delay / record.sample_period_s + kHold;
-    const auto whole = static_cast<std::size_t>(samples);
-    const double part = samples - static_cast<double>(whole);
-    const std::vector<double> sent = seen.u_V;
-    for (std::size_t k = 0; k < sent.size(); ++k) {
-      const double later = sent[k >= whole ? k - whole : 0];
-      const double earlier = sent[k >= whole + 1 ? k - whole - 1 : 0];
-      seen.u_V[k] = (1.0 - part) * later + part * earlier;
-    }
-  }
-  if (record.has_position()) {
-    std::vector<double>& drive_signal = seen.u_V.empty() ? seen.i_A : seen.u_V;
-    for (std::size_t k = 0; k < drive_signal.size(); ++k) {
-      for (const auto& factor : drive.effort_factor) drive_signal[k] *= factor(record.x[k]);
-    }
-  }
-  return seen;
-}
-
 }  // namespace
 
-std::vector<double> inverse_effort(const sim::DriveDescription& model, const Motion& motion) {
-  const sim::Drive drive(model);
+bool has_inverse(const sim::Drive& drive) {
+  return !drive.bristles && !drive.has_second_mass() && drive.friction_memory_s <= 0.0 && drive.dwell_gain <= 0.0 &&
+         drive.effort_limit.empty() && drive.encoder_error.empty();
+}
+
+std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion) {
   std::vector<double> effort(motion.speed.size());
   for (std::size_t k = 0; k < effort.size(); ++k) {
     const double speed = motion.speed[k];
@@ -86,11 +59,12 @@ double relative_error(const sim::DriveDescription& model, const std::vector<Reco
   const sim::Drive drive(model);
   MotionOptions settled = options;
   if (!settled.cutoff_Hz) settled.cutoff_Hz = choose_cutoff(records, model.data);
+  settled.command_path = &drive;
   double residual = 0.0, total = 0.0;
   for (const Record& record : records) {
-    const Motion motion = prepare_motion(as_the_motor_saw(record, drive), model.data, settled);
+    const Motion motion = prepare_motion(record, model.data, settled);
     const std::vector<double> measured = motion.seen(motion.effort);
-    const std::vector<double> modelled = motion.seen(inverse_effort(model, motion));
+    const std::vector<double> modelled = motion.seen(inverse_effort(drive, motion));
     for (std::size_t k = 0; k < measured.size(); ++k) {
       residual += (measured[k] - modelled[k]) * (measured[k] - modelled[k]);
       total += measured[k] * measured[k];

@@ -93,6 +93,47 @@ std::vector<double> motor_effort(const Record& record, const sim::DataSheet& dat
   return effort;
 }
 
+DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool sliding_only,
+                                 const sim::Drive* command_path) {
+  constexpr double kHold = 0.5;  // a command is held for a sample: on average it was sent half a sample ago
+  DeliveredEffort delivered;
+  double late = sliding_only && !record.u_V.empty() ? kHold : 0.0;  // samples
+  if (command_path == nullptr || command_path->command.empty() || record.u_V.empty()) {
+    delivered.effort = motor_effort(record, data);
+  } else {
+    Record converted;
+    converted.path = record.path;
+    converted.u_V = record.u_V;
+    for (double& u : converted.u_V) {
+      for (const auto& stage : command_path->command) u = stage(u);
+    }
+    delivered.effort = motor_effort(converted, data);
+  }
+  std::vector<double>& effort = delivered.effort;
+  if (command_path != nullptr && !record.u_V.empty()) {
+    const double delay_s = command_path->delay_s + command_path->current_lag_s;  // a short lag acts as a delay
+    // A model that tells when a command acts means one that is held; without, published recipes take both as
+    // simultaneous.
+    if (delay_s > 0.0) late = delay_s / record.sample_period_s + kHold;
+  }
+  if (late > 0.0) {
+    const auto whole = static_cast<std::size_t>(late);
+    const double part = late - static_cast<double>(whole);
+    for (std::size_t k = effort.size(); k-- > 0;) {
+      const double later = effort[k - std::min(k, whole)], earlier = effort[k - std::min(k, whole + 1)];
+      effort[k] = (1.0 - part) * later + part * earlier;
+    }
+    delivered.unknown_rows = std::min(whole + 1, effort.size());
+  }
+  if (command_path != nullptr && record.has_position()) {
+    for (std::size_t k = 0; k < effort.size(); ++k) {
+      for (const auto& factor : command_path->effort_factor) effort[k] *= factor(record.x[k]);
+    }
+  }
+  effort = ZeroPhaseLowPass::butterworth(cutoff_Hz, 1.0 / record.sample_period_s)(effort);
+  return delivered;
+}
+
 std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
   const auto low_pass = ZeroPhaseLowPass::butterworth(cutoff_Hz, 1.0 / record.sample_period_s);
   if (!record.has_position()) return low_pass(record.w);
@@ -145,21 +186,21 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
   motion.travel = record.has_position() ? low_pass(record.x) : std::vector<double>(record.size());
   motion.speed = smooth_speed(record, data, motion.cutoff_Hz);
   motion.acceleration = central_difference(motion.speed, record.sample_period_s);
-  std::vector<double> effort = motor_effort(record, data);
-  if (sliding_only && !record.u_V.empty()) {
-    for (std::size_t k = effort.size() - 1; k > 0; --k) effort[k] = 0.5 * (effort[k] + effort[k - 1]);
-  }
-  motion.effort = low_pass(effort);
+  DeliveredEffort delivered = delivered_effort(record, data, motion.cutoff_Hz, sliding_only, options.command_path);
+  motion.effort = std::move(delivered.effort);
 
-  constexpr std::size_t kMargin = 2;  // two differences, each of which needs both neighbours
   for (auto* signal : {&motion.t_s, &motion.travel, &motion.speed, &motion.acceleration, &motion.effort}) {
-    trim(*signal, kMargin);
+    trim(*signal, kMotionMargin);
   }
+  const auto reach = static_cast<std::size_t>(std::ceil(0.5 * samples_per_cutoff)) + motion.decimation / 2;
   if (sliding_only) {
-    const auto reach = static_cast<std::size_t>(std::ceil(0.5 * samples_per_cutoff)) + motion.decimation / 2;
     motion.counts = slides(motion.speed, motion.deadband, reach, motion.decimation);
   } else {
     motion.counts.assign((motion.speed.size() + motion.decimation - 1) / motion.decimation, true);
+    // Nothing counts that the filter mixes with commands from before the record.
+    const std::size_t first = delivered.unknown_rows > 0 ? delivered.unknown_rows + reach : 0;
+    for (std::size_t k = 0; k < motion.counts.size() && k * motion.decimation + kMotionMargin < first; ++k)
+      motion.counts[k] = false;
   }
   return motion;
 }

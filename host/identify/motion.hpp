@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/record/record.hpp"
+#include "sim/drive.hpp"
 #include "sim/drive_description.hpp"
 
 namespace host {
@@ -19,6 +20,9 @@ struct MotionOptions {
   std::optional<double> deadband;         ///< rad/s or m/s; default 0.5 rad/s (the paper, p. 1499), linear 0
   std::optional<double> cutoff_Hz;        ///< default: choose_cutoff
   std::optional<std::size_t> decimation;  ///< default 1 with a dead band, else sample rate / cut-off
+  /// Whose command path stands between command and motor (converter, delay, torque constant along the travel); none: a
+  /// command acts as it was sent.
+  const sim::Drive* command_path = nullptr;
 };
 
 /// One record's signals at its own rate, without the two samples at each end whose differences lack a neighbour.
@@ -42,6 +46,14 @@ struct Motion {
 /// Throws Failure(bad_input) when the drive's constants are missing.
 std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data);
 
+/// motor_effort through a drive's command path and the filter, at the instants of the samples.
+struct DeliveredEffort {
+  std::vector<double> effort;    ///< Nm or N, one a row
+  std::size_t unknown_rows = 0;  ///< at the start: what acts there was sent before the record began
+};
+DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool sliding_only,
+                                 const sim::Drive* command_path);
+
 /// The record's shaft speed from its encoder after the zero-phase filter, or from the tachometer without an encoder.
 std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz);
 
@@ -49,6 +61,9 @@ std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& dat
 /// lowered until the acceleration noise that the sensor leaves (encoder steps, tachometer noise) is below 1 % of the
 /// acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
 double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data);
+
+/// Rows that prepare_motion() leaves out at each end: two differences, each of which needs both neighbours.
+inline constexpr std::size_t kMotionMargin = 2;
 
 /// Prepares one record. Throws Failure(bad_input) for a record that is too short for the filter.
 Motion prepare_motion(const Record& record, const sim::DataSheet& data, const MotionOptions& options);
