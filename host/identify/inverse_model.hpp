@@ -11,7 +11,8 @@
 namespace host {
 
 /// Whether all that acts in a drive shows in its inverse model: nothing that remembers (backlash, bristles, compliance,
-/// friction memory, dwell), limits the effort or errs at the encoder. A tachometer's errors do not matter to it.
+/// friction memory, dwell, a current loop's lag), limits the effort or errs at the encoder. A tachometer's errors do
+/// not matter to it.
 bool has_inverse(const sim::Drive& drive);
 
 /// Effort that the model needs for the motion, sample by sample at full rate: J dw/dt plus friction minus loads, with

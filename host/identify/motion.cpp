@@ -18,18 +18,6 @@ constexpr double kPaperDeadband_rad_s = 0.5;  // p. 1499
 constexpr double kHighestCutoff_Hz = 100.0;
 constexpr double kLowestCutoff_Hz = 10.0;
 
-/// Variance of the acceleration that white sensor noise leaves below a cut-off: differentiated twice (position) or
-/// once.
-double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
-  const double rate_Hz = 1.0 / record.sample_period_s;
-  const double circle = 2.0 * std::numbers::pi;
-  if (record.has_position()) {
-    const double step = encoder_step(record, data) / data.lead;
-    return step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4) * std::pow(cutoff_Hz, 5) / 5.0;
-  }
-  return data.tach_noise_variance.value_or(0.0) * (2.0 / rate_Hz) * circle * circle * std::pow(cutoff_Hz, 3) / 3.0;
-}
-
 double sum_of_squares(const std::vector<double>& signal) {
   double sum = 0.0;
   for (const double value : signal) sum += value * value;
@@ -141,6 +129,18 @@ std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& dat
   for (double& w : speed) w /= data.lead;
   return speed;
 }
+
+double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
+  const double rate_Hz = 1.0 / record.sample_period_s;
+  const double circle = 2.0 * std::numbers::pi;
+  if (record.has_position()) {
+    const double step = encoder_step(record, data) / data.lead;
+    return step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4) * std::pow(cutoff_Hz, 5) / 5.0;
+  }
+  return data.tach_noise_variance.value_or(0.0) * (2.0 / rate_Hz) * circle * circle * std::pow(cutoff_Hz, 3) / 3.0;
+}
+
+double guard_cutoff_Hz(const Motion& motion) { return decimation_cutoff_Hz(motion.decimation, motion.sample_rate_Hz); }
 
 double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data) {
   constexpr double kNoiseShare = 0.01;

@@ -46,6 +46,13 @@ struct Motion {
 /// Throws Failure(bad_input) when the drive's constants are missing.
 std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data);
 
+/// Variance that a record's sensor leaves on the acceleration below a cut-off, (rad/s^2)^2 or (m/s^2)^2: encoder steps,
+/// or tachometer noise where there is no encoder.
+double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz);
+
+/// Where the guard filter in front of a motion's decimation cuts off, Hz.
+double guard_cutoff_Hz(const Motion& motion);
+
 /// motor_effort through a drive's command path and the filter, at the instants of the samples.
 struct DeliveredEffort {
   std::vector<double> effort;    ///< Nm or N, one a row

@@ -77,11 +77,15 @@ std::vector<double> ZeroPhaseLowPass::operator()(std::span<const double> signal)
   return {begin, begin + static_cast<std::ptrdiff_t>(n)};
 }
 
+double decimation_cutoff_Hz(std::size_t factor, double sample_rate_Hz) {
+  constexpr double kPassband = 0.8;
+  return kPassband * 0.5 * sample_rate_Hz / static_cast<double>(factor);
+}
+
 std::vector<double> decimate(std::span<const double> signal, std::size_t factor, double sample_rate_Hz) {
   if (factor <= 1) return {signal.begin(), signal.end()};
-  constexpr double kPassband = 0.8;  // of the new Nyquist rate
-  const double nyquist_Hz = 0.5 * sample_rate_Hz / static_cast<double>(factor);
-  const std::vector<double> smooth = ZeroPhaseLowPass::chebyshev(kPassband * nyquist_Hz, sample_rate_Hz)(signal);
+  const std::vector<double> smooth =
+      ZeroPhaseLowPass::chebyshev(decimation_cutoff_Hz(factor, sample_rate_Hz), sample_rate_Hz)(signal);
   std::vector<double> kept;
   kept.reserve(signal.size() / factor + 1);
   for (std::size_t k = 0; k < smooth.size(); k += factor) kept.push_back(smooth[k]);

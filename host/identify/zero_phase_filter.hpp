@@ -35,7 +35,10 @@ class ZeroPhaseLowPass {
   std::size_t extension_;
 };
 
-/// Anti-alias filter (Chebyshev at 0.8 of the new Nyquist rate), then every `factor`-th sample from the first.
+/// 0.8 of the Nyquist rate after decimation, Hz.
+double decimation_cutoff_Hz(std::size_t factor, double sample_rate_Hz);
+
+/// Anti-alias filter (Chebyshev at decimation_cutoff_Hz), then every `factor`-th sample from the first.
 /// A factor of 1 returns the signal unchanged.
 std::vector<double> decimate(std::span<const double> signal, std::size_t factor, double sample_rate_Hz);
 

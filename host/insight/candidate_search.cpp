@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cmath>
 
+#include "host/identify/inverse_model.hpp"
 #include "host/insight/candidate_starts.hpp"
 #include "host/insight/model_fit.hpp"
 #include "host/insight/parallel.hpp"
+#include "host/insight/pattern_search.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -45,6 +47,7 @@ struct Start {
   const sim::EffectInfo* info;
   sim::DriveDescription model;
   double error = HUGE_VAL;  ///< what is left of the base's error
+  bool scanned = false;     ///< one of many starts, of which a scan has found it the best
 };
 
 /// Floors suit the model that they are propagated through. Motion on a contact (bristles, a second mass, a gap) spreads
@@ -68,6 +71,35 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
   const FitResult fit = fit_model(start.model, own, options);
   start.model = fit.model;
   start.error = fit.robust / error_of(sim::Drive(base), own).robust;
+}
+
+/// An effect with more starts than this is scanned: each start is measured as it stands, and only the best go on, by a
+/// search without slopes first.
+constexpr std::size_t kMostStarts = 6;
+constexpr std::size_t kBestOfScan = 2;
+/// What a start may leave of the base's error, before any fit, to go on.
+constexpr double kWorstOfScan = 1.05;
+
+/// What is left of the base's error at a start, unfitted.
+double left_at(const sim::DriveDescription& start, const sim::DriveDescription& base, const RecordSet& shared) {
+  RecordSet own = shared;
+  if (needs_own_floors(start)) renew_floors(own, start);
+  return error_of(sim::Drive(start), own).robust / error_of(sim::Drive(base), own).robust;
+}
+
+void scan(std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set) {
+  for (Start& start : starts) {
+    start.error = left_at(start.model, base, set);
+    start.scanned = true;
+  }
+  std::ranges::stable_sort(starts, {}, &Start::error);
+  starts.resize(kBestOfScan, starts.front());
+  std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
+  for (Start& start : starts) {
+    RecordSet own = set;
+    if (needs_own_floors(start.model)) renew_floors(own, start.model);
+    start.model = pattern_search(start.model, own);
+  }
 }
 
 }  // namespace
@@ -122,11 +154,11 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 
 namespace {
 
-/// Fits the last effect again from both sides of each of its parameters: an effect that acts at breakaway or on impact
-/// leaves valleys side by side. And once from the base as it was given, since a re-fit without the effect may have bent
-/// the base so far that it does not come back.
-sim::DriveDescription shaken(const sim::DriveDescription& model, const sim::DriveDescription* nominal,
-                             const RecordSet& set) {
+/// Fits the last effect again from both sides of each of its parameters (a scan has looked there already): an effect
+/// that acts at breakaway or on impact leaves valleys side by side. And once from the base as it was given, since a
+/// re-fit without the effect may have bent the base so far that it does not come back.
+sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
+  const sim::DriveDescription& model = finalist.model;
   std::vector<sim::DriveDescription> starts{model};
   if (nominal != nullptr) {
     starts.push_back(model);
@@ -136,7 +168,8 @@ sim::DriveDescription shaken(const sim::DriveDescription& model, const sim::Driv
   for (const auto& [id, value] : model.effects.back().parameters) {
     for (const double factor : {0.55, 1.8}) {
       const sim::ParameterInfo& info = *sim::find_effect(model.effects.back().kind)->parameter(id);
-      if (id == "period" || id == "cosine" || id == "sine") continue;  // the spectrum has found these
+      if (finalist.scanned || id == "period" || id == "cosine" || id == "sine")
+        continue;  // the spectrum has found these
       starts.push_back(model);
       starts.back().effects.back().parameters[id] = std::clamp(factor * value, info.lower, info.upper);
     }
@@ -167,7 +200,9 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   std::vector<std::vector<Start>> starts_of(infos.size());
   for_each_in_parallel(infos.size(), [&](std::size_t k) {
     for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
-      starts_of[k].push_back({infos[k], std::move(start)});
+      if (training.measure != Measure::effort || has_inverse(sim::Drive(start)))
+        starts_of[k].push_back({infos[k], std::move(start)});
+    if (!infos[k]->periodic && starts_of[k].size() > kMostStarts) scan(starts_of[k], model, medium);
   });
   std::vector<Start> starts;
   for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));
@@ -181,7 +216,8 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     // The base gets the same chance to suit these few windows as the candidates have.
     const double base_error = fit_model(model, set, options).robust;
     for_each_in_parallel(list.size(), [&](std::size_t k) {
-      fit_start(list[k], model, set, base_error, options);
+      // What needed a scan on many windows would be lost on a few.
+      fit_start(list[k], model, list[k].scanned ? medium : set, base_error, options);
       report();
     });
     std::ranges::stable_sort(list, {}, &Start::error);
@@ -208,7 +244,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   if (!finalists.empty()) {
     RecordSet own = medium;
     if (needs_own_floors(finalists.front().model)) renew_floors(own, finalists.front().model);
-    finalists.front().model = shaken(finalists.front().model, effort.nominal, own);
+    finalists.front().model = shaken(finalists.front(), effort.nominal, own);
   }
   const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {

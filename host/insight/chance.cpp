@@ -15,8 +15,7 @@ double confidence_of_improvement(const SetError& before, const SetError& after, 
   for (std::size_t begin = 0; begin < count; begin += block) {
     double gain = 0.0;
     for (std::size_t k = begin; k < std::min(count, begin + block); ++k)
-      gain += weighed_square(before.windows[k].x, common_square) + weighed_square(before.windows[k].w, common_square) -
-              weighed_square(after.windows[k].x, common_square) - weighed_square(after.windows[k].w, common_square);
+      gain += before.windows[k].weighed(common_square) - after.windows[k].weighed(common_square);
     gains.push_back(gain);
   }
   if (gains.empty()) return 0.0;

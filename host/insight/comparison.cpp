@@ -11,25 +11,67 @@ std::size_t RecordSet::used_windows() const {
   return count;
 }
 
-RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
-                     double window_s) {
+RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference, double window_s,
+                     Measure measure) {
   RecordSet set;
-  for (const Record* record : records) set.records.push_back({prepare(*record, reference, window_s), {}});
+  set.measure = measure;
+  for (const Record* record : records) {
+    set.records.push_back({prepare(*record, reference, window_s), {}});
+    if (measure != Measure::effort) continue;
+    PreparedRecord& prepared = set.records.back().prepared;
+    const auto effort = std::make_shared<const EffortRecord>(prepare_effort(*record, reference));
+    std::erase_if(prepared.windows, [&](const Window& window) {
+      for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
+        if (!effort->counts[k] || prepared.motion().standing[k]) return true;
+      return false;
+    });
+    set.records.back().effort = effort;
+  }
   renew_floors(set, reference);
   return set;
 }
 
+RecordSet by_motion(const RecordSet& set, const sim::DriveDescription& reference) {
+  RecordSet same = set;
+  same.measure = Measure::motion;
+  renew_floors(same, reference);
+  return same;
+}
+
 namespace {
 
-/// Calls use(record index, window index, prediction) for every used window.
+struct Predictions {
+  Prediction motion;
+  EffortPrediction effort;
+};
+
+/// Calls use(compared, record index, window index, predictions) for every used window.
 template <typename Use>
 void for_each_window(const sim::Drive& drive, const RecordSet& set, Use use) {
-  static thread_local Prediction prediction;
+  static thread_local Predictions predictions;
   for (std::size_t r = 0; r < set.records.size(); ++r) {
-    const PreparedRecord& prepared = set.records[r].prepared;
-    predict(drive, prepared, prediction, set.stride);
-    for (std::size_t index = 0; index < prepared.windows.size(); index += set.stride) use(r, index, prediction);
+    const ComparedRecord& compared = set.records[r];
+    if (set.measure == Measure::effort) {
+      predict_effort(drive, *compared.effort, predictions.effort);
+    } else {
+      predict(drive, compared.prepared, predictions.motion, set.stride);
+    }
+    for (std::size_t index = 0; index < compared.prepared.windows.size(); index += set.stride)
+      use(compared, r, index, predictions);
   }
+}
+
+/// Calls use(score's member, predicted, measured, floor) for every channel of a window.
+template <typename Use>
+void for_each_channel(const ComparedRecord& compared, Measure measure, std::size_t index,
+                      const Predictions& predictions, Use use) {
+  const auto& [prepared, floor, effort] = compared;
+  if (measure == Measure::effort) {
+    use(&WindowScore::effort, predictions.effort.needed, predictions.effort.given, effort->floor);
+    return;
+  }
+  if (!floor.x.empty()) use(&WindowScore::x, predictions.motion.x, prepared.record->x, floor.x[index]);
+  if (!floor.w.empty()) use(&WindowScore::w, predictions.motion.w, prepared.record->w, floor.w[index]);
 }
 
 double mean_square(const std::vector<double>& predicted, const std::vector<double>& measured, const Window& window) {
@@ -44,14 +86,19 @@ double mean_square(const std::vector<double>& predicted, const std::vector<doubl
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
   const sim::Drive drive(reference);
   std::vector<double> squares;
-  for (ComparedRecord& compared : set.records) compared.floor = error_floor(drive, reference.data, compared.prepared);
+  if (set.measure == Measure::motion)
+    for (ComparedRecord& compared : set.records) compared.floor = error_floor(drive, reference.data, compared.prepared);
   for (const WindowScore& score : error_of(drive, set).windows)
-    for (const double square : {score.x, score.w})
+    for (const double square : {score.x, score.w, score.effort})
       if (square > 0.0) squares.push_back(square);
   if (squares.empty()) return;
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::ranges::nth_element(squares, middle);
   set.common_square = kCommonSquare * std::max(1.0, *middle);
+}
+
+double WindowScore::weighed(double common_square) const {
+  return weighed_square(x, common_square) + weighed_square(w, common_square) + weighed_square(effort, common_square);
 }
 
 double weighed_square(double square, double common_square) {
@@ -60,47 +107,53 @@ double weighed_square(double square, double common_square) {
 
 SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   SetError error;
-  double x_sum = 0.0, w_sum = 0.0, x_floor = 0.0, w_floor = 0.0, combined = 0.0, robust = 0.0;
-  std::size_t x_count = 0, w_count = 0;
-  for_each_window(drive, set, [&](std::size_t r, std::size_t index, const Prediction& prediction) {
-    const auto& [prepared, floor] = set.records[r];
-    const Window& window = prepared.windows[index];
-    WindowScore score{r, index};
-    if (!floor.x.empty()) {
-      const double square = mean_square(prediction.x, prepared.record->x, window);
-      score.x = square / (floor.x[index] * floor.x[index]);
-      x_sum += square;
-      x_floor += floor.x[index] * floor.x[index];
-      ++x_count;
-    }
-    if (!floor.w.empty()) {
-      const double square = mean_square(prediction.w, prepared.record->w, window);
-      score.w = square / (floor.w[index] * floor.w[index]);
-      w_sum += square;
-      w_floor += floor.w[index] * floor.w[index];
-      ++w_count;
-    }
-    combined += score.x + score.w;
-    robust += weighed_square(score.x, set.common_square) + weighed_square(score.w, set.common_square);
-    error.windows.push_back(score);
-  });
+  struct Sum {
+    double square = 0.0, floor = 0.0;
+    std::size_t count = 0;
+  };
+  Sum x, w, effort;
+  double combined = 0.0, robust = 0.0;
+  for_each_window(
+      drive, set,
+      [&](const ComparedRecord& compared, std::size_t r, std::size_t index, const Predictions& predictions) {
+        WindowScore score{r, index};
+        for_each_channel(compared, set.measure, index, predictions,
+                         [&](double WindowScore::*member, const std::vector<double>& predicted,
+                             const std::vector<double>& measured, double floor) {
+                           Sum& sum = member == &WindowScore::x ? x : (member == &WindowScore::w ? w : effort);
+                           const double square = mean_square(predicted, measured, compared.prepared.windows[index]);
+                           score.*member = square / (floor * floor);
+                           sum.square += square;
+                           sum.floor += floor * floor;
+                           ++sum.count;
+                         });
+        combined += score.x + score.w + score.effort;
+        robust += score.weighed(set.common_square);
+        error.windows.push_back(score);
+      });
   const auto root_mean = [](double sum, std::size_t count) {
     const double mean = count == 0 ? 0.0 : sum / static_cast<double>(count);
     return std::isfinite(mean) ? std::sqrt(mean) : HUGE_VAL;  // a model that runs away is as bad as can be
   };
-  error.combined = root_mean(combined, x_count + w_count);
-  error.robust = root_mean(robust, x_count + w_count);
-  error.x_rms = root_mean(x_sum, x_count);
-  error.w_rms = root_mean(w_sum, w_count);
-  error.x_floor = root_mean(x_floor, x_count);
-  error.w_floor = root_mean(w_floor, w_count);
+  const std::size_t channels = x.count + w.count + effort.count;
+  error.combined = root_mean(combined, channels);
+  error.robust = root_mean(robust, channels);
+  error.x_rms = root_mean(x.square, x.count);
+  error.w_rms = root_mean(w.square, w.count);
+  error.x_floor = root_mean(x.floor, x.count);
+  error.w_floor = root_mean(w.floor, w.count);
   return error;
+}
+
+std::size_t channel_count(const ComparedRecord& compared, Measure measure) {
+  if (measure == Measure::effort) return 1;
+  return (compared.floor.x.empty() ? 0 : 1) + (compared.floor.w.empty() ? 0 : 1);
 }
 
 std::size_t residual_count(const RecordSet& set) {
   std::size_t count = 0;
   for (const ComparedRecord& compared : set.records) {
-    const std::size_t channels = (compared.floor.x.empty() ? 0 : 1) + (compared.floor.w.empty() ? 0 : 1);
+    const std::size_t channels = channel_count(compared, set.measure);
     const auto& windows = compared.prepared.windows;
     for (std::size_t index = 0; index < windows.size(); index += set.stride) count += channels * windows[index].length;
   }
@@ -108,26 +161,25 @@ std::size_t residual_count(const RecordSet& set) {
 }
 
 void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out) {
-  double channels = 0.0;
+  std::size_t channels = 0;
   for (const ComparedRecord& compared : set.records) {
     const std::size_t used = (compared.prepared.windows.size() + set.stride - 1) / set.stride;
-    channels += static_cast<double>(used * ((compared.floor.x.empty() ? 0 : 1) + (compared.floor.w.empty() ? 0 : 1)));
+    channels += used * channel_count(compared, set.measure);
   }
-  for_each_window(drive, set, [&](std::size_t r, std::size_t index, const Prediction& prediction) {
-    const auto& [prepared, floor] = set.records[r];
-    const Window& window = prepared.windows[index];
-    const double share = 1.0 / std::sqrt(channels * static_cast<double>(window.length));
-    const auto append = [&](const std::vector<double>& predicted, const std::vector<double>& measured,
-                            double deviation) {
-      const double square = mean_square(predicted, measured, window) / (deviation * deviation);
-      const double scale =
-          share / deviation * (square > 0.0 ? std::sqrt(weighed_square(square, set.common_square) / square) : 1.0);
-      for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
-        *out++ = (predicted[k] - measured[k]) * scale;
-    };
-    if (!floor.x.empty()) append(prediction.x, prepared.record->x, floor.x[index]);
-    if (!floor.w.empty()) append(prediction.w, prepared.record->w, floor.w[index]);
-  });
+  for_each_window(
+      drive, set, [&](const ComparedRecord& compared, std::size_t, std::size_t index, const Predictions& predictions) {
+        const Window& window = compared.prepared.windows[index];
+        const double share = 1.0 / std::sqrt(static_cast<double>(channels * window.length));
+        for_each_channel(compared, set.measure, index, predictions,
+                         [&](double WindowScore::*, const std::vector<double>& predicted,
+                             const std::vector<double>& measured, double floor) {
+                           const double square = mean_square(predicted, measured, window) / (floor * floor);
+                           const double weight =
+                               square > 0.0 ? std::sqrt(weighed_square(square, set.common_square) / square) : 1.0;
+                           for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
+                             *out++ = (predicted[k] - measured[k]) * share / floor * weight;
+                         });
+      });
 }
 
 }  // namespace host

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/identify/inverse_model.hpp"
 #include "host/insight/chance.hpp"
 #include "host/insight/model_fit.hpp"
 #include "host/insight/verdict.hpp"
@@ -93,15 +94,16 @@ bool moves_enough(const RecordSet& set) {
 }  // namespace
 
 Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation, double window_s) {
+                       const std::vector<const Record*>& validation, double window_s, Measure measure) {
   Diagnosis result;
   result.window_s = window_s;
+  result.measure = measure;
   result.held_back = validation.empty();
-  result.training = compare_on(training, model, window_s);
+  result.training = compare_on(training, model, window_s, measure);
   if (validation.empty()) {
     hold_back(result.training, result.validation);
   } else {
-    result.validation = compare_on(validation, model, window_s);
+    result.validation = compare_on(validation, model, window_s, measure);
   }
   result.base = result.best = model;
   if (!moves_enough(result.training)) return result;
@@ -113,12 +115,10 @@ Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<con
 
 namespace {
 
-/// Windows of a machine whose missing effects, not its sensors, set the limit, s: at 1 kHz ten samples, in which the
-/// position shows a force as a low-pass of 100 Hz would.
-constexpr double kRoughWindow_s = 0.01;
-
 /// A machine is rough when half of the windows of the best model lie this far above their floors.
 constexpr double kRoughError = 10.0;
+
+}  // namespace
 
 bool is_rough(const SetError& error) {
   std::vector<double> squares;
@@ -129,6 +129,25 @@ bool is_rough(const SetError& error) {
   return *middle > kRoughError * kRoughError;
 }
 
+bool suits_short_windows(const std::vector<const Record*>& records) {
+  constexpr double kLeastSamples = 10.0;
+  return records.front()->sample_period_s <= kRoughWindow_s / kLeastSamples * 1.001;
+}
+
+Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                      const std::vector<const Record*>& validation) {
+  constexpr double kLeastSliding_s = 1.0;
+  if (!has_inverse(sim::Drive(model))) return Measure::motion;
+  for (const auto* records : {&training, &validation}) {
+    if (records->empty()) continue;
+    const RecordSet set = compare_on(*records, model, kRoughWindow_s, Measure::effort);
+    if (static_cast<double>(set.used_windows()) * kRoughWindow_s < kLeastSliding_s) return Measure::motion;
+  }
+  return Measure::effort;
+}
+
+namespace {
+
 /// Of all records: what recurs along the travel stands out more from several, what happened once stands out less.
 RecordSet together(const RecordSet& training, const RecordSet& validation) {
   RecordSet all = training;
@@ -136,9 +155,10 @@ RecordSet together(const RecordSet& training, const RecordSet& validation) {
   return all;
 }
 
-Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                        const std::vector<const Record*>& validation, const ShareDone& progress) {
-  Diagnosis result = prepare_sets(model, training, validation, window_s);
+Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescription& model,
+                        const std::vector<const Record*>& training, const std::vector<const Record*>& validation,
+                        const ShareDone& progress) {
+  Diagnosis result = prepare_sets(model, training, validation, window_s, measure);
   const sim::Drive given(model);
   if (!moves_enough(result.training)) {
     result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
@@ -177,7 +197,10 @@ Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, con
   result.before_validate = before.combined;
   result.given_train = error_of(given, result.training).combined;
   result.given_validate = error_of(given, result.validation).combined;
-  result.where = error_regions(result.base, together(result.training, result.validation));
+  const bool moves = measure == Measure::motion;
+  const RecordSet seen_training = moves ? result.training : by_motion(result.training, result.base);
+  const RecordSet seen_validation = moves ? result.validation : by_motion(result.validation, result.base);
+  result.where = error_regions(result.base, together(seen_training, seen_validation));
   result.rough =
       is_rough(result.candidates.empty() ? before
                                          : error_of(sim::Drive(result.candidates.front().model), result.validation)) ||
@@ -192,18 +215,17 @@ Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, con
         result.best = candidate.model;
   }
 
-  const SetError before_train = error_of(sim::Drive(result.base), result.training);
-  const SetError after_train = error_of(sim::Drive(result.best), result.training);
-  const SetError after = error_of(sim::Drive(result.best), result.validation);
-  result.after_train = after_train.combined;
-  result.after_validate = after.combined;
-  const Record& first = *training.front();
-  if (first.has_position())
-    result.channels.push_back(channel_error(std::string(column_name(&Record::x, model.data.kind)), true, before_train,
-                                            before, after_train, after));
-  if (first.has_speed())
-    result.channels.push_back(channel_error(std::string(column_name(&Record::w, model.data.kind)), false, before_train,
-                                            before, after_train, after));
+  const sim::Drive base(result.base), best(result.best);
+  result.after_train = error_of(best, result.training).combined;
+  result.after_validate = error_of(best, result.validation).combined;
+  const SetError base_train = error_of(base, seen_training), base_validate = error_of(base, seen_validation);
+  const SetError best_train = error_of(best, seen_training), best_validate = error_of(best, seen_validation);
+  const auto add_channel = [&](std::vector<double> Record::*channel, bool position) {
+    result.channels.push_back(channel_error(std::string(column_name(channel, model.data.kind)), position, base_train,
+                                            base_validate, best_train, best_validate));
+  };
+  if (training.front()->has_position()) add_channel(&Record::x, true);
+  if (training.front()->has_speed()) add_channel(&Record::w, false);
   if (progress) progress(1.0);
   return result;
 }
@@ -211,13 +233,22 @@ Diagnosis diagnose_over(double window_s, const sim::DriveDescription& model, con
 }  // namespace
 
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const ShareDone& progress, bool known_rough) {
-  const bool short_windows = training.front()->sample_period_s <= 0.1 * kRoughWindow_s * 1.001;
-  if (!known_rough || !short_windows) {
-    Diagnosis result = diagnose_over(kWindow_s, model, training, validation, progress);
+                   const std::vector<const Record*>& validation, const ShareDone& progress, const Diagnosis* before) {
+  const auto over = [&](double window_s, Measure measure) {
+    return diagnose_over(window_s, measure, model, training, validation, progress);
+  };
+  const bool short_windows = suits_short_windows(training);
+  if (before == nullptr || !before->rough || !short_windows) {
+    Diagnosis result = over(kWindow_s, Measure::motion);
     if (!result.rough || !short_windows) return result;
   }
-  return diagnose_over(kRoughWindow_s, model, training, validation, progress);
+  if ((before == nullptr || before->measure == Measure::effort) &&
+      rough_measure(model, training, validation) == Measure::effort) {
+    Diagnosis result = over(kRoughWindow_s, Measure::effort);
+    const Status status = result.verdict.status;
+    if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
+  }
+  return over(kRoughWindow_s, Measure::motion);
 }
 
 }  // namespace host

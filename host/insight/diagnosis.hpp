@@ -43,6 +43,7 @@ struct DiagnosisVerdict {
 
 struct Diagnosis {
   double window_s = kWindow_s;
+  Measure measure = Measure::motion;
   bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
   bool held_back = false;  ///< no validation record was given: blocks of the training data were kept back
   std::vector<ChannelError> channels;
@@ -60,17 +61,35 @@ struct Diagnosis {
 /// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
 /// be compared. Keeps references to the records.
 Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation, double window_s = kWindow_s);
+                       const std::vector<const Record*>& validation, double window_s = kWindow_s,
+                       Measure measure = Measure::motion);
+
+/// Windows of a machine whose missing effects, not its sensors, set the limit, s: at 1 kHz ten samples, in which the
+/// position shows a force as a low-pass of 100 Hz would.
+inline constexpr double kRoughWindow_s = 0.01;
+
+/// Whether half of the windows lie far above their floors: on such a machine what is missing, not noise, sets the
+/// limit.
+bool is_rough(const SetError& error);
+
+/// Whether records are sampled finely enough for windows of kRoughWindow_s.
+bool suits_short_windows(const std::vector<const Record*>& records);
+
+/// What a rough machine is judged by: the effort, where the model has an inverse and both sets slide for a second.
+/// `validation` may be empty.
+Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                      const std::vector<const Record*>& validation);
 
 /// A candidate on validation data, against the base's error there.
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
                                 const SetError& before);
 
-/// Over windows of kWindow_s; where the machine proves rough, again over shorter ones, in which an error of force shows
-/// before it adds up to a drift (`known_rough`: over these at once). Throws Failure(bad_input) for records that cannot
-/// be compared. Keeps references to the records.
+/// By the motion over windows of kWindow_s. Where the machine proves rough, again by the effort, in which what is
+/// missing shows before it adds up to a drift; and where that says nothing, by the motion over short windows. `before`:
+/// an earlier diagnosis of the same records, whose way of judging is taken over, so that their errors can be compared.
+/// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
 Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                    const std::vector<const Record*>& validation, const ShareDone& progress = {},
-                   bool known_rough = false);
+                   const Diagnosis* before = nullptr);
 
 }  // namespace host

@@ -56,6 +56,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
   return {{"format", "axis-diagnosis/1"},
           {"error",
            {{"window_s", diagnosis.window_s},
+            {"measure", diagnosis.measure == Measure::effort ? "effort" : "motion"},
             {"held_back", diagnosis.held_back},
             {"channels", channels_json(diagnosis.channels)},
             {"combined",

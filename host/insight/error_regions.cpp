@@ -59,7 +59,8 @@ std::vector<ErrorRow> rows_of(const sim::Drive& drive, const RecordSet& set) {
   std::vector<ErrorRow> rows;
   Prediction prediction;
   for (std::size_t r = 0; r < set.records.size(); ++r) {
-    const auto& [prepared, floor] = set.records[r];
+    const PreparedRecord& prepared = set.records[r].prepared;
+    const ErrorFloor& floor = set.records[r].floor;
     predict(drive, prepared, prediction, set.stride);
     const double channels = (floor.x.empty() ? 0.0 : 1.0) + (floor.w.empty() ? 0.0 : 1.0);
     for (std::size_t index = 0; index < prepared.windows.size(); index += set.stride) {

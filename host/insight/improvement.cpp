@@ -42,13 +42,11 @@ Improvement improve(const sim::DriveDescription& model, const std::vector<const 
                     const std::vector<const Record*>& validation, const ShareDone& progress) {
   Improvement result;
   sim::DriveDescription current = model;
-  bool rough = false;  // as the first diagnosis finds: errors on another kind of windows cannot stand in one ladder
   for (int step = 0; step < kMostRungs; ++step) {
     const auto part = [&](double share) {
       if (progress) progress((step + share) / (step + 2.0));
     };
-    Diagnosis diagnosis = diagnose(current, training, validation, part, rough);
-    rough = diagnosis.rough;
+    Diagnosis diagnosis = diagnose(current, training, validation, part, step == 0 ? nullptr : &result.first);
     if (step == 0) result.ladder.push_back(rung_of(diagnosis, false, {}));
     result.verdict = diagnosis.verdict;
     result.model = diagnosis.best;
@@ -83,18 +81,26 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr)
     throw Failure(ExitCode::usage, fmt::format("{}: no such effect; axistool effects lists them", kind));
-  Diagnosis sets = prepare_sets(model, training, validation);
-  if (!is_applicable(*info, sets.base, sets.training))
-    throw Failure(ExitCode::usage,
-                  fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or these "
-                              "records do not hold the channel in which it shows",
-                              kind));
-  const std::vector<Candidate> found =
-      search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, {.nominal = &model});
-  if (found.empty())
-    throw Failure(ExitCode::refused,
-                  fmt::format("{}: no start of the fit lowers the error; these records do not show the effect. {}",
-                              kind, info->separate_by));
+  Diagnosis sets;
+  std::vector<Candidate> found;
+  const auto search = [&](double window_s, Measure measure) {
+    sets = prepare_sets(model, training, validation, window_s, measure);
+    if (!is_applicable(*info, sets.base, sets.training))
+      throw Failure(ExitCode::usage,
+                    fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or "
+                                "these records do not hold the channel in which it shows",
+                                kind));
+    SearchEffort effort = SearchEffort{}.over(window_s);
+    effort.nominal = &model;
+    found = search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, effort);
+    if (found.empty())
+      throw Failure(ExitCode::refused,
+                    fmt::format("{}: no start of the fit lowers the error; these records do not show the effect. {}",
+                                kind, info->separate_by));
+  };
+  search(kWindow_s, Measure::motion);
+  if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)) && suits_short_windows(training))
+    search(kRoughWindow_s, rough_measure(found.front().model, training, validation));
   Addition addition;
   addition.held_back = sets.held_back;
   renew_floors(sets.training, found.front().model);

@@ -68,7 +68,8 @@ struct Sums {
 };
 
 void add_record(const ComparedRecord& compared, const Prediction& prediction, std::size_t stride, Sums& sums) {
-  const auto& [prepared, floor] = compared;
+  const PreparedRecord& prepared = compared.prepared;
+  const ErrorFloor& floor = compared.floor;
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
     const auto add = [&](ChannelSums& channel, const std::vector<double>& predicted,

@@ -115,7 +115,7 @@ std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, 
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(columns, columns);
   Eigen::Index row = 0;
   for (const ComparedRecord& compared : training.records) {
-    const Eigen::Index channels = (compared.floor.x.empty() ? 0 : 1) + (compared.floor.w.empty() ? 0 : 1);
+    const auto channels = static_cast<Eigen::Index>(channel_count(compared, training.measure));
     for (std::size_t index = 0; index < compared.prepared.windows.size(); index += training.stride) {
       const auto length = channels * static_cast<Eigen::Index>(compared.prepared.windows[index].length);
       const Eigen::VectorXd score = jacobian.middleRows(row, length).transpose() * here.segment(row, length);

@@ -15,13 +15,16 @@ namespace {
 
 /// The luckiest of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5 %.
 constexpr double kLeastGain = 0.05;
-/// Of the bootstrap over blocks of validation windows.
-constexpr double kLeastConfidence = 0.99;
+/// Of the bootstrap over blocks of validation windows: one in twenty, since gain and share below keep luck out (the
+/// luckiest candidate never came near them); on a rough machine, where share asks for little, one in a hundred.
+constexpr double kLeastConfidence = 0.95;
+constexpr double kLeastRoughConfidence = 0.99;
 /// Part of what there is to explain, (before^2 - after^2)/(before^2 - 1), below which an effect is no explanation.
 constexpr double kLeastShare = 0.35;
 /// The same on a rough machine, whose residual has many small causes.
 constexpr double kLeastRoughShare = 0.1;
-/// A further effect must take half of what the first leaves, and a sixth of the error.
+/// A further effect must take half of what the first leaves (on a rough machine it is enough that the two need each
+/// other), and a sixth of the error.
 constexpr double kLeastFurtherShare = 0.5;
 constexpr double kLeastFurtherGain = 0.15;
 /// Candidates whose errors are so close are not told apart.
@@ -44,8 +47,23 @@ const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size
 }
 
 bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  return candidate.after < (1.0 - kLeastGain) * candidate.before && candidate.confidence >= kLeastConfidence &&
+  return candidate.after < (1.0 - kLeastGain) * candidate.before &&
+         candidate.confidence >= (diagnosis.rough ? kLeastRoughConfidence : kLeastConfidence) &&
          explained_share(candidate.before, candidate.after) >= (diagnosis.rough ? kLeastRoughShare : kLeastShare);
+}
+
+/// Whether two effects do more together than what each does alone adds up to: judged one at a time, each hides the
+/// other.
+bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
+  double alone_train = 0.0, alone_validate = 0.0;
+  for (const std::string& kind : pair.kinds) {
+    const auto single = std::ranges::find(diagnosis.candidates, std::vector{kind}, &JudgedCandidate::kinds);
+    if (single == diagnosis.candidates.end()) continue;  // too little to be tried further
+    alone_train += std::max(0.0, explained_share(diagnosis.before_train, single->train_after));
+    alone_validate += std::max(0.0, explained_share(diagnosis.before_validate, single->after));
+  }
+  return explained_share(diagnosis.before_train, pair.train_after) > alone_train &&
+         explained_share(diagnosis.before_validate, pair.after) > alone_validate;
 }
 
 std::size_t parameters_added(const JudgedCandidate& candidate) {
@@ -149,7 +167,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
                            pair->after < (1.0 - kLeastFurtherGain) * single->after &&
                            pair->train_after < (1.0 - kLeastFurtherGain) * single->train_after &&
-                           explained_share(single->after, pair->after) >= kLeastFurtherShare;
+                           (explained_share(single->after, pair->after) >= kLeastFurtherShare ||
+                            (diagnosis.rough && need_each_other(*pair, diagnosis)));
   const JudgedCandidate* chosen = pair_stands ? pair : single;
   const double before = diagnosis.before_validate;
 
@@ -183,9 +202,10 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(verdict.effects, ", "));
     if (diagnosis.rough)
       verdict.explanation += fmt::format(
-          " Much more than noise is left whatever is added, so the model is judged over windows of {:g} s, in which an "
-          "error of force shows before it adds up to a drift.",
-          diagnosis.window_s);
+          " Much more than noise is left whatever is added, so the model is judged {} before it adds up to a drift.",
+          diagnosis.measure == Measure::effort
+              ? std::string("by the effort that the measured motion needed, in which what is missing shows")
+              : fmt::format("over windows of {:g} s, in which an error of force shows", diagnosis.window_s));
     verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }

@@ -19,7 +19,8 @@ const EffectInfo input_delay{
     .parameters = {{.id = "delay",
                     .rotary_key = "delay_s",
                     .linear_key = "delay_s",
-                    .doc = "d: from the command to the torque",
+                    .doc =
+                        "d: from the command to the torque; that a sample holds its command for a period comes on top",
                     .lower = 0.0,
                     .upper = 0.025,
                     .starts = {0.001, 0.003}}},
