@@ -12,6 +12,8 @@ enum class Semihosting : std::uint32_t {
   write_text = 0x04,
   write = 0x05,
   read = 0x06,
+  seek = 0x0A,
+  file_length = 0x0C,
   command_line = 0x15,
   exit_extended = 0x20,
 };
@@ -58,19 +60,36 @@ class HostFile {
 
   /// Waits for all bytes; false at the end of the file or on an error.
   bool read(std::span<std::byte> bytes) const { return transfer(Semihosting::read, bytes.data(), bytes.size()); }
+  /// Takes what there is; the number of bytes.
+  std::size_t read_some(std::span<std::byte> bytes) const {
+    const std::size_t left = ask(Semihosting::read, bytes.data(), bytes.size());
+    return left < bytes.size() ? bytes.size() - left : 0;
+  }
   bool write(std::span<const std::byte> bytes) const {
     return transfer(Semihosting::write, bytes.data(), bytes.size());
   }
 
+  /// Of a file, not of a FIFO.
+  bool skip_to_end() const {
+    const std::int32_t length = semihosting(Semihosting::file_length, &handle_);
+    const std::int32_t block[2] = {handle_, length};
+    return length >= 0 && semihosting(Semihosting::seek, block) >= 0;
+  }
+
  private:
+  /// Bytes that were not transferred.
+  std::size_t ask(Semihosting request, const std::byte* data, std::size_t size) const {
+    const struct {
+      std::int32_t handle;
+      const std::byte* data;
+      std::uint32_t length;
+    } block{handle_, data, static_cast<std::uint32_t>(size)};
+    return static_cast<std::size_t>(semihosting(request, &block));
+  }
+
   bool transfer(Semihosting request, const std::byte* data, std::size_t size) const {
     while (size != 0) {
-      const struct {
-        std::int32_t handle;
-        const std::byte* data;
-        std::uint32_t length;
-      } block{handle_, data, static_cast<std::uint32_t>(size)};
-      const auto left = static_cast<std::size_t>(semihosting(request, &block));  // bytes that were not transferred
+      const std::size_t left = ask(request, data, size);
       if (left >= size) return false;
       data += size - left;
       size = left;

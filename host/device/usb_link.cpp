@@ -44,7 +44,7 @@ std::optional<hal::HidReport> UsbLink::receive(std::chrono::milliseconds limit) 
 }
 
 void UsbLink::read() {
-  constexpr int kLookForStop_ms = 50;
+  constexpr int kLookForStop_ms = 10;  // so long the end of each command waits
   for (;;) {
     std::array<unsigned char, hal::kHidReportSize> buffer{};
     const int size = library_.read_timeout(device_, buffer.data(), buffer.size(), kLookForStop_ms);

@@ -3,7 +3,8 @@
 # with the modules of USB/IP, HID and CP2112. The program has udev, a shell, its own file and libraries, and those named.
 # Its output and its exit code are this script's; 77 where the guest cannot be had, with the reason.
 # GUEST_FILES: files and folders that the guest has too, separated by colons, programs with their libraries.
-# GUEST_LIMIT: seconds that the guest may take (1500). GUEST_LINK: a Unix socket that the guest sees as /dev/vport*.
+# GUEST_LIMIT: seconds that the guest may take (1500). GUEST_LINK: FIFOs $GUEST_LINK.in and
+# $GUEST_LINK.out, which the guest sees as /dev/vport*.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 cache=$1
@@ -55,7 +56,7 @@ printf 'cd %q; exec %s\n' "$PWD" "$(printf '%q ' "$@")" >"$root/command"
 link=()
 waiting=off
 if [ -n "${GUEST_LINK:-}" ]; then
-  link=(-chardev "socket,id=link,path=$GUEST_LINK" -device virtio-serial -device virtserialport,chardev=link)
+  link=(-chardev "pipe,id=link,path=$GUEST_LINK" -device virtio-serial -device virtserialport,chardev=link)
   waiting=on
 fi
 timeout "${GUEST_LIMIT:-1500}" $emulator -accel tcg -icount shift=0,sleep=$waiting -cpu qemu64 -machine pc -smp 1 -m 768 \

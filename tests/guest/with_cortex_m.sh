@@ -1,10 +1,11 @@
 #!/bin/bash
-# with_cortex_m.sh IMAGE.elf CACHE PROGRAM [ARGUMENT...]: run.sh, and beside it the emulated Cortex-M board, whose serial
-# port the guest sees as /dev/vport*. Beside it, because an emulator inside an emulator is too slow for 1 kHz. Its time
-# goes by its instructions, 250 million a second: on a loaded computer it runs slowly, but misses no control period.
+# with_cortex_m.sh IMAGE.elf CACHE PROGRAM [ARGUMENT...]: run.sh, and beside it the emulated Cortex-M board, whose reports
+# the guest sees at /dev/vport*. Beside it, because an emulator inside an emulator is too slow for 1 kHz. Its time goes by
+# its instructions, 250 million a second, and by the clock while it rests: on a loaded computer it runs slowly, but misses
+# no control period.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
-image=$1
+image=$(readlink -f "$1")
 shift
 
 if ! command -v qemu-system-arm >/dev/null || [ ! -e "$image" ]; then
@@ -12,10 +13,13 @@ if ! command -v qemu-system-arm >/dev/null || [ ! -e "$image" ]; then
   exit 77
 fi
 folder=$(mktemp -d)
-qemu-system-arm -M netduinoplus2 -kernel "$image" -display none -monitor none -icount shift=2,align=off,sleep=off \
-  -serial "unix:$folder/serial,server=on" \
-  </dev/null >/dev/null 2>&1 &
+mkfifo "$folder/link.in" "$folder/link.out"
+exec 8<>"$folder/link.in" 9<>"$folder/link.out" # so that none waits for another to open them
+cat <"$folder/link.out" >"$folder/to_board" 8>&- 9>&- &
+copier=$!
+(cd "$folder" && exec qemu-system-arm -M netduinoplus2 -kernel "$image" -display none -monitor none -serial none \
+  -icount shift=2,sleep=on -semihosting-config enable=on,target=native </dev/null >/dev/null 2>&1) &
 board=$!
-trap 'kill $board 2>/dev/null || true; rm -rf "$folder"' EXIT
-while [ ! -S "$folder/serial" ] && kill -0 $board; do sleep 0.05; done
-GUEST_LINK=$folder/serial "$here/run.sh" "$@"
+disown -a
+trap 'kill -KILL $board $copier 2>/dev/null || true; rm -rf "$folder"' EXIT
+GUEST_LINK=$folder/link "$here/run.sh" "$@"

@@ -1,5 +1,6 @@
-// The board's application, protocol and store on the emulated processor, its reports over USART1: the other end of the
-// cable has a USB controller. The axes stand still; their encoders and converters are plain memory.
+// The board's application, protocol and store on the emulated processor, its reports over files to_board and
+// from_board: the other end of this cable has a USB controller. The axes stand still; their encoders and converters are
+// plain memory.
 #include <atomic>
 
 #include "firmware/app/protocol/server.hpp"
@@ -14,7 +15,8 @@
 #include "hal/board.hpp"
 #include "hal/cortex_m/control_shut_out.hpp"
 #include "hal/cortex_m/registers.hpp"
-#include "hal/stm32f4/usart_port.hpp"
+#include "hal/cortex_m/wait_for_interrupt.hpp"
+#include "hal/qemu/host_stream.hpp"
 
 namespace firmware::boards {
 
@@ -23,7 +25,7 @@ namespace {
 constexpr std::uint32_t kClock_Hz = 168'000'000;  // QEMU gives the chip its 168 MHz
 
 [[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
-hal::stm32f4::UsartPort serial(hal::stm32f4::usart1());
+hal::qemu::HostStream stream;
 std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's last start
 
 class EmulatedBoard {
@@ -50,7 +52,7 @@ class EmulatedBoard {
   Stop& emergency_stop() { return stop_; }
   Supply& supply() { return supply_; }
   Clock& clock() { return clock_; }
-  BoardEnd<hal::stm32f4::UsartPort>& usb() { return usb_; }
+  BoardEnd<hal::qemu::HostStream>& usb() { return usb_; }
   MemoryFlash& parameter_flash() { return flash_; }
 
   void set_control_rate(std::uint32_t rate_Hz) {
@@ -68,7 +70,7 @@ class EmulatedBoard {
   Stop stop_;
   Supply supply_;
   Clock clock_;
-  BoardEnd<hal::stm32f4::UsartPort> usb_{serial};
+  BoardEnd<hal::qemu::HostStream> usb_{stream};
   MemoryFlash flash_{flash_cells};
   std::uint32_t period_us_ = 1000;
 };
@@ -97,8 +99,7 @@ extern "C" [[noreturn]] void run_board() {
   using namespace firmware::boards;
   const LastRun last_run = take_over_survival_record(ResetCause::unknown);
   arm_fault_detection();
-  constexpr std::uint32_t kResetClock_Hz = 16'000'000;  // the RC oscillator; QEMU sends at once anyway
-  serial.start(kResetClock_Hz, 115200);
+  if (!stream.open("to_board", "link.in")) hal::qemu::exit_emulator(1);
   application.start();
   const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
                                  true};
@@ -107,10 +108,16 @@ extern "C" [[noreturn]] void run_board() {
   hal::cortex_m::set_exception_priority(hal::cortex_m::kSysTickException, 2);
   hal::cortex_m::sys_tick().CSR = SysTick::kEnable | SysTick::kInterrupt | SysTick::kProcessorClock;
   board.usb().say_hello();
-  for (;;) {
-    board.usb().poll();
-    server.poll(board.usb(), {stack_used_bytes(), stack_size_bytes()});
-    // Asking the emulated port without a pause keeps the emulator from filling it.
-    for (volatile int pause = 0; pause < 200;) pause = pause + 1;
+  firmware::StackUse stack{stack_used_bytes(), stack_size_bytes()};
+  constexpr unsigned kRestsPerLook = 100;  // at the whole stack, which takes long
+  for (unsigned rests = 1;; ++rests) {
+    constexpr int kRounds = 4;
+    for (int rounds = kRounds; rounds > 0; --rounds) {
+      if (board.usb().poll()) rounds = kRounds;
+      server.poll(board.usb(), stack);
+      stream.flush();
+    }
+    hal::cortex_m::wait_for_interrupt();  // the computer has better to do than to emulate a processor that waits
+    if (rests % kRestsPerLook == 0) stack.used = stack_used_bytes();
   }
 }

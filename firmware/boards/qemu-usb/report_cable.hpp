@@ -9,7 +9,7 @@
 
 namespace firmware::boards {
 
-/// First byte of each frame's payload; a report follows in all of them, and counts in `report` alone.
+/// First byte of each frame's payload; it is all of it but in `report`, where the report follows.
 enum class CableMessage : std::uint8_t {
   hello = 'H',         ///< from the board, when its receiver is on: whatever was on its way is void
   configured = 'C',    ///< to the board
@@ -19,8 +19,8 @@ enum class CableMessage : std::uint8_t {
 };
 
 /// Reports for which each end has room. The computer has many more: two emulators have two times, and its own may stand
-/// still while the board's runs on; these are 4 s of a report each control period at 1 kHz.
-inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 4096;
+/// still while the board's runs on; these are 65 s of a report each control period at 1 kHz.
+inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 65536;
 
 /// One end. It sends as many reports as the other has room for, so none is lost and no end ever waits.
 template <hal::SerialPort Port, std::size_t own_room, std::size_t other_room>
@@ -42,18 +42,22 @@ class ReportCable {
     return heard;
   }
 
-  /// Takes in what has arrived; call it often.
-  void poll() {
+  /// Takes in what has arrived; call it often. False when there was nothing.
+  bool poll() {
     constexpr int kMostBytes = 256;  // a round of the background stays short
     std::byte byte{};
-    for (int i = 0; i < kMostBytes && port_.receive(byte); ++i)
+    int taken = 0;
+    for (; taken < kMostBytes && port_.receive(byte); ++taken)
       if (receiver_.take(byte)) handle(receiver_.payload());
+    return taken > 0;
   }
 
   bool send(const hal::HidReport& report) {
     if (!configured_ || room_ == 0) return false;
     --room_;
-    tell(CableMessage::report, report);
+    std::array<std::byte, 1 + hal::kHidReportSize> payload{static_cast<std::byte>(CableMessage::report)};
+    std::copy(report.begin(), report.end(), payload.begin() + 1);
+    tell(payload);
     return true;
   }
   bool receive(hal::HidReport& report) {
@@ -64,16 +68,13 @@ class ReportCable {
   bool is_configured() const { return configured_; }
 
  private:
-  void tell(CableMessage message, const hal::HidReport& report = {}) {
-    std::array<std::byte, 1 + hal::kHidReportSize> payload{static_cast<std::byte>(message)};
-    std::copy(report.begin(), report.end(), payload.begin() + 1);
+  void tell(std::span<const std::byte> payload) {
     send_frame(payload, [this](std::byte byte) { port_.send(byte); });
   }
+  void tell(CableMessage message) { tell(std::array{static_cast<std::byte>(message)}); }
 
   void handle(std::span<const std::byte> payload) {
-    hal::HidReport report;
-    if (payload.size() != 1 + report.size()) return;
-    std::copy(payload.begin() + 1, payload.end(), report.begin());
+    if (payload.empty()) return;
     switch (static_cast<CableMessage>(payload.front())) {
       case CableMessage::hello:
         heard_hello_ = true;
@@ -86,12 +87,19 @@ class ReportCable {
         begin_anew(false);
         break;
       case CableMessage::report:
-        if (configured_) arrived_.put(report);
+        take_report(payload.subspan(1));
         break;
       case CableMessage::taken:
         if (room_ < other_room) ++room_;
         break;
     }
+  }
+
+  void take_report(std::span<const std::byte> bytes) {
+    hal::HidReport report;
+    if (!configured_ || bytes.size() != report.size()) return;
+    std::copy(bytes.begin(), bytes.end(), report.begin());
+    arrived_.put(report);
   }
 
   void begin_anew(bool configured) {

@@ -78,13 +78,14 @@ class Lane {
 
 void run(const char* path, const char* serial_number) {
   StreamPort stream(path);
-  Cable cable(stream);
+  const auto cable_of_its_own = std::make_unique<Cable>(stream);  // too large for a stack
+  Cable& cable = *cable_of_its_own;
   hal::tinyusb::HidPort usb;
   if (!usb.start(serial_number)) throw std::runtime_error("no USB stack");
   std::unique_ptr<hal::usbip::UsbipController> controller;
   Lane to_board, to_host;
   for (;;) {
-    cable.poll();
+    while (cable.poll()) continue;
     if (cable.heard_hello()) {  // the board has started: as on a real one, its controller is plugged in anew
       controller.reset();
       to_board.clear();

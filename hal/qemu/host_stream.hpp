@@ -1,0 +1,51 @@
+// A byte stream between the emulated processor and a program beside the emulator. QEMU's serial ports take in one byte
+// at a time, each of which has to wait for the emulator's other work; files take any number at once.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "hal/qemu/semihosting.hpp"
+#include "hal/serial_port.hpp"
+
+namespace hal::qemu {
+
+class HostStream {
+ public:
+  /// `incoming`: a file to which the other program appends; what is in it already is void. `outgoing`: a FIFO. While
+  /// that is full the emulated processor stands still, and its time with it. Names are relative to the emulator's
+  /// working directory. False if one cannot be opened.
+  bool open(std::string_view incoming, std::string_view outgoing) {
+    return incoming_.open(incoming.data(), incoming.size(), HostFile::Mode::read_binary) && incoming_.skip_to_end() &&
+           outgoing_.open(outgoing.data(), outgoing.size(), HostFile::Mode::write_binary);
+  }
+
+  /// Goes out with flush(), at the latest when there is no room for more.
+  void send(std::byte byte) {
+    leaving_[leaving_count_++] = byte;
+    if (leaving_count_ == leaving_.size()) flush();
+  }
+  void flush() {
+    outgoing_.write(std::span(leaving_).first(leaving_count_));
+    leaving_count_ = 0;
+  }
+
+  bool receive(std::byte& byte) {
+    if (next_ == arrived_count_) {
+      arrived_count_ = incoming_.read_some(arrived_);
+      next_ = 0;
+    }
+    if (next_ == arrived_count_) return false;
+    byte = arrived_[next_++];
+    return true;
+  }
+
+ private:
+  HostFile incoming_, outgoing_;
+  std::array<std::byte, 256> leaving_{}, arrived_{};
+  std::size_t leaving_count_ = 0, arrived_count_ = 0, next_ = 0;
+};
+
+static_assert(SerialPort<HostStream>);
+
+}  // namespace hal::qemu
