@@ -30,8 +30,8 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
 }  // namespace
 
 bool has_inverse(const sim::Drive& drive) {
-  return drive.current_lag_s <= 0.0 && !drive.bristles && !drive.has_second_mass() && drive.friction_memory_s <= 0.0 && drive.dwell_gain <= 0.0 &&
-         drive.effort_limit.empty() && drive.encoder_error.empty();
+  return drive.current_lag_s <= 0.0 && !drive.bristles && !drive.has_second_mass() && drive.friction_memory_s <= 0.0 &&
+         drive.dwell_gain <= 0.0 && drive.effort_limit.empty() && drive.encoder_error.empty();
 }
 
 std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion) {
