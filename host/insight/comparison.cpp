@@ -142,6 +142,8 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
   error.w_rms = root_mean(w.square, w.count);
   error.x_floor = root_mean(x.floor, x.count);
   error.w_floor = root_mean(w.floor, w.count);
+  error.effort_rms = root_mean(effort.square, effort.count);
+  error.effort_floor = root_mean(effort.floor, effort.count);
   return error;
 }
 

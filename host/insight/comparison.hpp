@@ -70,6 +70,8 @@ struct SetError {
   double w_rms = 0.0;     ///< rad/s or m/s
   double x_floor = 0.0;   ///< RMS of the windows' floors
   double w_floor = 0.0;
+  double effort_rms = 0.0;  ///< Nm or N, where the effort is the measure; the others are zero then
+  double effort_floor = 0.0;
   std::vector<WindowScore> windows;
 };
 

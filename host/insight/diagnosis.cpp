@@ -38,14 +38,23 @@ void hold_back(RecordSet& training, RecordSet& validation) {
   }
 }
 
-ChannelError channel_error(std::string name, bool position, const SetError& before_train,
-                           const SetError& before_validate, const SetError& after_train,
-                           const SetError& after_validate) {
-  const auto rms = [position](const SetError& error) { return position ? error.x_rms : error.w_rms; };
-  const auto floor = [position](const SetError& error) { return position ? error.x_floor : error.w_floor; };
-  return {std::move(name),     rms(before_train),  rms(before_validate), rms(after_train),
-          rms(after_validate), floor(after_train), floor(after_validate)};
-}
+/// What a base and the best model leave on both sets.
+struct FourErrors {
+  SetError base_train, base_validate, best_train, best_validate;
+
+  FourErrors(const Diagnosis& diagnosis, const RecordSet& training, const RecordSet& validation) {
+    const sim::Drive base(diagnosis.base), best(diagnosis.best);
+    base_train = error_of(base, training);
+    base_validate = error_of(base, validation);
+    best_train = error_of(best, training);
+    best_validate = error_of(best, validation);
+  }
+
+  ChannelError channel(std::string_view name, double SetError::*rms, double SetError::*floor) const {
+    return {std::string(name),  base_train.*rms,   base_validate.*rms,  best_train.*rms,
+            best_validate.*rms, best_train.*floor, best_validate.*floor};
+  }
+};
 
 }  // namespace
 
@@ -215,17 +224,18 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
         result.best = candidate.model;
   }
 
-  const sim::Drive base(result.base), best(result.best);
-  result.after_train = error_of(best, result.training).combined;
-  result.after_validate = error_of(best, result.validation).combined;
-  const SetError base_train = error_of(base, seen_training), base_validate = error_of(base, seen_validation);
-  const SetError best_train = error_of(best, seen_training), best_validate = error_of(best, seen_validation);
-  const auto add_channel = [&](std::vector<double> Record::*channel, bool position) {
-    result.channels.push_back(channel_error(std::string(column_name(channel, model.data.kind)), position, base_train,
-                                            base_validate, best_train, best_validate));
-  };
-  if (training.front()->has_position()) add_channel(&Record::x, true);
-  if (training.front()->has_speed()) add_channel(&Record::w, false);
+  const FourErrors judged(result, result.training, result.validation);
+  result.after_train = judged.best_train.combined;
+  result.after_validate = judged.best_validate.combined;
+  const FourErrors seen = moves ? judged : FourErrors(result, seen_training, seen_validation);
+  const auto name = [&](std::vector<double> Record::*channel) { return column_name(channel, model.data.kind); };
+  if (training.front()->has_position())
+    result.channels.push_back(seen.channel(name(&Record::x), &SetError::x_rms, &SetError::x_floor));
+  if (training.front()->has_speed())
+    result.channels.push_back(seen.channel(name(&Record::w), &SetError::w_rms, &SetError::w_floor));
+  if (!moves)
+    result.channels.push_back(judged.channel(model.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
+                                             &SetError::effort_rms, &SetError::effort_floor));
   if (progress) progress(1.0);
   return result;
 }

@@ -14,7 +14,8 @@ enum class Status { missing, adequate, parameters, ambiguous, unexplained, insuf
 
 std::string_view status_name(Status status);
 
-/// RMS of one measured channel on both sets, in its own unit, beside what the best possible model would leave.
+/// RMS of one measured channel (or of the effort, where that is the measure) on both sets, in its own unit, beside what
+/// the best possible model would leave.
 struct ChannelError {
   std::string name;                                  ///< column name, e.g. "w_rad_s"
   double before_train = 0.0, before_validate = 0.0;  ///< of the base, re-fitted
