@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "host/insight/effort_residual.hpp"
@@ -122,10 +123,14 @@ std::vector<double> folded(const std::vector<double>& x, double period) {
   return result;
 }
 
-double period_of(const sim::DriveDescription& model) {
+/// The model's period along the travel, else that of the likeliest candidate that has one, else a turn of the shaft.
+std::optional<double> period_of(const sim::DriveDescription& model, const Diagnosis& diagnosis) {
   for (const sim::EffectEntry& entry : model.effects)
     if (entry.has("period")) return entry.at("period");
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (const sim::EffectEntry& last = candidate.model.effects.back(); last.has("period")) return last.at("period");
   constexpr double kTurn_rad = 6.283185307179586;
+  if (model.data.kind == sim::DriveKind::linear) return {};
   return kTurn_rad * model.data.lead;
 }
 
@@ -144,10 +149,10 @@ void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveD
   const Axis effort{"unexplained effort", units.effort};
   add(before_and_after("Against speed", "", {"speed", units.speed}, effort, before.w, before.missing, after.w,
                        after.missing));
-  const double period = period_of(best);
-  add(before_and_after(fmt::format("Against position within one period of {:.4g} {}", period, units.travel), "",
-                       {"position in the period", units.travel}, effort, folded(before.x, period), before.missing,
-                       folded(after.x, period), after.missing));
+  if (const std::optional<double> period = period_of(best, diagnosis))
+    add(before_and_after(fmt::format("Against position within one period of {:.4g} {}", *period, units.travel), "",
+                         {"position in the period", units.travel}, effort, folded(before.x, *period), before.missing,
+                         folded(after.x, *period), after.missing));
   add(before_and_after("Along the travel", "", {"position", units.travel}, effort, before.x, before.missing, after.x,
                        after.missing));
   add(before_and_after("Against acceleration", "", {"acceleration", units.acceleration}, effort, before.acceleration,
