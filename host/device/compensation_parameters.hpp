@@ -32,7 +32,8 @@ struct TachometerReading {
 };
 TachometerReading tachometer_reading(const sim::DriveDescription& model);
 
-/// Effects of the model that neither feedback's design nor feed-forward on a board takes up, by kind.
+/// Effects of the model that neither feedback's design nor feed-forward on a board takes up, by kind; and that some
+/// harmonics of cogging were left out.
 std::vector<std::string> uncompensated_effects(const sim::DriveDescription& model);
 
 }  // namespace host

@@ -88,6 +88,9 @@ TEST(CompensationParameters, DesignAndCompensationAreOneFileThatABoardTakes) {
 TEST(CompensationParameters, WhatABoardCannotTakeUpIsNamed) {
   const auto model = paper_x_with({cogging(0.1, 0, 10), {"compliance", {}, {}, {}}, {"compliance", {}, {}, {}}});
   EXPECT_THAT(host::uncompensated_effects(model), ElementsAre("compliance"));
+  const auto many =
+      paper_x_with({cogging(0.1, 0, 10), cogging(0.2, 0, 5), cogging(0.05, 0, 2.5), cogging(0.01, 0, 1.25)});
+  EXPECT_THAT(host::uncompensated_effects(many), ElementsAre("cogging beyond its 3 largest harmonics"));
 }
 
 }  // namespace
