@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "host/identify/inverse_model.hpp"
 #include "host/insight/chance.hpp"
@@ -138,9 +140,9 @@ bool is_rough(const SetError& error) {
   return *middle > kRoughError * kRoughError;
 }
 
-bool suits_short_windows(const std::vector<const Record*>& records) {
-  constexpr double kLeastSamples = 10.0;
-  return records.front()->sample_period_s <= kRoughWindow_s / kLeastSamples * 1.001;
+double rough_window_s(const std::vector<const Record*>& records) {
+  constexpr double kShortest_s = 0.01, kLeastSamples = 10.0;
+  return std::max(kShortest_s, kLeastSamples * records.front()->sample_period_s);
 }
 
 Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
@@ -149,8 +151,9 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
   if (!has_inverse(sim::Drive(model))) return Measure::motion;
   for (const auto* records : {&training, &validation}) {
     if (records->empty()) continue;
-    const RecordSet set = compare_on(*records, model, kRoughWindow_s, Measure::effort);
-    if (static_cast<double>(set.used_windows()) * kRoughWindow_s < kLeastSliding_s) return Measure::motion;
+    const double window_s = rough_window_s(*records);
+    const RecordSet set = compare_on(*records, model, window_s, Measure::effort);
+    if (static_cast<double>(set.used_windows()) * window_s < kLeastSliding_s) return Measure::motion;
   }
   return Measure::effort;
 }
@@ -213,7 +216,7 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
   result.rough =
       is_rough(result.candidates.empty() ? before
                                          : error_of(sim::Drive(result.candidates.front().model), result.validation)) ||
-      window_s < kWindow_s;
+      measure == Measure::effort || window_s < kWindow_s;
   result.verdict = reach_verdict(model, result);
   result.best = result.base;
   for (const JudgedCandidate& candidate : result.candidates)
@@ -247,18 +250,20 @@ Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const R
   const auto over = [&](double window_s, Measure measure) {
     return diagnose_over(window_s, measure, model, training, validation, progress);
   };
-  const bool short_windows = suits_short_windows(training);
-  if (before == nullptr || !before->rough || !short_windows) {
-    Diagnosis result = over(kWindow_s, Measure::motion);
-    if (!result.rough || !short_windows) return result;
+  std::optional<Diagnosis> over_long_windows;
+  if (before == nullptr || !before->rough) {
+    over_long_windows = over(kWindow_s, Measure::motion);
+    if (!over_long_windows->rough) return *std::move(over_long_windows);
   }
+  const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
       rough_measure(model, training, validation) == Measure::effort) {
-    Diagnosis result = over(kRoughWindow_s, Measure::effort);
+    Diagnosis result = over(short_s, Measure::effort);
     const Status status = result.verdict.status;
     if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
   }
-  return over(kRoughWindow_s, Measure::motion);
+  if (short_s < kWindow_s || !over_long_windows) return over(std::min(short_s, kWindow_s), Measure::motion);
+  return *std::move(over_long_windows);
 }
 
 }  // namespace host

@@ -65,16 +65,13 @@ Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<con
                        const std::vector<const Record*>& validation, double window_s = kWindow_s,
                        Measure measure = Measure::motion);
 
-/// Windows of a machine whose missing effects, not its sensors, set the limit, s: at 1 kHz ten samples, in which the
-/// position shows a force as a low-pass of 100 Hz would.
-inline constexpr double kRoughWindow_s = 0.01;
+/// Windows of a machine whose missing effects, not its sensors, set the limit: 10 ms, in which the position shows a
+/// force as a low-pass of 100 Hz would, and ten samples at least.
+double rough_window_s(const std::vector<const Record*>& records);
 
 /// Whether half of the windows lie far above their floors: on such a machine what is missing, not noise, sets the
 /// limit.
 bool is_rough(const SetError& error);
-
-/// Whether records are sampled finely enough for windows of kRoughWindow_s.
-bool suits_short_windows(const std::vector<const Record*>& records);
 
 /// What a rough machine is judged by: the effort, where the model has an inverse and both sets slide for a second.
 /// `validation` may be empty.

@@ -99,8 +99,8 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
                                 kind, info->separate_by));
   };
   search(kWindow_s, Measure::motion);
-  if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)) && suits_short_windows(training))
-    search(kRoughWindow_s, rough_measure(found.front().model, training, validation));
+  if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)))
+    search(rough_window_s(training), rough_measure(found.front().model, training, validation));
   Addition addition;
   addition.held_back = sets.held_back;
   renew_floors(sets.training, found.front().model);

@@ -61,7 +61,7 @@ host::Record record_of(const Strokes& strokes) {
 }
 
 host::RecordSet by_effort(const host::Record& record, const sim::DriveDescription& model) {
-  return host::compare_on({&record}, model, host::kRoughWindow_s, host::Measure::effort);
+  return host::compare_on({&record}, model, host::rough_window_s({&record}), host::Measure::effort);
 }
 
 TEST(EffortPrediction, KnowsTheForceOfAMotionAndWhenItsCommandWasSent) {
