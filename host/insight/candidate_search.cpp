@@ -1,6 +1,7 @@
 #include "host/insight/candidate_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -117,12 +118,12 @@ SearchEffort SearchEffort::over(double window_s) const {
 
 sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training) {
   // From the given values, and from a drive 25 % heavier or lighter with friction that goes the other way.
-  std::vector<sim::DriveDescription> starts(3, given);
-  const double factors[] = {1.0, 1.25, 0.8};
-  for (std::size_t k = 1; k < starts.size(); ++k) {
-    if (sim::EffectEntry* inertia = starts[k].find("inertia")) inertia->parameters["J"] *= factors[k];
+  constexpr std::array kFactors{1.0, 1.25, 0.8};
+  std::vector<sim::DriveDescription> starts(kFactors.size(), given);
+  for (std::size_t k = 1; k < kFactors.size(); ++k) {
+    if (sim::EffectEntry* inertia = starts[k].find("inertia")) inertia->parameters["J"] *= kFactors[k];
     if (sim::EffectEntry* coulomb = starts[k].find("coulomb"))
-      for (auto& [id, value] : coulomb->parameters) value /= factors[k];
+      for (auto& [id, value] : coulomb->parameters) value /= kFactors[k];
   }
   const double window_s = training.records.front().prepared.window_s();
   const RecordSet thin = thinned(training, SearchEffort{}.over(window_s).medium_windows);
