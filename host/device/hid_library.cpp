@@ -1,12 +1,11 @@
 #include "host/device/hid_library.hpp"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 #include <optional>
 #include <string_view>
 
 #include "host/exit_codes.hpp"
+#include "host/shared_library.hpp"
 
 namespace host {
 
@@ -14,17 +13,13 @@ namespace {
 
 std::string file_of(HidBackend backend) { return std::string("libhidapi-") + name_of(backend) + ".so.0"; }
 
-/// Stays loaded until the program ends.
 std::optional<HidLibrary> load(HidBackend backend) {
-  void* library = dlopen(file_of(backend).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) return std::nullopt;
+  const SharedLibrary library(file_of(backend));
+  if (!library.is_loaded()) return std::nullopt;
   HidLibrary functions;
   functions.backend = backend;
   bool complete = true;
-  const auto find = [&](auto& function, const char* name) {
-    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
-    complete = complete && function != nullptr;
-  };
+  const auto find = [&](auto& function, const char* name) { complete = library.find(function, name) && complete; };
   find(functions.enumerate, "hid_enumerate");
   find(functions.free_enumeration, "hid_free_enumeration");
   find(functions.open_path, "hid_open_path");

@@ -1,24 +1,21 @@
 #include "host/record/mat_library.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <type_traits>
-
 #include "host/exit_codes.hpp"
+#include "host/shared_library.hpp"
 
 namespace host {
 
 MatLibrary load_mat_library(const std::string& file) {
-  void* library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  if (library == nullptr)
+  const SharedLibrary library(file);
+  if (!library.is_loaded())
     throw Failure(ExitCode::bad_input,
                   fmt::format("MATLAB files are read by {}, which cannot be loaded: apt-get install {}\n({})", file,
-                              AXIS_MATIO_PACKAGE, dlerror()));
+                              AXIS_MATIO_PACKAGE, library.why_not()));
   MatLibrary functions;
   const auto find = [&](auto& function, const char* name) {
-    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
-    if (function == nullptr)
+    if (!library.find(function, name))
       throw Failure(ExitCode::bad_input, fmt::format("{} has no function {}: apt-get install --reinstall {}", file,
                                                      name, AXIS_MATIO_PACKAGE));
   };

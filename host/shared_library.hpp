@@ -1,0 +1,36 @@
+// A library that is loaded while the program runs.
+#pragma once
+
+#include <dlfcn.h>
+
+#include <string>
+#include <type_traits>
+
+namespace host {
+
+/// Stays loaded until the program ends.
+class SharedLibrary {
+ public:
+  /// `file` as the dynamic linker finds it: a name, or a path.
+  explicit SharedLibrary(const std::string& file) : handle_(dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
+    if (handle_ == nullptr) why_not_ = dlerror();
+  }
+
+  bool is_loaded() const { return handle_ != nullptr; }
+  const std::string& why_not() const { return why_not_; }
+
+  /// Points `function` at the function of this name, whose type the library's own header has given it; false where the
+  /// library lacks it.
+  template <typename Function>
+  bool find(Function*& function, const char* name) const {
+    static_assert(std::is_function_v<Function>);
+    function = reinterpret_cast<Function*>(dlsym(handle_, name));
+    return function != nullptr;
+  }
+
+ private:
+  void* handle_;
+  std::string why_not_;
+};
+
+}  // namespace host
