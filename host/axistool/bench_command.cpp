@@ -32,6 +32,7 @@ void run(const BenchArguments& arguments) {
   if (!arguments.json.empty())
     write_json({{"format", "axis-device-bench/1"},
                 {"connect_ms", bench.connect_ms},
+                {"open_ms", bench.open_ms},
                 {"read_all_ms", bench.read_all_ms},
                 {"set_all_ms", bench.set_all_ms},
                 {"exchange_median_ms", bench.exchange_median_ms},
@@ -42,7 +43,8 @@ void run(const BenchArguments& arguments) {
                 {"lost_rows", bench.lost_rows}},
                arguments.json);
   if (!talks(arguments)) return;
-  fmt::print("connect and identify        {:8.2f} ms\n", bench.connect_ms);
+  fmt::print("connect and identify        {:8.2f} ms, {:.2f} of them to find and open it\n", bench.connect_ms,
+             bench.open_ms);
   fmt::print("read {} parameters         {:8.2f} ms\n", firmware::kParameterCount, bench.read_all_ms);
   fmt::print("set, read back, verify      {:8.2f} ms\n", bench.set_all_ms);
   fmt::print("one exchange, median        {:8.3f} ms, worst {:.3f} ms\n", bench.exchange_median_ms,
@@ -62,7 +64,8 @@ void add_bench(CLI::App& app) {
       ->check(CLI::Range(0.0, 86400.0));
   add_device_options(*command, *arguments);
   command->footer(
-      "Example:\n  axistool bench --for 600\nChanges nothing. Drives must be disabled. Exit code 1: rows were lost.");
+      "Example:\n  axistool bench --for 600\nChanges nothing. Drives must be disabled. Exit code 1: rows were lost.\n"
+      "Through hidraw Linux 6.1 waits 50 ms whenever it opens a HID device; AXISTOOL_HIDAPI=libusb avoids that.");
   command->callback([arguments] { run(*arguments); });
 }
 

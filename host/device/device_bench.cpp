@@ -49,7 +49,9 @@ DeviceBench bench_device(const std::function<std::unique_ptr<ReportLink>()>& ope
   constexpr int kExchanges = 500;
   DeviceBench bench;
   const auto begin = Clock::now();
-  BoardClient board(open());
+  auto link = open();
+  bench.open_ms = ms_since(begin);
+  BoardClient board(std::move(link));
   board.require_same_table();
   board.status();
   bench.connect_ms = ms_since(begin);

@@ -165,6 +165,7 @@ TEST_F(DeviceCommands, TellAboutTheBoard) {
   for (const auto& check : doctor["checks"]) EXPECT_NE(check["result"], "bad") << check;
   const nlohmann::json bench = json("bench --for 1");
   EXPECT_EQ(bench["lost_rows"], 0);
+  EXPECT_LE(bench["open_ms"].get<double>(), bench["connect_ms"].get<double>());
   EXPECT_GT(bench["capture_rows"], 0);
   EXPECT_EQ(run("clear-faults").exit_code, 0);
 }
