@@ -5,21 +5,32 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/device/udev_rule.hpp"
+#include "host/device/usb_polling.hpp"
 
 namespace axistool {
 
 void add_udev_rule(CLI::App& app) {
-  auto install = std::make_shared<bool>(false);
+  auto install = std::make_shared<bool>(false), poll_always = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("udev-rule", "print or install the rule that lets users open a board");
   command->add_flag("--install", *install, fmt::format("write it to {} and apply it (as root)", host::kUdevRuleFile));
+  command->add_flag("--poll-always", *poll_always,
+                    fmt::format("instead of the rule: the line of {} by which a board opens at once over hidraw, where "
+                                "Linux otherwise waits 50 ms; it holds once usbhid is loaded again (restart)",
+                                host::kUsbPollingFile));
   command->footer(
       "Examples:\n"
       "  axistool udev-rule\n"
       "  sudo axistool udev-rule --install\n"
+      "  sudo axistool udev-rule --poll-always --install\n"
       "Exit codes: 4 no permission to install it.");
-  command->callback([install] {
+  command->callback([install, poll_always] {
     if (!*install) {
-      fmt::print("{}", host::udev_rule());
+      fmt::print("{}", *poll_always ? host::usb_polling_options() : host::udev_rule());
+      return;
+    }
+    if (*poll_always) {
+      host::install_usb_polling();
+      fmt::print("{} is written; it holds once usbhid is loaded again: restart the computer\n", host::kUsbPollingFile);
       return;
     }
     host::install_udev_rule();

@@ -23,6 +23,7 @@ using guest_test::Child;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
 
@@ -167,6 +168,22 @@ TEST_P(UsbBoard, IsMeasured) {
     EXPECT_THAT(bench.output, HasSubstr(figure));
   EXPECT_THAT(bench.output, AllOf(HasSubstr("capture of 20 s"), HasSubstr(" 0 lost")));
   std::cout << bench.output;
+}
+
+TEST_P(UsbBoard, OpensAtOnceWhereLinuxPollsItAlways) {
+  pull_plug();
+  const std::string options = run("udev-rule --poll-always").output, name = "options usbhid ";
+  ASSERT_THAT(options, StartsWith(name));
+  const auto load_usbhid = [](const std::string& with) {
+    return run_program("rmmod usbhid && insmod /modules/usbhid.ko " + with).exit_code;
+  };
+  ASSERT_EQ(load_usbhid(options.substr(name.size())), 0);
+  plug_in();
+  const ProgramRun bench = run("bench --for 1");
+  EXPECT_EQ(bench.exit_code, 0) << bench.output;
+  std::cout << "with " << options << bench.output;
+  pull_plug();
+  EXPECT_EQ(load_usbhid(""), 0);
 }
 
 TEST_P(UsbBoard, RunsTheWorkflow) {
