@@ -44,7 +44,8 @@ done
   printf '%s\n' /usr/lib/locale/C.utf8 /usr/lib/x86_64-linux-gnu/gconv/{gconv-modules.cache,UTF-16.so} # for wide texts
   { ldd "${programs[@]}" 2>/dev/null || true; } | grep -o '/[^ ]* (0x' | cut -d ' ' -f 1
 } | sort -u | xargs -d '\n' cp -Lr --parents -t "$root"
-printf 'cd %q; exec %s\n' "$PWD" "$(printf '%q ' "$@")" >"$root/command"
+printf 'export ASAN_OPTIONS=%q UBSAN_OPTIONS=%q; cd %q; exec %s\n' "${ASAN_OPTIONS:-}" "${UBSAN_OPTIONS:-}" "$PWD" \
+  "$(printf '%q ' "$@")" >"$root/command"
 {
   cat "$kernel/initrd"
   cd "$root" && find . | cpio -o -H newc -R 0:0 --quiet
