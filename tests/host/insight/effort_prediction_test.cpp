@@ -89,7 +89,9 @@ TEST(EffortPrediction, AFitFindsTheDeadTime) {
 
 TEST(EffortPrediction, StandstillIsNotJudged) {
   const host::Record record = record_of({3.0});
-  for (const host::Window& window : by_effort(record, model_with(0.0)).records.front().prepared.windows)
+  const host::RecordSet set = by_effort(record, model_with(0.0));
+  EXPECT_FALSE(set.records.front().prepared.windows.empty());
+  for (const host::Window& window : set.records.front().prepared.windows)
     EXPECT_GE(static_cast<double>(window.begin) * kPeriod_s, 2.9);
 }
 
