@@ -8,6 +8,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/device_check.hpp"
+#include "host/device/hid_library.hpp"
 #include "host/report/terminal.hpp"
 
 namespace axistool {
@@ -26,7 +27,9 @@ host::Tone tone_of(host::CheckResult result) {
 
 void run(const DeviceArguments& arguments) {
   host::BoardClient board = open_board(arguments);  // rights and presence: its failures have their remedies
-  const std::vector<host::DeviceCheck> checks = host::check_device(board);
+  std::vector<host::DeviceCheck> checks = host::check_device(board);
+  if (board.name().starts_with("usb:") && host::hid_library().backend == host::HidBackend::hidraw)
+    checks.insert(checks.begin(), host::check_opening());
   const bool any_bad =
       std::ranges::any_of(checks, [](const auto& check) { return check.result == host::CheckResult::bad; });
   if (any_bad) end_with(host::ExitCode::answer_is_no);
@@ -54,7 +57,8 @@ void add_doctor(CLI::App& app) {
   add_device_options(*command, *arguments);
   command->footer(
       "Example:\n  axistool doctor\n"
-      "Looks at USB rights, firmware, saved parameters, reset cause, faults, exchange times, lost samples, loop "
+      "Looks at USB rights, opening, firmware, saved parameters, reset cause, faults, exchange times, lost samples, "
+      "loop "
       "timing.\n"
       "Exit codes: 1 a check failed; 3 no board; 4 no permission (with the rule that gives it).");
   command->callback([arguments] { run(*arguments); });

@@ -7,6 +7,7 @@
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "host/device/board_report.hpp"
+#include "host/device/usb_polling.hpp"
 
 namespace host {
 
@@ -130,6 +131,12 @@ class Examination {
 };
 
 }  // namespace
+
+DeviceCheck check_opening() {
+  if (usb_polls_always()) return {CheckResult::good, "opening", "at once: Linux polls boards always", ""};
+  return {CheckResult::attention, "opening", "each command waits 50 ms before it may talk to the board over hidraw",
+          "`sudo axistool udev-rule --poll-always --install`, then restart the computer"};
+}
 
 std::vector<DeviceCheck> check_device(BoardClient& board) { return Examination(board).run(); }
 

@@ -18,6 +18,9 @@ struct DeviceCheck {
   std::string remedy;  ///< empty when good
 };
 
+/// How long Linux takes to open a board over hidraw.
+DeviceCheck check_opening();
+
 /// Asks the board about everything that it knows, and tries the way to it for a second. Changes nothing.
 std::vector<DeviceCheck> check_device(BoardClient& board);
 

@@ -2,16 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "hal/usb_identity.hpp"
 #include "host/atomic_file.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
 
-std::string usb_polling_options() {
+namespace {
+
+/// Vendor, product and HID_QUIRK_ALWAYS_POLL, as usbhid takes it.
+std::string quirk() {
   constexpr unsigned kAlwaysPoll = 1u << 10;
-  return fmt::format("options usbhid quirks=0x{:04x}:0x{:04x}:0x{:04x}\n", hal::kUsbVendor, hal::kUsbProduct,
-                     kAlwaysPoll);
+  return fmt::format("0x{:04x}:0x{:04x}:0x{:04x}", hal::kUsbVendor, hal::kUsbProduct, kAlwaysPoll);
+}
+
+}  // namespace
+
+std::string usb_polling_options() { return fmt::format("options usbhid quirks={}\n", quirk()); }
+
+bool usb_polls_always() {
+  std::ifstream in("/sys/module/usbhid/parameters/quirks");
+  std::string given;
+  return std::getline(in, given) && given.find(quirk()) != std::string::npos;
 }
 
 void install_usb_polling() {

@@ -12,6 +12,9 @@ inline constexpr const char* kUsbPollingFile = "/etc/modprobe.d/axis.conf";
 /// The line of kUsbPollingFile: HID_QUIRK_ALWAYS_POLL (include/linux/hid.h) for axis boards.
 std::string usb_polling_options();
 
+/// Whether the usbhid that is loaded has been given that option; false where it cannot be told.
+bool usb_polls_always();
+
 /// Writes the file, which holds from the next time that Linux loads usbhid. Throws Failure (permission) when it may
 /// not.
 void install_usb_polling();

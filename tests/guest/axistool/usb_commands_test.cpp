@@ -171,6 +171,7 @@ TEST_P(UsbBoard, IsMeasured) {
 }
 
 TEST_P(UsbBoard, OpensAtOnceWhereLinuxPollsItAlways) {
+  EXPECT_THAT(run("doctor").output, HasSubstr("udev-rule --poll-always --install"));
   pull_plug();
   const std::string options = run("udev-rule --poll-always").output, name = "options usbhid ";
   ASSERT_THAT(options, StartsWith(name));
@@ -182,6 +183,7 @@ TEST_P(UsbBoard, OpensAtOnceWhereLinuxPollsItAlways) {
   const ProgramRun bench = run("bench --for 1");
   EXPECT_EQ(bench.exit_code, 0) << bench.output;
   std::cout << "with " << options << bench.output;
+  EXPECT_THAT(run("doctor").output, HasSubstr("at once"));
   pull_plug();
   EXPECT_EQ(load_usbhid(""), 0);
 }
