@@ -58,6 +58,13 @@ bool needs_own_floors(const sim::DriveDescription& model) {
   return drive.has_second_mass() || drive.bristles.has_value();
 }
 
+/// The set with the floors that a model is compared on.
+RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared) {
+  RecordSet own = shared;
+  if (needs_own_floors(model)) renew_floors(own, model);
+  return own;
+}
+
 /// Fits a start on a set and notes what is left of the base's error there.
 void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
                const FitOptions& options) {
@@ -67,8 +74,7 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
     start.error = fit.robust / base_error;
     return;
   }
-  RecordSet own = shared;
-  renew_floors(own, start.model);
+  const RecordSet own = suited_to(start.model, shared);
   const FitResult fit = fit_model(start.model, own, options);
   start.model = fit.model;
   start.error = fit.robust / error_of(sim::Drive(base), own).robust;
@@ -83,8 +89,7 @@ constexpr double kWorstOfScan = 1.05;
 
 /// What is left of the base's error at a start, unfitted.
 double left_at(const sim::DriveDescription& start, const sim::DriveDescription& base, const RecordSet& shared) {
-  RecordSet own = shared;
-  if (needs_own_floors(start)) renew_floors(own, start);
+  const RecordSet own = suited_to(start, shared);
   return error_of(sim::Drive(start), own).robust / error_of(sim::Drive(base), own).robust;
 }
 
@@ -96,11 +101,7 @@ void scan(std::vector<Start>& starts, const sim::DriveDescription& base, const R
   std::ranges::stable_sort(starts, {}, &Start::error);
   starts.resize(kBestOfScan, starts.front());
   std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
-  for (Start& start : starts) {
-    RecordSet own = set;
-    if (needs_own_floors(start.model)) renew_floors(own, start.model);
-    start.model = pattern_search(start.model, own);
-  }
+  for (Start& start : starts) start.model = pattern_search(start.model, suited_to(start.model, set));
 }
 
 }  // namespace
@@ -169,8 +170,8 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   for (const auto& [id, value] : model.effects.back().parameters) {
     for (const double factor : {0.55, 1.8}) {
       const sim::ParameterInfo& info = *sim::find_effect(model.effects.back().kind)->parameter(id);
-      if (finalist.scanned || id == "period" || id == "cosine" || id == "sine")
-        continue;  // the spectrum has found these
+      const bool from_spectrum = id == "period" || id == "cosine" || id == "sine";
+      if (finalist.scanned || from_spectrum) continue;
       starts.push_back(model);
       starts.back().effects.back().parameters[id] = std::clamp(factor * value, info.lower, info.upper);
     }
@@ -243,8 +244,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
 
   std::vector<Candidate> candidates(finalists.size());
   if (!finalists.empty()) {
-    RecordSet own = medium;
-    if (needs_own_floors(finalists.front().model)) renew_floors(own, finalists.front().model);
+    const RecordSet own = suited_to(finalists.front().model, medium);
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
   }
   const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
