@@ -14,6 +14,15 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["firmware/boards/pc/"] = "hal/ firmware/ sim/"
     may["sim/"] = "sim/"
     may["host/"] = "host/ sim/ hal/ firmware/core/ firmware/app/"
+    may["host/record/"] = "host/record/ sim/"
+    may["host/model/"] = "host/model/ sim/"
+    may["host/report/"] = "host/report/ host/model/ sim/"
+    may["host/identify/"] = "host/identify/ host/record/ sim/"
+    may["host/evidence/"] = "host/evidence/ " may["host/identify/"]
+    may["host/compare/"] = "host/compare/ host/report/ " may["host/evidence/"]
+    may["host/diagnose/"] = "host/diagnose/ " may["host/compare/"]
+    may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
+    may["host/device/"] = "host/device/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/axistool/"] = "host/ host/axistool/ sim/ hal/ firmware/core/ firmware/app/"
     may["tests/"] = "tests/ host/ host/axistool/ sim/ hal/ firmware/"
 
@@ -31,6 +40,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
 
   function allowed(rule, header,   folders, n, i) {
     if (index(header, "host/axistool/") == 1) return index(may[rule], "host/axistool/") > 0
+    if (rule ~ /^host\// && header ~ /^host\/[^\/]*$/) return 1
     n = split(may[rule], folders, " ")
     for (i = 1; i <= n; i++) if (index(header, folders[i]) == 1) return 1
     return 0

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "host/axistool/commands.hpp"
-#include "host/device/parameter_names.hpp"
+#include "host/parameters/parameter_names.hpp"
 
 namespace axistool {
 

@@ -7,10 +7,10 @@
 #include "host/atomic_file.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/device/compensation_parameters.hpp"
-#include "host/identify/board_parameters.hpp"
 #include "host/identify/design_json.hpp"
 #include "host/model/model_file.hpp"
+#include "host/parameters/board_parameters.hpp"
+#include "host/parameters/compensation_parameters.hpp"
 
 namespace axistool {
 

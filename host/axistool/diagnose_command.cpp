@@ -6,9 +6,9 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
-#include "host/insight/diagnosis_json.hpp"
-#include "host/insight/verdict.hpp"
-#include "host/report/insight_report.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
+#include "host/diagnose/diagnosis_report.hpp"
+#include "host/diagnose/verdict.hpp"
 
 namespace axistool {
 

@@ -7,7 +7,7 @@
 
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/load_records.hpp"
-#include "host/insight/diagnosis.hpp"
+#include "host/diagnose/diagnosis.hpp"
 #include "host/model/model_file.hpp"
 #include "host/report/progress.hpp"
 

@@ -8,8 +8,8 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/device/parameter_file.hpp"
-#include "host/device/parameter_names.hpp"
+#include "host/parameters/parameter_file.hpp"
+#include "host/parameters/parameter_names.hpp"
 
 namespace axistool {
 

@@ -5,8 +5,8 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/device/parameter_names.hpp"
-#include "host/device/parameter_page.hpp"
+#include "host/parameters/parameter_names.hpp"
+#include "host/parameters/parameter_page.hpp"
 
 namespace axistool {
 

@@ -11,7 +11,7 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
-#include "host/insight/verdict.hpp"
+#include "host/diagnose/verdict.hpp"
 
 namespace axistool {
 

@@ -8,7 +8,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/parameter_commands.hpp"
-#include "host/device/parameter_file.hpp"
+#include "host/parameters/parameter_file.hpp"
 
 namespace axistool {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "host/demo/model_plot.hpp"
+#include "host/hil/simulated_experiment.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/paper_drives.hpp"
-#include "host/identify/simulated_experiment.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {

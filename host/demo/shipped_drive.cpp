@@ -6,11 +6,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "host/compare/prediction.hpp"
 #include "host/demo/model_plot.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
-#include "host/insight/prediction.hpp"
 #include "host/model/model_file.hpp"
 #include "host/read_file.hpp"
 #include "host/record/channel_checks.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "host/identify/closed_loop.hpp"
-#include "host/identify/simulated_experiment.hpp"
+#include "host/hil/closed_loop.hpp"
+#include "host/hil/simulated_experiment.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {

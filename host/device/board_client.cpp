@@ -8,8 +8,8 @@
 
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
-#include "host/device/parameter_names.hpp"
 #include "host/exit_codes.hpp"
+#include "host/parameters/parameter_names.hpp"
 
 namespace host {
 

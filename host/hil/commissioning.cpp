@@ -1,10 +1,10 @@
 #include "host/hil/commissioning.hpp"
 
 #include "hal/pc/simulated_axis.hpp"
-#include "host/device/compensation_parameters.hpp"
+#include "host/hil/simulated_experiment.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
-#include "host/identify/simulated_experiment.hpp"
+#include "host/parameters/compensation_parameters.hpp"
 
 namespace host {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/axis_parameters.hpp"
-#include "host/identify/axis_parameters.hpp"
+#include "host/parameters/axis_parameters.hpp"
 #include "host/record/record.hpp"
 #include "sim/drive_description.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "host/hil/commissioning.hpp"
+#include "host/hil/simulated_experiment.hpp"
 #include "host/identify/identification.hpp"
-#include "host/identify/simulated_experiment.hpp"
 
 namespace host {
 

@@ -1,6 +1,6 @@
 #include "host/hil/recorder.hpp"
 
-#include "host/identify/closed_loop.hpp"
+#include "host/hil/closed_loop.hpp"
 
 namespace host {
 

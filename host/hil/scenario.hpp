@@ -10,7 +10,7 @@
 
 #include "host/hil/injection.hpp"
 #include "host/hil/path.hpp"
-#include "host/identify/axis_parameters.hpp"
+#include "host/parameters/axis_parameters.hpp"
 
 namespace host {
 

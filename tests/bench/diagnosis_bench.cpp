@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "tests/host/insight/drive_case.hpp"
+#include "tests/host/diagnose/drive_case.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@ failures=0
 fresh_tree() {
   rm -rf "$tree"
   mkdir -p "$tree/hal/pc" "$tree/firmware/core" "$tree/firmware/app" "$tree/firmware/boards/pc" "$tree/sim/effects" \
-    "$tree/host/record" "$tree/host/axistool" "$tree/tests/host"
+    "$tree/host/record" "$tree/host/device" "$tree/host/axistool" "$tree/tests/host"
   echo '#pragma once' >"$tree/hal/encoder.hpp"
 }
 
@@ -42,7 +42,8 @@ accepts firmware/app/table.hpp '"firmware/core/axis.hpp"'
 accepts firmware/boards/pc/main.cpp '"sim/plant.hpp"'
 accepts sim/effects/cogging.cpp '"sim/effect.hpp"'
 accepts host/record/read.cpp '"sim/drive_description.hpp"'
-accepts host/record/read.cpp '"firmware/app/table.hpp"'
+accepts host/device/read.cpp '"firmware/app/table.hpp"'
+accepts host/record/read.cpp '"host/exit_codes.hpp"'
 accepts host/axistool/main.cpp '"host/axistool/commands.hpp"'
 accepts tests/host/read_test.cpp '"host/axistool/commands.hpp"'
 
@@ -57,6 +58,7 @@ refuses firmware/boards/qemu.cpp '"sim/plant.hpp"'
 refuses sim/plant.cpp '"firmware/core/axis.hpp"'
 refuses sim/plant.cpp '"host/record/record.hpp"'
 refuses host/record/read.cpp '"host/axistool/commands.hpp"'
+refuses host/record/read.cpp '"host/diagnose/verdict.hpp"'
 refuses host/record/read.cpp '"firmware/boards/pc/main.hpp"'
 refuses host/record/read.cpp '"record.hpp"'
 refuses host/record/read.cpp '"../exit_codes.hpp"'

@@ -128,11 +128,10 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
 TEST_F(DeviceCommands, ATriggerKeepsWhatWasBefore) {
   fit();
   ASSERT_EQ(run("enable x --yes").exit_code, 0);
-  ASSERT_EQ(
-      run("capture -o " + file("bump.csv") +
-          " --jog 1:1,50:0.4 --trigger 'w_ref_rad_s>10' --pre 0.1 --for 0.2 --channels u_V,x_mm,w_rad_s,d_hat_V")
-          .exit_code,
-      0);
+  ASSERT_EQ(run("capture -o " + file("bump.csv") +
+                " --jog 1:1,50:0.4 --trigger 'w_ref_rad_s>10' --pre 0.1 --for 0.2 --channels u_V,x_mm,w_rad_s,d_hat_V")
+                .exit_code,
+            0);
   const host::Record record = host::read_record(file("bump.csv"));
   ASSERT_EQ(record.size(), 300u);
   EXPECT_NEAR(std::stod(record.header.at("trigger_s")), 0.1, 1e-9);

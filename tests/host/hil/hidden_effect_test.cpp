@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "host/diagnose/improvement.hpp"
 #include "host/hil/scenario_run.hpp"
 #include "host/identify/paper_drives.hpp"
-#include "host/insight/improvement.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "host/hil/machine.hpp"
-#include "host/identify/axis_parameters.hpp"
 #include "host/identify/paper_drives.hpp"
+#include "host/parameters/axis_parameters.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 
 #include "host/exit_codes.hpp"
 #include "host/identify/axis_design.hpp"
-#include "host/identify/board_parameters.hpp"
 #include "host/identify/design_json.hpp"
+#include "host/parameters/board_parameters.hpp"
 
 namespace {
 

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "host/exit_codes.hpp"
+#include "host/hil/simulated_experiment.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/friction_json.hpp"
 #include "host/identify/paper_drives.hpp"
-#include "host/identify/simulated_experiment.hpp"
 
 namespace {
 

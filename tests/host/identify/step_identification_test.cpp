@@ -6,10 +6,10 @@
 #include <string>
 
 #include "host/exit_codes.hpp"
+#include "host/hil/simulated_experiment.hpp"
 #include "host/identify/excitation.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/paper_drives.hpp"
-#include "host/identify/simulated_experiment.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "host/report/insight_report.hpp"
-#include "tests/host/insight/drive_case.hpp"
+#include "host/diagnose/diagnosis_report.hpp"
+#include "tests/host/diagnose/drive_case.hpp"
 #include "tests/host/report/sample_report.hpp"
 
 namespace host {

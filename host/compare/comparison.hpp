@@ -1,0 +1,92 @@
+// Records and floors that models are compared on, and the one number that compares them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "host/compare/effort_prediction.hpp"
+#include "host/compare/error_floor.hpp"
+#include "host/compare/prediction.hpp"
+
+namespace host {
+
+/// What models are compared by.
+enum class Measure {
+  motion,  ///< predicted against measured travel and speed
+  effort   ///< what the inverse model needs against what the motor gave; for drives that have an inverse
+};
+
+/// A record with the floor of each of its windows.
+struct ComparedRecord {
+  PreparedRecord prepared;
+  ErrorFloor floor;
+  std::shared_ptr<const EffortRecord> effort = nullptr;  ///< where the measure is the effort
+};
+
+/// Three floors: one impact or breakaway that comes a moment late must not outweigh all windows that fit.
+inline constexpr double kCommonSquare = 9.0;
+
+/// The records of one purpose (training, or validation).
+struct RecordSet {
+  std::vector<ComparedRecord> records;
+  Measure measure = Measure::motion;
+  std::size_t stride = 1;  ///< every so many-th window is used; more than 1 makes a search faster
+  /// Squared error over floor squared up to which a window counts in full in a fit; beyond, its weight grows as the
+  /// logarithm. At least three floors.
+  double common_square = kCommonSquare;
+
+  std::size_t used_windows() const;
+};
+
+std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
+
+/// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
+/// By effort, only windows remain in which the axis slides throughout.
+RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
+                     double window_s = kWindow_s, Measure measure = Measure::motion);
+
+/// The same windows, compared by their motion.
+RecordSet by_motion(const RecordSet& set, const sim::DriveDescription& reference);
+
+/// Computes the floors again with a better model, and with them what is common: where most windows of `reference` lie
+/// far above their floors, as those of a real machine may, three times their median error counts as common.
+void renew_floors(RecordSet& set, const sim::DriveDescription& reference);
+
+/// Mean over the windows and channels of (error/floor)^2 of one window.
+struct WindowScore {
+  std::size_t record;
+  std::size_t window;
+  double x = 0.0;  ///< mean squared error of the channel over its floor squared; 0 where the record lacks it
+  double w = 0.0;
+  double effort = 0.0;  ///< the same of the effort, where that is the measure
+
+  /// All channels, each as a fit weighs it.
+  double weighed(double common_square) const;
+};
+
+/// RMS errors of a model on a set.
+struct SetError {
+  double combined = 0.0;  ///< RMS over windows and channels of error/floor; about 1 for a perfect model
+  double robust = 0.0;    ///< the same with windows beyond the common weighed by the logarithm: what a fit minimises
+  double x_rms = 0.0;     ///< mm or m
+  double w_rms = 0.0;     ///< rad/s or m/s
+  double x_floor = 0.0;   ///< RMS of the windows' floors
+  double w_floor = 0.0;
+  double effort_rms = 0.0;  ///< Nm or N, where the effort is the measure; the others are zero then
+  double effort_floor = 0.0;
+  std::vector<WindowScore> windows;
+};
+
+/// Squared error of a window over its floor squared, as a fit weighs it.
+double weighed_square(double square, double common_square);
+
+SetError error_of(const sim::Drive& drive, const RecordSet& set);
+
+/// Measured channels of a record in this measure.
+std::size_t channel_count(const ComparedRecord& compared, Measure measure);
+
+/// Residuals (prediction - measurement)/floor of every used row, scaled so that their squares sum to robust^2.
+std::size_t residual_count(const RecordSet& set);
+void residuals_of(const sim::Drive& drive, const RecordSet& set, double* out);
+
+}  // namespace host

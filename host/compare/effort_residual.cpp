@@ -1,0 +1,35 @@
+#include "host/compare/effort_residual.hpp"
+
+#include <cmath>
+
+namespace host {
+
+ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
+                                 std::size_t stride) {
+  const sim::Drive drive(model);
+  const SmoothedMotion& motion = prepared.motion();
+  const bool tach = prepared.record->has_speed();
+  ResidualSamples samples;
+  sim::DriveState state = drive.at(motion.x[0], motion.w[0]);
+  for (std::size_t k = 0; k + 1 < motion.x.size(); ++k) {
+    const double t_s = prepared.record->t_s[k];
+    const double effort =
+        drive.follow(state, prepared.u_V[k], motion.x[k + 1], motion.w[k + 1], t_s, prepared.period_s);
+    if (k % stride != 0 || motion.w[k] * motion.w[k + 1] <= 0.0) continue;
+    const double w = 0.5 * (motion.w[k] + motion.w[k + 1]);
+    const double acceleration = (motion.w[k + 1] - motion.w[k]) / prepared.period_s;
+    sim::DriveState here = state;
+    here.x = 0.5 * (motion.x[k] + motion.x[k + 1]);
+    here.w = w;
+    samples.t_s.push_back(t_s);
+    samples.x.push_back(here.x);
+    samples.w.push_back(w);
+    samples.acceleration.push_back(acceleration);
+    samples.effort.push_back(effort);
+    samples.missing.push_back(drive.inertia * acceleration + drive.sliding_effort(here, effort, t_s) - effort);
+    if (tach) samples.tach_error.push_back(prepared.record->w[k + 1] - drive.tachometer(state));
+  }
+  return samples;
+}
+
+}  // namespace host

@@ -1,0 +1,26 @@
+// What a model leaves unexplained, sample by sample: as effort at the motor, and as speed at the tachometer.
+#pragma once
+
+#include <vector>
+
+#include "host/compare/comparison.hpp"
+
+namespace host {
+
+/// Samples of a record that move, thinned; all vectors of one length.
+struct ResidualSamples {
+  std::vector<double> t_s;
+  std::vector<double> x;             ///< smoothed travel, mm or m
+  std::vector<double> w;             ///< smoothed speed, rad/s or m/s
+  std::vector<double> acceleration;  ///< of w
+  std::vector<double> effort;        ///< what the motor gives, Nm or N
+  std::vector<double> missing;       ///< effort that the motion needed beyond what the model explains, Nm or N
+  std::vector<double> tach_error;  ///< tachometer less the model's tachometer at the smoothed speed; empty without one
+};
+
+/// Residuals of `model` on every `stride`-th moving sample of a record. Friction is the model's curve at the smoothed
+/// speed; effects that remember are left out.
+ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
+                                 std::size_t stride);
+
+}  // namespace host

@@ -1,0 +1,261 @@
+#include "host/diagnose/candidate_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "host/diagnose/candidate_starts.hpp"
+#include "host/diagnose/model_fit.hpp"
+#include "host/diagnose/parallel.hpp"
+#include "host/diagnose/pattern_search.hpp"
+#include "host/identify/inverse_model.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// A candidate must lower the training error of a first look by this factor to be worth a serious fit.
+constexpr double kPromise = 0.98;
+
+/// Behind the best of a first look by this factor, only a few are worth a serious fit; none of those whose simulation
+/// takes many small steps.
+constexpr double kOutOfSight = 2.0;
+
+/// After the serious fits the last word is between those within this factor of the best.
+constexpr double kClose = 1.5;
+
+/// Two starts of one effect are both pursued while their errors are so close.
+constexpr double kOpenRace = 1.25;
+
+/// A spectrum sees an effect along the travel at the right place but weakened by smoothing, and a base that was bent to
+/// make up for its absence would hold it down: its amplitude comes first, alone.
+constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
+constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3};
+constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4};
+constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5};
+
+/// The set with about so many windows in use, evenly spread over the records.
+RecordSet thinned(const RecordSet& set, std::size_t windows) {
+  RecordSet thin = set;
+  thin.stride = 1;
+  thin.stride = std::max<std::size_t>(1, thin.used_windows() / windows);
+  return thin;
+}
+
+struct Start {
+  const sim::EffectInfo* info;
+  sim::DriveDescription model;
+  double error = HUGE_VAL;  ///< what is left of the base's error
+  bool scanned = false;     ///< one of many starts, of which a scan has found it the best
+};
+
+/// Floors suit the model that they are propagated through. Motion on a contact (bristles, a second mass, a gap) spreads
+/// a restart's uncertainty in ways of its own: such a candidate is compared with the base on floors of its own model.
+bool needs_own_floors(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return drive.has_second_mass() || drive.bristles.has_value();
+}
+
+/// The set with the floors that a model is compared on.
+RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared) {
+  RecordSet own = shared;
+  if (needs_own_floors(model)) renew_floors(own, model);
+  return own;
+}
+
+/// Fits a start on a set and notes what is left of the base's error there.
+void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
+               const FitOptions& options) {
+  if (!needs_own_floors(start.model) || needs_own_floors(base)) {
+    const FitResult fit = fit_model(start.model, shared, options);
+    start.model = fit.model;
+    start.error = fit.robust / base_error;
+    return;
+  }
+  const RecordSet own = suited_to(start.model, shared);
+  const FitResult fit = fit_model(start.model, own, options);
+  start.model = fit.model;
+  start.error = fit.robust / error_of(sim::Drive(base), own).robust;
+}
+
+/// An effect with more starts than this is scanned: each start is measured as it stands, and only the best go on, by a
+/// search without slopes first.
+constexpr std::size_t kMostStarts = 6;
+constexpr std::size_t kBestOfScan = 2;
+/// What a start may leave of the base's error, before any fit, to go on.
+constexpr double kWorstOfScan = 1.05;
+
+/// What is left of the base's error at a start, unfitted.
+double left_at(const sim::DriveDescription& start, const sim::DriveDescription& base, const RecordSet& shared) {
+  const RecordSet own = suited_to(start, shared);
+  return error_of(sim::Drive(start), own).robust / error_of(sim::Drive(base), own).robust;
+}
+
+void scan(std::vector<Start>& starts, const sim::DriveDescription& base, const RecordSet& set) {
+  for (Start& start : starts) {
+    start.error = left_at(start.model, base, set);
+    start.scanned = true;
+  }
+  std::ranges::stable_sort(starts, {}, &Start::error);
+  starts.resize(kBestOfScan, starts.front());
+  std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
+  for (Start& start : starts) start.model = pattern_search(start.model, suited_to(start.model, set));
+}
+
+}  // namespace
+
+SearchEffort SearchEffort::over(double window_s) const {
+  const auto scaled = [&](std::size_t windows) {
+    return static_cast<std::size_t>(static_cast<double>(windows) * kWindow_s / window_s);
+  };
+  SearchEffort effort = *this;
+  effort.coarse_windows = scaled(coarse_windows);
+  effort.medium_windows = scaled(medium_windows);
+  effort.final_windows = scaled(final_windows);
+  return effort;
+}
+
+sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training) {
+  // From the given values, and from a drive 25 % heavier or lighter with friction that goes the other way.
+  constexpr std::array kFactors{1.0, 1.25, 0.8};
+  std::vector<sim::DriveDescription> starts(kFactors.size(), given);
+  for (std::size_t k = 1; k < kFactors.size(); ++k) {
+    if (sim::EffectEntry* inertia = starts[k].find("inertia")) inertia->parameters["J"] *= kFactors[k];
+    if (sim::EffectEntry* coulomb = starts[k].find("coulomb"))
+      for (auto& [id, value] : coulomb->parameters) value /= kFactors[k];
+  }
+  const double window_s = training.records.front().prepared.window_s();
+  const RecordSet thin = thinned(training, SearchEffort{}.over(window_s).medium_windows);
+  std::vector<FitResult> results(starts.size());
+  for_each_in_parallel(starts.size(), [&](std::size_t k) { results[k] = fit_model(starts[k], thin, kSeriousFit); });
+  const FitResult& best = *std::ranges::min_element(results, {}, &FitResult::robust);
+  return fit_model(best.model, training, kLastWord).model;
+}
+
+Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
+                 const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation) {
+  Candidate candidate{kinds, model, {}, {}, HUGE_VAL};
+  const sim::Drive drive(model), without(base);
+  candidate.training = error_of(drive, training);
+  candidate.validation = error_of(drive, validation);
+  if (!needs_own_floors(model) || needs_own_floors(base)) {
+    candidate.left = candidate.training.robust * candidate.validation.robust /
+                     (error_of(without, training).robust * error_of(without, validation).robust);
+    return candidate;
+  }
+  candidate.left = 1.0;
+  for (const RecordSet* shared : {&training, &validation}) {
+    RecordSet own = *shared;
+    renew_floors(own, model);
+    candidate.left *= error_of(drive, own).robust / error_of(without, own).robust;
+  }
+  return candidate;
+}
+
+namespace {
+
+/// Fits the last effect again from both sides of each of its parameters (a scan has looked there already): an effect
+/// that acts at breakaway or on impact leaves valleys side by side. And once from the base as it was given, since a
+/// re-fit without the effect may have bent the base so far that it does not come back.
+sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
+  const sim::DriveDescription& model = finalist.model;
+  std::vector<sim::DriveDescription> starts{model};
+  if (nominal != nullptr) {
+    starts.push_back(model);
+    for (sim::EffectEntry& entry : starts.back().effects)
+      if (const sim::EffectEntry* original = nominal->find(entry.kind)) entry = *original;
+  }
+  for (const auto& [id, value] : model.effects.back().parameters) {
+    for (const double factor : {0.55, 1.8}) {
+      const sim::ParameterInfo& info = *sim::find_effect(model.effects.back().kind)->parameter(id);
+      const bool from_spectrum = id == "period" || id == "cosine" || id == "sine";
+      if (finalist.scanned || from_spectrum) continue;
+      starts.push_back(model);
+      starts.back().effects.back().parameters[id] = std::clamp(factor * value, info.lower, info.upper);
+    }
+  }
+  std::vector<FitResult> fits(starts.size());
+  for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], set, kSeriousFit); });
+  return std::ranges::min_element(fits, {}, &FitResult::robust)->model;
+}
+
+}  // namespace
+
+std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                         const RecordSet& training, const RecordSet& validation,
+                                         const ShareDone& progress, const SearchEffort& effort) {
+  std::vector<const sim::EffectInfo*> infos;
+  for (const sim::EffectInfo* info : sim::catalogue())
+    if (is_applicable(*info, model, training)) infos.push_back(info);
+  return search_kinds(infos, model, kinds, training, validation, progress, effort);
+}
+
+std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
+                                    const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                    const RecordSet& training, const RecordSet& validation, const ShareDone& progress,
+                                    const SearchEffort& effort) {
+  const RecordSet coarse = thinned(training, effort.coarse_windows);
+  const RecordSet medium = thinned(training, effort.medium_windows);
+  const RecordSet last = thinned(training, effort.final_windows);
+  std::vector<std::vector<Start>> starts_of(infos.size());
+  for_each_in_parallel(infos.size(), [&](std::size_t k) {
+    for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
+      if (training.measure != Measure::effort || has_inverse(sim::Drive(start)))
+        starts_of[k].push_back({infos[k], std::move(start)});
+    if (!infos[k]->periodic && starts_of[k].size() > kMostStarts) scan(starts_of[k], model, medium);
+  });
+  std::vector<Start> starts;
+  for (auto& list : starts_of) std::ranges::move(list, std::back_inserter(starts));
+
+  std::atomic<std::size_t> done{0};
+  const double most = static_cast<double>(starts.size() + infos.size());
+  const auto report = [&] {
+    if (progress) progress(std::min(1.0, static_cast<double>(++done) / most));
+  };
+  const auto fit_all = [&](std::vector<Start>& list, const RecordSet& set, const FitOptions& options) {
+    // The base gets the same chance to suit these few windows as the candidates have.
+    const double base_error = fit_model(model, set, options).robust;
+    for_each_in_parallel(list.size(), [&](std::size_t k) {
+      // What needed a scan on many windows would be lost on a few.
+      fit_start(list[k], model, list[k].scanned ? medium : set, base_error, options);
+      report();
+    });
+    std::ranges::stable_sort(list, {}, &Start::error);
+  };
+  for_each_in_parallel(starts.size(), [&](std::size_t k) {
+    if (starts[k].info->periodic) starts[k].model = fit_model(starts[k].model, coarse, kOwnSize).model;
+  });
+  fit_all(starts, coarse, kFirstLook);
+  std::vector<Start> race;
+  for (const Start& start : starts) {
+    const bool far_behind = start.error > kOutOfSight * starts.front().error;
+    const bool costly = needs_own_floors(start.model) && !needs_own_floors(model);
+    if (start.error > kPromise || (far_behind && (costly || race.size() >= effort.finalists))) continue;
+    const auto rivals = std::ranges::count(race, start.info, &Start::info);
+    const auto leader = std::ranges::find(race, start.info, &Start::info);
+    if (rivals == 0 || (rivals == 1 && start.error < kOpenRace * leader->error)) race.push_back(start);
+  }
+  fit_all(race, medium, kSeriousFit);
+  std::vector<Start> finalists;
+  for (const Start& start : race)
+    if (std::ranges::find(finalists, start.info, &Start::info) == finalists.end()) finalists.push_back(start);
+
+  std::vector<Candidate> candidates(finalists.size());
+  if (!finalists.empty()) {
+    const RecordSet own = suited_to(finalists.front().model, medium);
+    finalists.front().model = shaken(finalists.front(), effort.nominal, own);
+  }
+  const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
+  for_each_in_parallel(finalists.size(), [&](std::size_t k) {
+    std::vector<std::string> all = kinds;
+    all.emplace_back(finalists[k].info->kind);
+    if (k < effort.finalists && finalists[k].error < within) fit_start(finalists[k], model, last, 1.0, kLastWord);
+    candidates[k] = judged(all, finalists[k].model, model, training, validation);
+  });
+  std::ranges::stable_sort(candidates, {}, &Candidate::left);
+  return candidates;
+}
+
+}  // namespace host

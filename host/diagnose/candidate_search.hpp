@@ -1,0 +1,58 @@
+// Tries effects of the catalogue on a model: fits each with all parameters free, and measures what it would bring.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/compare/comparison.hpp"
+#include "sim/effect.hpp"
+
+namespace host {
+
+/// A model with effects added to a base, fitted, and what it reaches.
+struct Candidate {
+  std::vector<std::string> kinds;  ///< what was added to the base, in the order of the search
+  sim::DriveDescription model;
+  SetError training;
+  SetError validation;
+
+  /// What is left of the base's error, training and validation multiplied: a real effect lowers both, a lucky one one.
+  double left = 1.0;
+};
+
+/// Called with the share of the work that is done, 0..1, from any thread.
+using ShareDone = std::function<void(double)>;
+
+/// Windows for a first look, for a serious fit and for the last word.
+struct SearchEffort {
+  std::size_t coarse_windows = 80;
+  std::size_t medium_windows = 200;
+  std::size_t final_windows = 600;
+  std::size_t finalists = 4;
+  /// As many samples for windows of another length.
+  SearchEffort over(double window_s) const;
+
+  const sim::DriveDescription* nominal = nullptr;  ///< the model as it was given, another start for its parameters
+};
+
+/// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates that
+/// promise nothing on a few windows are not fitted further. Sorted by what they leave, best first.
+std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                         const RecordSet& training, const RecordSet& validation,
+                                         const ShareDone& progress = {}, const SearchEffort& effort = {});
+
+/// The same for some effects only; each must be applicable.
+std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& infos,
+                                    const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                    const RecordSet& training, const RecordSet& validation,
+                                    const ShareDone& progress = {}, const SearchEffort& effort = {});
+
+/// A model measured on both sets as it stands, against the base that it extends.
+Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
+                 const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation);
+
+/// Fits the base from several starts, since a re-fit that is stuck in a local minimum fakes discoveries.
+sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training);
+
+}  // namespace host

@@ -1,0 +1,242 @@
+#include "host/diagnose/candidate_starts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "host/compare/effort_residual.hpp"
+#include "host/compare/period_search.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// The contact of guide and bristle is about so long in a machine, mm (rolling guides break away over 5 to 100 um).
+constexpr double kBreakawayTravel_mm = 0.02;
+
+double scale_value(sim::Scale scale, const sim::DriveDescription& model, const RecordScales& scales) {
+  const sim::Drive drive(model);
+  const bool rotary = model.data.kind == sim::DriveKind::rotary;
+  const double coulomb = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
+  const double breakaway_travel = kBreakawayTravel_mm * (rotary ? 1.0 : 1e-3) / model.data.lead;
+  switch (scale) {
+    case sim::Scale::unity:
+      return 1.0;
+    case sim::Scale::coulomb:
+      return coulomb;
+    case sim::Scale::inertia:
+      return drive.inertia;
+    case sim::Scale::viscous:
+      return 0.5 * (drive.friction[0].viscous + drive.friction[1].viscous);
+    case sim::Scale::bristle_stiffness:
+      return coulomb / breakaway_travel;
+    case sim::Scale::bristle_damping:
+      return 2.0 * std::sqrt(coulomb / breakaway_travel * drive.inertia);
+    case sim::Scale::coulomb_per_travel:
+      return coulomb / scales.travel;
+    case sim::Scale::stall_effort:
+      return drive.effort_per_volt * scales.top_command_V;
+    case sim::Scale::stall_current:
+      return scales.top_command_V * (rotary ? model.data.amplifier_gain_A_per_V : drive.effort_per_volt);
+    case sim::Scale::speed:
+      return rotary ? 1.0 : 1e-3;
+    case sim::Scale::millimetre:
+      return rotary ? 1.0 : 1e-3;
+    case sim::Scale::top_speed:
+      return scales.top_speed;
+    case sim::Scale::travel:
+      return scales.travel;
+    case sim::Scale::duration:
+      return scales.duration_s;
+  }
+  return 1.0;
+}
+
+/// The parameters that a new entry has: those that must be there, and of the pairs the form that the model's Coulomb
+/// friction has (speeds of fading are shared by both directions, which data seldom tell apart).
+std::vector<const sim::ParameterInfo*> parameters_to_start(const sim::EffectInfo& info,
+                                                           const sim::DriveDescription& model) {
+  const sim::EffectEntry* coulomb = model.find("coulomb");
+  const bool by_direction = coulomb != nullptr && coulomb->has("positive");
+  std::vector<const sim::ParameterInfo*> chosen;
+  for (const sim::ParameterInfo& parameter : info.parameters) {
+    const std::string_view id = parameter.id;
+    const bool directional = id.ends_with("_positive") || id.ends_with("_negative");
+    if (!parameter.optional) {
+      chosen.push_back(&parameter);
+    } else if (id.starts_with("omega")) {
+      if (!directional) chosen.push_back(&parameter);
+    } else if (directional == by_direction) {
+      chosen.push_back(&parameter);
+    }
+  }
+  return chosen;
+}
+
+sim::EffectEntry entry_from(const sim::EffectInfo& info, const std::vector<const sim::ParameterInfo*>& parameters,
+                            const std::vector<double>& values) {
+  sim::EffectEntry entry;
+  entry.kind = info.kind;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    entry.parameters[std::string(parameters[k]->id)] =
+        std::clamp(values[k], parameters[k]->lower, parameters[k]->upper);
+  return entry;
+}
+
+std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const sim::DriveDescription& model,
+                                           const RecordScales& scales) {
+  const auto parameters = parameters_to_start(info, model);
+  std::vector<std::vector<double>> rows{{}};
+  // Parameters with equal lists of starts move together (W1 = W2), all others are combined.
+  std::vector<std::size_t> follows(parameters.size());
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    follows[k] = k;
+    for (std::size_t j = 0; j < k && follows[k] == k; ++j)
+      if (parameters[k]->starts.size() > 1 && parameters[j]->starts == parameters[k]->starts &&
+          parameters[j]->scale == parameters[k]->scale)
+        follows[k] = j;
+  }
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    std::vector<std::vector<double>> longer;
+    for (const std::vector<double>& row : rows) {
+      if (follows[k] != k) {
+        longer.push_back(row);
+        longer.back().push_back(row[follows[k]]);
+        continue;
+      }
+      for (const double start : parameters[k]->starts) {
+        longer.push_back(row);
+        longer.back().push_back(start * scale_value(parameters[k]->scale, model, scales));
+      }
+    }
+    rows = std::move(longer);
+  }
+  std::vector<sim::EffectEntry> entries;
+  for (const std::vector<double>& row : rows) entries.push_back(entry_from(info, parameters, row));
+  return entries;
+}
+
+/// The signal over the travel in which a periodic effect shows, and the weight that its harmonic carries there.
+TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
+  // Some 50,000 samples are plenty for a spectrum.
+  constexpr std::size_t kSamples = 50000;
+  std::size_t rows = 0;
+  for (const ComparedRecord& compared : set.records) rows += compared.prepared.u_V.size();
+  TravelSignal signal;
+  for (const ComparedRecord& compared : set.records) {
+    const ResidualSamples samples =
+        residual_samples(model, compared.prepared, std::max<std::size_t>(1, rows / kSamples));
+    for (std::size_t k = 0; k < samples.x.size(); ++k) {
+      double value = samples.missing[k], weight = 1.0;
+      if (info.kind == "torque_ripple") weight = samples.effort[k];
+      if (info.kind == "position_dependent_friction") weight = samples.w[k] > 0.0 ? 1.0 : -1.0;
+      if (info.stage == sim::Stage::tachometer || info.stage == sim::Stage::encoder) {
+        if (samples.tach_error.empty()) break;
+        value = samples.tach_error[k];
+        weight = samples.w[k];
+      }
+      signal.x.push_back(samples.x[k]);
+      signal.value.push_back(value);
+      signal.weight.push_back(weight);
+    }
+  }
+  return signal;
+}
+
+/// Amplitudes of an effect's own harmonic from those of the signal: an encoder's error shows as speed through its
+/// slope, friction and ripple are relative.
+void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription& model, PeriodPeak& peak) {
+  if (info.stage == sim::Stage::encoder) {
+    // The smoothed speed carries w e'(x), so the tachometer reads that much less.
+    const double per_length = peak.period / (2.0 * std::numbers::pi);
+    const double cosine = peak.sine * per_length;
+    peak.sine = -peak.cosine * per_length;
+    peak.cosine = cosine;
+  }
+  if (info.kind == "position_dependent_friction") {
+    const sim::Drive drive(model);
+    const double level = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
+    peak.cosine /= -level;
+    peak.sine /= -level;
+  }
+}
+
+std::vector<sim::EffectEntry> periodic_entries(const sim::EffectInfo& info, const sim::DriveDescription& model,
+                                               const RecordSet& set, const RecordScales& scales) {
+  const TravelSignal signal = signal_of(info, model, set);
+  constexpr std::size_t kPeaks = 3;
+  const bool slow = info.kind == "position_dependent_friction";
+  // Fast effects repeat many times over the travel; friction along the travel has a few waves at most.
+  const double shortest =
+      slow ? scales.travel / 12.0 : std::max(40.0 * model.data.encoder_resolution, scales.travel / 2000.0);
+  const double longest = slow ? 3.0 * scales.travel : scales.travel / 3.0;
+  std::vector<PeriodPeak> peaks = find_periods(signal, shortest, longest, kPeaks);
+  std::vector<sim::EffectEntry> entries;
+  for (PeriodPeak& peak : peaks) {
+    convert_amplitudes(info, model, peak);
+    entries.push_back(
+        {std::string(info.kind), {{"cosine", peak.cosine}, {"sine", peak.sine}, {"period", peak.period}}, {}, {}});
+  }
+  return entries;
+}
+
+constexpr std::array kContacts = {"presliding", "compliance", "backlash"};
+
+}  // namespace
+
+RecordScales scales_of(const RecordSet& set) {
+  RecordScales scales;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const ComparedRecord& compared : set.records) {
+    const SmoothedMotion& motion = compared.prepared.motion();
+    for (std::size_t k = 0; k < motion.x.size(); ++k) {
+      low = std::min(low, motion.x[k]);
+      high = std::max(high, motion.x[k]);
+      scales.top_speed = std::max(scales.top_speed, std::abs(motion.w[k]));
+      scales.top_command_V = std::max(scales.top_command_V, std::abs(compared.prepared.u_V[k]));
+    }
+    const std::vector<double>& t_s = compared.prepared.record->t_s;
+    scales.duration_s = std::max(scales.duration_s, t_s.back() - t_s.front());
+  }
+  scales.travel = high - low;
+  return scales;
+}
+
+bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
+  if (info.base || model.find(info.kind) != nullptr) return false;
+  const sim::EffectEntry* coulomb = model.find("coulomb");
+  if (info.kind == "coulomb_asymmetry") return coulomb != nullptr && coulomb->has("level");
+  if (info.kind == "viscous_asymmetry") return model.find("viscous") != nullptr;
+  if (info.kind == "external_torque") return false;  // belongs to a time: never transfers to another record
+  if (set.measure == Measure::effort && info.stage == sim::Stage::tachometer) return false;
+  const auto has_speed = [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); };
+  const auto has_position = [](const ComparedRecord& compared) { return compared.prepared.record->has_position(); };
+  if (info.stage == sim::Stage::tachometer)
+    return std::ranges::all_of(set.records, has_speed) && std::ranges::all_of(set.records, has_position);
+  if (info.stage == sim::Stage::encoder || info.periodic) return std::ranges::all_of(set.records, has_position);
+  return std::ranges::none_of(model.effects, [&](const sim::EffectEntry& entry) {
+    return exclude_each_other(info, *sim::find_effect(entry.kind));
+  });
+}
+
+bool exclude_each_other(const sim::EffectInfo& a, const sim::EffectInfo& b) {
+  return a.kind == b.kind || (std::ranges::find(kContacts, a.kind) != kContacts.end() &&
+                              std::ranges::find(kContacts, b.kind) != kContacts.end());
+}
+
+std::vector<sim::DriveDescription> starting_models(const sim::EffectInfo& info, const sim::DriveDescription& model,
+                                                   const RecordSet& set) {
+  const RecordScales scales = scales_of(set);
+  std::vector<sim::DriveDescription> models;
+  for (sim::EffectEntry& entry :
+       info.periodic ? periodic_entries(info, model, set, scales) : grid_entries(info, model, scales)) {
+    models.push_back(model);
+    models.back().effects.push_back(std::move(entry));
+  }
+  return models;
+}
+
+}  // namespace host

@@ -1,0 +1,33 @@
+// Where the fit of a candidate effect begins: models with the effect added at values that suit drive and records.
+#pragma once
+
+#include <vector>
+
+#include "host/compare/comparison.hpp"
+#include "sim/effect.hpp"
+
+namespace host {
+
+/// Sizes that the catalogue's starting values are given in.
+struct RecordScales {
+  double travel = 0.0;      ///< mm or m that the records cover
+  double top_speed = 0.0;   ///< rad/s or m/s
+  double duration_s = 0.0;  ///< of the longest record
+  double top_command_V = 0.0;
+};
+
+RecordScales scales_of(const RecordSet& set);
+
+/// Whether the effect can be added to this model and seen in these records at all: not yet in it, not contained in the
+/// form of another, and measured by a channel that is there.
+bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set);
+
+/// Whether two effects describe the same part of a drive, so that one drive cannot have both.
+bool exclude_each_other(const sim::EffectInfo& a, const sim::EffectInfo& b);
+
+/// The model with the effect added: one start for every combination of the catalogue's starting values, or for every
+/// period that stands out of the residual where the effect is periodic.
+std::vector<sim::DriveDescription> starting_models(const sim::EffectInfo& info, const sim::DriveDescription& model,
+                                                   const RecordSet& set);
+
+}  // namespace host

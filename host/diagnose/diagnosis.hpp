@@ -1,0 +1,93 @@
+// Which physical effect is missing from a model, by how much it lowers the error on data that its fit never saw.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/compare/error_regions.hpp"
+#include "host/diagnose/candidate_search.hpp"
+
+namespace host {
+
+enum class Status { missing, adequate, parameters, ambiguous, unexplained, insufficient_data };
+
+std::string_view status_name(Status status);
+
+/// RMS of one measured channel (or of the effort, where that is the measure) on both sets, in its own unit, beside what
+/// the best possible model would leave.
+struct ChannelError {
+  std::string name;                                  ///< column name, e.g. "w_rad_s"
+  double before_train = 0.0, before_validate = 0.0;  ///< of the base, re-fitted
+  double after_train = 0.0, after_validate = 0.0;    ///< with the effects of the verdict
+  double floor_train = 0.0, floor_validate = 0.0;
+};
+
+/// A candidate as it was judged on validation data.
+struct JudgedCandidate {
+  std::vector<std::string> kinds;
+  double before = 0.0;  ///< combined
+  double after = 0.0;
+  double train_after = 0.0;
+  double confidence = 0.0;  ///< that the improvement is no luck, 0..1
+  sim::DriveDescription model;
+};
+
+struct DiagnosisVerdict {
+  Status status = Status::adequate;
+  std::vector<std::string> effects;                    ///< what to add, best first
+  std::vector<std::string> parameters;                 ///< base parameters that were off
+  std::vector<std::vector<std::string>> alternatives;  ///< groups that these data cannot tell apart
+  std::string next_experiment;
+  std::string explanation;
+};
+
+struct Diagnosis {
+  double window_s = kWindow_s;
+  Measure measure = Measure::motion;
+  bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
+  bool held_back = false;  ///< no validation record was given: blocks of the training data were kept back
+  std::vector<ChannelError> channels;
+  double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
+  double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
+  double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
+  std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
+  std::vector<JudgedCandidate> candidates;           ///< best first
+  DiagnosisVerdict verdict;
+  sim::DriveDescription base;  ///< the given model, re-fitted
+  sim::DriveDescription best;  ///< with the effects of the verdict; the base where there are none
+  RecordSet training, validation;
+};
+
+/// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
+/// be compared. Keeps references to the records.
+Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                       const std::vector<const Record*>& validation, double window_s = kWindow_s,
+                       Measure measure = Measure::motion);
+
+/// Windows of a machine whose missing effects, not its sensors, set the limit: 10 ms, in which the position shows a
+/// force as a low-pass of 100 Hz would, and ten samples at least.
+double rough_window_s(const std::vector<const Record*>& records);
+
+/// Whether half of the windows lie far above their floors: on such a machine what is missing, not noise, sets the
+/// limit.
+bool is_rough(const SetError& error);
+
+/// What a rough machine is judged by: the effort, where the model has an inverse and both sets slide for a second.
+/// `validation` may be empty.
+Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                      const std::vector<const Record*>& validation);
+
+/// A candidate on validation data, against the base's error there.
+JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
+                                const SetError& before);
+
+/// By the motion over windows of kWindow_s. Where the machine proves rough, again by the effort, in which what is
+/// missing shows before it adds up to a drift; and where that says nothing, by the motion over short windows. `before`:
+/// an earlier diagnosis of the same records, whose way of judging is taken over, so that their errors can be compared.
+/// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
+Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                   const std::vector<const Record*>& validation, const ShareDone& progress = {},
+                   const Diagnosis* before = nullptr);
+
+}  // namespace host

@@ -1,0 +1,91 @@
+#include "host/diagnose/diagnosis_json.hpp"
+
+#include "host/diagnose/verdict.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+nlohmann::json channels_json(const std::vector<ChannelError>& channels) {
+  nlohmann::json document = nlohmann::json::object();
+  for (const ChannelError& channel : channels) {
+    document[channel.name] = {{"before", {{"train", channel.before_train}, {"validate", channel.before_validate}}},
+                              {"after", {{"train", channel.after_train}, {"validate", channel.after_validate}}},
+                              {"floor", {{"train", channel.floor_train}, {"validate", channel.floor_validate}}}};
+  }
+  return document;
+}
+
+nlohmann::json parameters_json(const sim::EffectEntry& entry, sim::DriveKind kind) {
+  nlohmann::json document = nlohmann::json::object();
+  const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+  for (const auto& [id, value] : entry.parameters) document[std::string(info.parameter(id)->key(kind))] = value;
+  return document;
+}
+
+nlohmann::json candidate_json(const JudgedCandidate& candidate) {
+  nlohmann::json parameters = nlohmann::json::object();
+  for (const std::string& kind : candidate.kinds)
+    parameters[kind] = parameters_json(*candidate.model.find(kind), candidate.model.data.kind);
+  const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
+  return {{"kinds", candidate.kinds},
+          {"before", candidate.before},
+          {"after", candidate.after},
+          {"train_after", candidate.train_after},
+          {"parameters", candidate.kinds.size() == 1 ? parameters.begin().value() : parameters},
+          {"confidence", candidate.confidence},
+          {"confused_with", std::vector<std::string>(info.confused_with.begin(), info.confused_with.end())},
+          {"separate_by", std::string(info.separate_by)}};
+}
+
+nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
+  return {{"status", std::string(status_name(verdict.status))},
+          {"effects", verdict.effects},
+          {"parameters", verdict.parameters},
+          {"alternatives", verdict.alternatives},
+          {"next_experiment", verdict.next_experiment},
+          {"explanation", verdict.explanation}};
+}
+
+}  // namespace
+
+nlohmann::json to_json(const Diagnosis& diagnosis) {
+  nlohmann::json candidates = nlohmann::json::array();
+  for (const JudgedCandidate& candidate : diagnosis.candidates) candidates.push_back(candidate_json(candidate));
+  return {{"format", "axis-diagnosis/1"},
+          {"error",
+           {{"window_s", diagnosis.window_s},
+            {"measure", diagnosis.measure == Measure::effort ? "effort" : "motion"},
+            {"held_back", diagnosis.held_back},
+            {"channels", channels_json(diagnosis.channels)},
+            {"combined",
+             {{"given", {{"train", diagnosis.given_train}, {"validate", diagnosis.given_validate}}},
+              {"before", {{"train", diagnosis.before_train}, {"validate", diagnosis.before_validate}}},
+              {"after", {{"train", diagnosis.after_train}, {"validate", diagnosis.after_validate}}}}}}},
+          {"where", error_regions_json(diagnosis.where)},
+          {"candidates", candidates},
+          {"verdict", verdict_json(diagnosis.verdict)}};
+}
+
+nlohmann::json to_json(const Improvement& improvement, const std::string& model_path) {
+  nlohmann::json ladder = nlohmann::json::array(), channels = nlohmann::json::array();
+  for (const Rung& rung : improvement.ladder) {
+    ladder.push_back({{"added", rung.added}, {"train", rung.train}, {"validate", rung.validate}});
+    nlohmann::json row = {{"added", rung.added}, {"channels", nlohmann::json::object()}};
+    for (const ChannelError& channel : rung.channels)
+      row["channels"][channel.name] = {
+          {"train", channel.after_train},
+          {"validate", channel.after_validate},
+          {"floor", {{"train", channel.floor_train}, {"validate", channel.floor_validate}}}};
+    channels.push_back(row);
+  }
+  return {{"format", "axis-improvement/1"},
+          {"ladder", ladder},
+          {"channels", channels},
+          {"stopped_because", improvement.stopped_because},
+          {"verdict", verdict_json(improvement.verdict)},
+          {"model", model_path}};
+}
+
+}  // namespace host

@@ -1,0 +1,114 @@
+#include "host/diagnose/improvement.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "host/diagnose/candidate_starts.hpp"
+#include "host/exit_codes.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// More rungs than a drive has ever needed; the loop ends long before.
+constexpr int kMostRungs = 5;
+
+Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::string>& added) {
+  Rung rung;
+  rung.added = added;
+  rung.train = after ? diagnosis.after_train : diagnosis.before_train;
+  rung.validate = after ? diagnosis.after_validate : diagnosis.before_validate;
+  rung.channels = diagnosis.channels;
+  if (!after) {
+    for (ChannelError& channel : rung.channels) {
+      channel.after_train = channel.before_train;
+      channel.after_validate = channel.before_validate;
+    }
+  }
+  return rung;
+}
+
+}  // namespace
+
+std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const RecordSet& training) {
+  std::vector<std::string> names;
+  for (const ComparedRecord& compared : training.records) names.push_back(compared.prepared.record->path);
+  for (sim::EffectEntry& entry : model.effects) entry.from = fmt::format("{}", fmt::join(names, " "));
+  return estimate_intervals(model, training);
+}
+
+Improvement improve(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                    const std::vector<const Record*>& validation, const ShareDone& progress) {
+  Improvement result;
+  sim::DriveDescription current = model;
+  for (int step = 0; step < kMostRungs; ++step) {
+    const auto part = [&](double share) {
+      if (progress) progress((step + share) / (step + 2.0));
+    };
+    Diagnosis diagnosis = diagnose(current, training, validation, part, step == 0 ? nullptr : &result.first);
+    if (step == 0) result.ladder.push_back(rung_of(diagnosis, false, {}));
+    result.verdict = diagnosis.verdict;
+    result.model = diagnosis.best;
+    const Status status = diagnosis.verdict.status;
+    const bool adds = status == Status::missing || status == Status::ambiguous;
+    if (adds) {
+      std::vector<std::string> added = diagnosis.verdict.effects;
+      if (status == Status::ambiguous) added.resize(1);
+      result.ladder.push_back(rung_of(diagnosis, true, added));
+    } else {
+      result.stopped_because = status == Status::unexplained ? "no effect of the catalogue explains what is left"
+                               : status == Status::insufficient_data
+                                   ? "the axis did not move enough"
+                                   : "nothing in the catalogue lowers the validation error beyond chance";
+    }
+    const double left = result.ladder.back().validate;
+    if (step == 0) result.first = std::move(diagnosis);
+    if (!adds) break;
+    current = result.model;
+    if (left <= 1.0) {
+      result.stopped_because = "the error has reached its floor";
+      break;
+    }
+  }
+  if (result.stopped_because.empty()) result.stopped_because = "the ladder has as many rungs as it may";
+  document_fit(result.model, result.first.training);
+  return result;
+}
+
+Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
+                    const std::vector<const Record*>& training, const std::vector<const Record*>& validation) {
+  const sim::EffectInfo* info = sim::find_effect(kind);
+  if (info == nullptr)
+    throw Failure(ExitCode::usage, fmt::format("{}: no such effect; axistool effects lists them", kind));
+  Diagnosis sets;
+  std::vector<Candidate> found;
+  const auto search = [&](double window_s, Measure measure) {
+    sets = prepare_sets(model, training, validation, window_s, measure);
+    if (!is_applicable(*info, sets.base, sets.training))
+      throw Failure(ExitCode::usage,
+                    fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or "
+                                "these records do not hold the channel in which it shows",
+                                kind));
+    SearchEffort effort = SearchEffort{}.over(window_s);
+    effort.nominal = &model;
+    found = search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, effort);
+    if (found.empty())
+      throw Failure(ExitCode::refused,
+                    fmt::format("{}: no start of the fit lowers the error; these records do not show the effect. {}",
+                                kind, info->separate_by));
+  };
+  search(kWindow_s, Measure::motion);
+  if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)))
+    search(rough_window_s(training), rough_measure(found.front().model, training, validation));
+  Addition addition;
+  addition.held_back = sets.held_back;
+  renew_floors(sets.training, found.front().model);
+  renew_floors(sets.validation, found.front().model);
+  addition.judged =
+      judge_candidate(found.front(), sets.training, sets.validation, error_of(sim::Drive(sets.base), sets.validation));
+  addition.estimates = document_fit(addition.judged.model, sets.training);
+  return addition;
+}
+
+}  // namespace host

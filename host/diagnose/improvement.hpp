@@ -1,0 +1,44 @@
+// Diagnose and add, again and again, until nothing earns its place on validation data: the ladder of errors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+#include "host/diagnose/model_fit.hpp"
+
+namespace host {
+
+/// One rung: what was added since the rung before, and the errors that the model then leaves.
+struct Rung {
+  std::vector<std::string> added;
+  double train = 0.0, validate = 0.0;  ///< combined
+  std::vector<ChannelError> channels;  ///< `after` holds this rung's errors
+};
+
+struct Improvement {
+  std::vector<Rung> ladder;  ///< the base re-fitted first
+  std::string stopped_because;
+  DiagnosisVerdict verdict;  ///< of the last step
+  sim::DriveDescription model;
+  Diagnosis first;  ///< the diagnosis that the ladder began with
+};
+
+/// Never adds what does not replicate on validation data. Throws as diagnose() does.
+Improvement improve(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                    const std::vector<const Record*>& validation, const ShareDone& progress = {});
+
+/// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
+/// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.
+struct Addition {
+  JudgedCandidate judged;
+  std::vector<ParameterEstimate> estimates;
+  bool held_back = false;
+};
+Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
+                    const std::vector<const Record*>& training, const std::vector<const Record*>& validation);
+
+/// Writes intervals and origin into a fitted model; returns what the data say of each parameter.
+std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const RecordSet& training);
+
+}  // namespace host

@@ -1,0 +1,153 @@
+#include "host/diagnose/model_fit.hpp"
+
+#include <ceres/ceres.h>
+
+#include <cmath>
+
+namespace host {
+
+namespace {
+
+/// Difference step of the Jacobian, relative to a parameter's scale: far above rounding, small against any bend.
+constexpr double kDifferenceStep = 1e-4;
+
+class WindowResiduals : public ceres::CostFunction {
+ public:
+  WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set)
+      : model_(model), vector_(vector), set_(set), rows_(static_cast<Eigen::Index>(residual_count(set))) {
+    set_num_residuals(static_cast<int>(rows_));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(vector.size()));
+  }
+
+  /// Parameters arrive in units of their scales.
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const auto columns = static_cast<Eigen::Index>(vector_.size());
+    const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], columns);
+    Eigen::Map<Eigen::VectorXd> here(residuals, rows_);
+    evaluate(scaled, here.data());
+    if (!here.allFinite()) return false;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(jacobians[0], rows_,
+                                                                                                columns);
+    Eigen::VectorXd there(rows_);
+    for (Eigen::Index column = 0; column < columns; ++column) {
+      const FreeParameter& free = vector_.parameters()[static_cast<std::size_t>(column)];
+      // Away from the upper bound, where a step upwards would be clamped away.
+      const bool at_top = scaled(column) * free.scale + kDifferenceStep * free.scale > free.upper;
+      const double step = at_top ? -kDifferenceStep : kDifferenceStep;
+      Eigen::VectorXd moved = scaled;
+      moved(column) += step;
+      evaluate(moved, there.data());
+      jacobian.col(column) = (there - here) / step;
+    }
+    return jacobian.allFinite();
+  }
+
+ private:
+  void evaluate(const Eigen::VectorXd& scaled, double* out) const {
+    sim::DriveDescription model = model_;
+    Eigen::VectorXd values(scaled.size());
+    for (Eigen::Index k = 0; k < scaled.size(); ++k)
+      values(k) = scaled(k) * vector_.parameters()[static_cast<std::size_t>(k)].scale;
+    vector_.write(values, model);
+    residuals_of(sim::Drive(model), set_, out);
+  }
+
+  const sim::DriveDescription& model_;
+  const ParameterVector& vector_;
+  const RecordSet& set_;
+  Eigen::Index rows_;
+};
+
+}  // namespace
+
+FitResult fit_model(const sim::DriveDescription& start, const RecordSet& training, const FitOptions& options) {
+  const ParameterVector vector(start, options.freedom);
+  const Eigen::VectorXd initial = vector.read(start);
+  Eigen::VectorXd scaled(initial.size());
+  for (Eigen::Index k = 0; k < scaled.size(); ++k)
+    scaled(k) = initial(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
+
+  ceres::Problem problem;
+  problem.AddResidualBlock(new WindowResiduals(start, vector, training), nullptr, scaled.data());
+  for (std::size_t k = 0; k < vector.size(); ++k) {
+    const FreeParameter& free = vector.parameters()[k];
+    problem.SetParameterLowerBound(scaled.data(), static_cast<int>(k), free.lower / free.scale);
+    problem.SetParameterUpperBound(scaled.data(), static_cast<int>(k), free.upper / free.scale);
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = options.most_iterations;
+  solver.function_tolerance = options.least_gain;
+  solver.parameter_tolerance = 1e-6;
+  solver.max_num_line_search_step_size_iterations = 6;  // a step that is still bad at a hundredth is bad
+  solver.logging_type = ceres::SILENT;
+  solver.num_threads = 1;  // candidates are fitted side by side
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+
+  FitResult result;
+  result.model = start;
+  Eigen::VectorXd values(scaled.size());
+  for (Eigen::Index k = 0; k < scaled.size(); ++k)
+    values(k) = scaled(k) * vector.parameters()[static_cast<std::size_t>(k)].scale;
+  vector.write(values, result.model);
+  result.robust = summary.IsSolutionUsable() ? std::sqrt(2.0 * summary.final_cost) : HUGE_VAL;
+  result.iterations = static_cast<int>(summary.iterations.size());
+  return result;
+}
+
+std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, const RecordSet& training) {
+  const ParameterVector vector(model);
+  const auto columns = static_cast<Eigen::Index>(vector.size());
+  const WindowResiduals residuals(model, vector, training);
+  const auto rows = static_cast<Eigen::Index>(residual_count(training));
+  Eigen::VectorXd values = vector.read(model), scaled(columns), here(rows);
+  for (Eigen::Index k = 0; k < columns; ++k)
+    scaled(k) = values(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
+  const double* parameters = scaled.data();
+  double* slopes = jacobian.data();
+  std::vector<ParameterEstimate> estimates;
+  if (!residuals.Evaluate(&parameters, here.data(), &slopes)) return estimates;
+
+  // Cluster-robust: residuals of one window of one channel are alike, those of different windows are not.
+  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(columns, columns);
+  Eigen::Index row = 0;
+  for (const ComparedRecord& compared : training.records) {
+    const auto channels = static_cast<Eigen::Index>(channel_count(compared, training.measure));
+    for (std::size_t index = 0; index < compared.prepared.windows.size(); index += training.stride) {
+      const auto length = channels * static_cast<Eigen::Index>(compared.prepared.windows[index].length);
+      const Eigen::VectorXd score = jacobian.middleRows(row, length).transpose() * here.segment(row, length);
+      meat += score * score.transpose();
+      row += length;
+    }
+  }
+  const Eigen::MatrixXd bread = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd covariance = bread * meat * bread;
+  constexpr double kNormal95 = 1.96;
+  constexpr double kNearlyOne = 0.95;
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(k)];
+    ParameterEstimate estimate{
+        free.name(model), values(k), free.scale * std::sqrt(std::max(0.0, covariance(k, k))), true, {}, 0.0};
+    for (Eigen::Index other = 0; other < columns; ++other) {
+      const double product = covariance(k, k) * covariance(other, other);
+      const double correlation = other == k || product <= 0.0 ? 0.0 : covariance(k, other) / std::sqrt(product);
+      if (std::abs(correlation) > std::max(kNearlyOne, std::abs(estimate.correlation))) {
+        estimate.correlation = correlation;
+        estimate.correlated_with = vector.parameters()[static_cast<std::size_t>(other)].name(model);
+      }
+    }
+    estimate.determined = kNormal95 * estimate.deviation < std::abs(estimate.value) && estimate.deviation > 0.0;
+    const double reach = kNormal95 * estimate.deviation;
+    for (const auto& [id, sign] : free.entries) {
+      const double value = sign * estimate.value;
+      model.effects[free.effect].ci95[id] = {value - reach, value + reach};
+    }
+    estimates.push_back(std::move(estimate));
+  }
+  return estimates;
+}
+
+}  // namespace host

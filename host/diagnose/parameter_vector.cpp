@@ -1,0 +1,102 @@
+#include "host/diagnose/parameter_vector.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// Parameters of one direction that a model may claim to be equal.
+const std::vector<std::pair<std::string, std::string>> kMayBeEqual = {
+    {"omega1_positive", "omega2_positive"}, {"omega1_negative", "omega2_negative"}, {"omega1", "omega2"}};
+
+const std::string* partner_of(const std::string& id) {
+  const auto found = std::ranges::find(kMayBeEqual, id, &std::pair<std::string, std::string>::first);
+  return found == kMayBeEqual.end() ? nullptr : &found->second;
+}
+
+/// A contact that breaks away within a micrometre is as good as rigid, and takes thousands of steps to simulate.
+constexpr double kShortestBreakaway_mm = 1e-3;
+
+/// A Stribeck curve that fades below a few tenths of a millimetre a second (lubricated guides: 0.5 to 10 mm/s) is a
+/// step, which a fit does not leave again: the error no longer depends on its speeds.
+constexpr double kSlowestFading_mm_s = 0.3;
+
+/// Stiffness of a contact that breaks away over the shortest travel, Nm/rad or N/m.
+double stiffest_contact(const sim::DriveDescription& description) {
+  const sim::EffectEntry* coulomb = description.find("coulomb");
+  if (coulomb == nullptr) return HUGE_VAL;
+  double level = 0.0;
+  for (const auto& [id, value] : coulomb->parameters) level = std::max(level, std::abs(value));
+  const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
+  return level * description.data.lead / (kShortestBreakaway_mm * millimetre);
+}
+
+/// Lower bound of the speeds in a Stribeck curve, rad/s or m/s.
+double slowest_fading(const sim::DriveDescription& description) {
+  const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
+  return kSlowestFading_mm_s * millimetre / description.data.lead;
+}
+
+}  // namespace
+
+std::string FreeParameter::name(const sim::DriveDescription& description) const {
+  return fmt::format("{}.{}", description.effects[effect].kind, entries.front().first);
+}
+
+ParameterVector::ParameterVector(const sim::DriveDescription& description, Freedom freedom) {
+  const bool only_last = freedom == Freedom::last_effect;
+  for (std::size_t index = only_last ? description.effects.size() - 1 : 0; index < description.effects.size();
+       ++index) {
+    const sim::EffectEntry& entry = description.effects[index];
+    const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+    std::vector<std::string> taken;
+    for (const sim::ParameterInfo& parameter : info.parameters) {
+      const std::string id(parameter.id);
+      if (!entry.has(id) || std::ranges::find(taken, id) != taken.end()) continue;
+      if (only_last && id == "period") continue;
+      const double value = entry.at(id);
+      const double magnitude = std::abs(value);
+      FreeParameter free{index, {{id, 1.0}}, magnitude, parameter.lower, parameter.upper};
+      if (parameter.scale == sim::Scale::bristle_stiffness)
+        free.upper = std::max(magnitude, std::min(free.upper, stiffest_contact(description)));
+      if (id.starts_with("omega") && magnitude > 0.0) {
+        const double slowest = std::min(magnitude, slowest_fading(description));
+        (value > 0.0 ? free.lower : free.upper) = value > 0.0 ? slowest : -slowest;
+      }
+      const std::string* partner = partner_of(id);
+      if (partner != nullptr && entry.has(*partner) && entry.at(*partner) == value) {
+        free.entries.emplace_back(*partner, 1.0);
+        taken.push_back(*partner);
+      }
+      if (info.periodic && (id == "cosine" || id == "sine"))  // one amplitude, whatever the phase
+        free.scale = std::hypot(entry.at("cosine"), entry.at("sine"));
+      if (free.scale <= 0.0) free.scale = 1e-3 * std::min(1.0, parameter.upper - parameter.lower);
+      parameters_.push_back(std::move(free));
+    }
+  }
+}
+
+Eigen::VectorXd ParameterVector::read(const sim::DriveDescription& description) const {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(size()));
+  for (std::size_t k = 0; k < size(); ++k) {
+    const auto& [id, sign] = parameters_[k].entries.front();
+    values(static_cast<Eigen::Index>(k)) = sign * description.effects[parameters_[k].effect].at(id);
+  }
+  return values;
+}
+
+void ParameterVector::write(const Eigen::VectorXd& values, sim::DriveDescription& description) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    const FreeParameter& free = parameters_[k];
+    const double value = std::clamp(values(static_cast<Eigen::Index>(k)), free.lower, free.upper);
+    for (const auto& [id, sign] : free.entries) description.effects[free.effect].parameters[id] = sign * value;
+  }
+}
+
+}  // namespace host

@@ -1,0 +1,38 @@
+#include "host/diagnose/pattern_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+sim::DriveDescription pattern_search(const sim::DriveDescription& model, const RecordSet& set) {
+  constexpr double kFirstFactor = 1.25, kLastFactor = 1.02;
+  constexpr int kMostRounds = 40;
+  const sim::EffectInfo& info = *sim::find_effect(model.effects.back().kind);
+  sim::DriveDescription best = model;
+  double error = error_of(sim::Drive(best), set).robust;
+  double factor = kFirstFactor;
+  for (int round = 0; round < kMostRounds && factor > kLastFactor; ++round) {
+    bool better = false;
+    for (const auto& [id, value] : model.effects.back().parameters) {
+      const sim::ParameterInfo& parameter = *info.parameter(id);
+      for (const double step : {factor, 1.0 / factor}) {
+        sim::DriveDescription moved = best;
+        double& here = moved.effects.back().parameters[id];
+        here = std::clamp(here * step, parameter.lower, parameter.upper);
+        const double there = error_of(sim::Drive(moved), set).robust;
+        if (there >= error) continue;
+        error = there;
+        best = std::move(moved);
+        better = true;
+        break;
+      }
+    }
+    if (!better) factor = std::sqrt(factor);
+  }
+  return best;
+}
+
+}  // namespace host

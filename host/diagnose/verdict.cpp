@@ -1,0 +1,258 @@
+#include "host/diagnose/verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/evidence/speed_coverage.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// The luckiest of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5 %.
+constexpr double kLeastGain = 0.05;
+/// Of the bootstrap over blocks of validation windows: one in twenty, since gain and share below keep luck out (the
+/// luckiest candidate never came near them); on a rough machine, where share asks for little, one in a hundred.
+constexpr double kLeastConfidence = 0.95;
+constexpr double kLeastRoughConfidence = 0.99;
+/// Part of what there is to explain, (before^2 - after^2)/(before^2 - 1), below which an effect is no explanation.
+constexpr double kLeastShare = 0.35;
+/// The same on a rough machine, whose residual has many small causes.
+constexpr double kLeastRoughShare = 0.1;
+/// A further effect must take half of what the first leaves (on a rough machine it is enough that the two need each
+/// other), and a sixth of the error.
+constexpr double kLeastFurtherShare = 0.5;
+constexpr double kLeastFurtherGain = 0.15;
+/// Candidates whose errors are so close are not told apart.
+constexpr double kTie = 0.05;
+/// Base parameters that moved by more than this were off, relative.
+constexpr double kMoved = 0.05;
+
+double explained_share(double before, double after) {
+  const double there_is = before * before - 1.0;
+  return there_is > 0.0 ? (before * before - after * after) / there_is : 0.0;
+}
+
+const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
+  const JudgedCandidate* best = nullptr;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (candidate.kinds.size() == size &&
+        (best == nullptr || candidate.after * candidate.train_after < best->after * best->train_after))
+      best = &candidate;
+  return best;
+}
+
+bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  return candidate.after < (1.0 - kLeastGain) * candidate.before &&
+         candidate.confidence >= (diagnosis.rough ? kLeastRoughConfidence : kLeastConfidence) &&
+         explained_share(candidate.before, candidate.after) >= (diagnosis.rough ? kLeastRoughShare : kLeastShare);
+}
+
+/// Whether two effects do more together than what each does alone adds up to: judged one at a time, each hides the
+/// other.
+bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
+  double alone_train = 0.0, alone_validate = 0.0;
+  for (const std::string& kind : pair.kinds) {
+    const auto single = std::ranges::find(diagnosis.candidates, std::vector{kind}, &JudgedCandidate::kinds);
+    if (single == diagnosis.candidates.end()) continue;  // too little to be tried further
+    alone_train += std::max(0.0, explained_share(diagnosis.before_train, single->train_after));
+    alone_validate += std::max(0.0, explained_share(diagnosis.before_validate, single->after));
+  }
+  return explained_share(diagnosis.before_train, pair.train_after) > alone_train &&
+         explained_share(diagnosis.before_validate, pair.after) > alone_validate;
+}
+
+std::size_t parameters_added(const JudgedCandidate& candidate) {
+  return candidate.model.effects.back().parameters.size();
+}
+
+/// Single effects that explain as well as the best and are no more complicated.
+std::vector<std::string> ties_of(const JudgedCandidate& best, const Diagnosis& diagnosis) {
+  std::vector<std::string> tied;
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    if (&candidate == &best || candidate.kinds.size() != 1 || !earns_its_place(candidate, diagnosis)) continue;
+    if (candidate.after > (1.0 + kTie) * best.after || candidate.train_after > (1.0 + kTie) * best.train_after)
+      continue;
+    if (parameters_added(candidate) > parameters_added(best)) continue;
+    tied.push_back(candidate.kinds.front());
+  }
+  return tied;
+}
+
+/// The simplest of the singles that are as good as the best one.
+const JudgedCandidate* simplest_near(const JudgedCandidate* best, const Diagnosis& diagnosis) {
+  constexpr double kNear = 0.02;
+  const JudgedCandidate* simplest = best;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (candidate.kinds.size() == 1 && candidate.after <= (1.0 + kNear) * best->after &&
+        candidate.train_after <= (1.0 + kNear) * best->train_after &&
+        parameters_added(candidate) < parameters_added(*simplest))
+      simplest = &candidate;
+  return simplest;
+}
+
+std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base) {
+  std::vector<std::string> moved;
+  for (const char* kind : {"inertia", "viscous", "coulomb"}) {
+    const sim::EffectEntry* before = given.find(kind);
+    const sim::EffectEntry* after = base.find(kind);
+    if (before == nullptr || after == nullptr) continue;
+    const bool off = std::ranges::any_of(before->parameters, [&](const auto& parameter) {
+      const auto& [id, value] = parameter;
+      return std::abs(after->at(id) - value) > kMoved * std::abs(value);
+    });
+    if (off) moved.emplace_back(kind);
+  }
+  return moved;
+}
+
+std::string title_of(const std::string& kind) { return std::string(sim::find_effect(kind)->title); }
+
+std::string parameters_in_words(const sim::EffectEntry& entry, sim::DriveKind kind) {
+  std::vector<std::string> parts;
+  for (const auto& [id, value] : entry.parameters)
+    parts.push_back(fmt::format("{} = {:.4g}", sim::find_effect(entry.kind)->parameter(id)->key(kind), value));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// A ripple along the travel that lowers the training error alone: with an incremental encoder each homing gives the
+/// travel a new zero, and the ripple a new phase. Empty where there is none.
+std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::DriveKind kind) {
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    const sim::EffectEntry& last = candidate.model.effects.back();
+    if (last.kind != candidate.kinds.back() || !last.has("period")) continue;
+    double train = diagnosis.before_train, validate = diagnosis.before_validate;
+    if (candidate.kinds.size() == 2) {
+      const auto first =
+          std::ranges::find(diagnosis.candidates, std::vector{candidate.kinds.front()}, &JudgedCandidate::kinds);
+      if (first == diagnosis.candidates.end()) continue;
+      train = first->train_after;
+      validate = first->after;
+    }
+    if (candidate.train_after > (1.0 - kLeastGain) * train || candidate.after < validate) continue;
+    const double period_mm = kind == sim::DriveKind::rotary ? last.at("period") : 1e3 * last.at("period");
+    return fmt::format(
+        " A ripple every {:.4g} mm of travel ({}) lowers the error on training data from {:.2f} to {:.2f} times the "
+        "floor, but not on validation data: its phase does not transfer from record to record, as after a new homing, "
+        "so it is not claimed.",
+        period_mm, last.kind, train, candidate.train_after);
+  }
+  return {};
+}
+
+}  // namespace
+
+DiagnosisVerdict insufficient_data(const sim::DriveDescription& model) {
+  DiagnosisVerdict verdict;
+  verdict.status = Status::insufficient_data;
+  verdict.next_experiment = fmt::format(
+      "Record steps of the command in both directions that are well above static friction (up to {:g} V), and "
+      "jogs at several speeds both ways.",
+      0.5 * model.data.dac_limit_V);
+  verdict.explanation =
+      "The axis moved for less than a second in all: friction and inertia cannot be told apart from that.";
+  return verdict;
+}
+
+DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnosis& diagnosis) {
+  DiagnosisVerdict verdict;
+  verdict.parameters = moved_parameters(given, diagnosis.base);
+  const JudgedCandidate* single = best_of_size(diagnosis, 1);
+  const JudgedCandidate* pair = best_of_size(diagnosis, 2);
+  if (single != nullptr) single = simplest_near(single, diagnosis);
+  const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
+                           pair->after < (1.0 - kLeastFurtherGain) * single->after &&
+                           pair->train_after < (1.0 - kLeastFurtherGain) * single->train_after &&
+                           (explained_share(single->after, pair->after) >= kLeastFurtherShare ||
+                            (diagnosis.rough && need_each_other(*pair, diagnosis)));
+  const JudgedCandidate* chosen = pair_stands ? pair : single;
+  const double before = diagnosis.before_validate;
+
+  if (chosen != nullptr && earns_its_place(*chosen, diagnosis)) {
+    verdict.effects = chosen->kinds;
+    verdict.status = Status::missing;
+    const sim::EffectInfo& first = *sim::find_effect(chosen->kinds.front());
+    if (!pair_stands) {
+      const std::vector<std::string> tied = ties_of(*chosen, diagnosis);
+      if (!tied.empty()) {
+        verdict.status = Status::ambiguous;
+        std::vector<std::string> group = chosen->kinds;
+        group.insert(group.end(), tied.begin(), tied.end());
+        verdict.effects = group;
+        verdict.alternatives.push_back(group);
+      }
+    }
+    std::vector<std::string> titles;
+    for (const std::string& kind : chosen->kinds) titles.push_back(title_of(kind));
+    verdict.next_experiment = std::string(first.separate_by) + ".";
+    const auto gap = widest_speed_gap(prepared_records(diagnosis.training), given.data);
+    const bool shapes_friction = std::ranges::any_of(
+        chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });
+    if (shapes_friction && gap) verdict.next_experiment += " " + speeds_to_record(*gap);
+    verdict.explanation = fmt::format(
+        "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the floor: {:.0f} % of what there is "
+        "to explain. {}.",
+        fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
+        chosen->after, 100.0 * explained_share(before, chosen->after), first.shows);
+    if (verdict.status == Status::ambiguous)
+      verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(verdict.effects, ", "));
+    if (diagnosis.rough)
+      verdict.explanation += fmt::format(
+          " Much more than noise is left whatever is added, so the model is judged {} before it adds up to a drift.",
+          diagnosis.measure == Measure::effort
+              ? std::string("by the effort that the measured motion needed, in which what is missing shows")
+              : fmt::format("over windows of {:g} s, in which an error of force shows", diagnosis.window_s));
+    verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
+    return verdict;
+  }
+  if (before > 2.0 * kExplained) {
+    verdict.status = Status::unexplained;
+    verdict.explanation = fmt::format(
+        "The error on validation data is {:.2f} times the floor, and no effect of the catalogue accounts for it{}.",
+        before,
+        chosen == nullptr
+            ? std::string()
+            : fmt::format("; the closest, {}, leaves {:.2f}", fmt::join(chosen->kinds, " + "), chosen->after));
+    verdict.explanation += " What is left to explain: " + where_it_fails(diagnosis.where) + ".";
+    verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
+    verdict.next_experiment = "Look where the error lives, and record that motion alone, slowly and fast, both ways.";
+    return verdict;
+  }
+  verdict.status = verdict.parameters.empty() ? Status::adequate : Status::parameters;
+  verdict.explanation =
+      verdict.parameters.empty()
+          ? fmt::format(
+                "The model leaves {:.2f} times the floor on validation data; nothing in the catalogue lowers that "
+                "beyond chance.",
+                before)
+          : fmt::format(
+                "Re-fitting {} brings the error on validation data from {:.2f} to {:.2f} times the floor; nothing in "
+                "the catalogue lowers that beyond chance.",
+                fmt::join(verdict.parameters, ", "), diagnosis.given_validate, before);
+  verdict.next_experiment = "None needed for this model on motions like these.";
+  return verdict;
+}
+
+std::string_view status_name(Status status) {
+  switch (status) {
+    case Status::missing:
+      return "missing";
+    case Status::adequate:
+      return "adequate";
+    case Status::parameters:
+      return "parameters";
+    case Status::ambiguous:
+      return "ambiguous";
+    case Status::unexplained:
+      return "unexplained";
+    case Status::insufficient_data:
+      return "insufficient_data";
+  }
+  return "";
+}
+
+}  // namespace host

@@ -1,0 +1,123 @@
+#include "host/evidence/channel_shift.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "host/identify/motion.hpp"
+#include "host/identify/zero_phase_filter.hpp"
+#include "sim/drive.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr int kMostSamples = 30;
+constexpr double kWhole = 0.1;         ///< a shift this near to a whole number of samples was made by a logger
+constexpr double kLogLikelihood = 20;  ///< difference that decides between two explanations
+
+/// Smallest of values over shifts -kMostSamples..kMostSamples, between samples by a parabola; empty at the ends.
+std::optional<double> lowest_shift(const std::vector<double>& squares) {
+  const auto lowest = std::ranges::min_element(squares) - squares.begin();
+  const auto at = static_cast<std::size_t>(lowest);
+  if (at == 0 || at + 1 == squares.size()) return {};
+  const double left = squares[at - 1], middle = squares[at], right = squares[at + 1];
+  const double bend = left - 2.0 * middle + right;
+  if (!(bend > 0.0)) return {};
+  return static_cast<double>(lowest) - kMostSamples + 0.5 * (left - right) / bend;
+}
+
+/// Sum of squares that `target` less gain and offset times `regressors` leaves.
+double squares_left(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& target) {
+  const Eigen::MatrixXd normal = regressors.transpose() * regressors;
+  const Eigen::VectorXd cross = regressors.transpose() * target;
+  return std::max(0.0, target.squaredNorm() - cross.dot(normal.ldlt().solve(cross)));
+}
+
+}  // namespace
+
+std::optional<double> tachometer_shift(const Record& record, const sim::DataSheet& data) {
+  const auto n = static_cast<Eigen::Index>(record.size());
+  const Eigen::Index inner = n - 2 * kMostSamples;
+  if (!record.has_position() || !record.has_speed() || inner < 200) return {};
+  const double rate_Hz = 1.0 / record.sample_period_s;
+  const double cutoff_Hz = choose_cutoff({record}, data);
+  const auto low_pass = ZeroPhaseLowPass::butterworth(cutoff_Hz, rate_Hz);
+  const std::vector<double> speed = smooth_speed(record, data, cutoff_Hz);
+  const std::vector<double> tach = low_pass(record.w);
+  const Eigen::VectorXd measured = Eigen::Map<const Eigen::VectorXd>(tach.data(), n).segment(kMostSamples, inner);
+  Eigen::MatrixXd regressors(inner, 2);
+  regressors.col(1).setOnes();
+  std::vector<double> squares;
+  for (int shift = -kMostSamples; shift <= kMostSamples; ++shift) {
+    regressors.col(0) = Eigen::Map<const Eigen::VectorXd>(speed.data(), n).segment(kMostSamples - shift, inner);
+    squares.push_back(squares_left(regressors, measured));
+  }
+  const std::optional<double> shift = lowest_shift(squares);
+  if (!shift || std::abs(*shift) < 0.5 || std::abs(*shift - std::round(*shift)) > kWhole) return {};
+  // Below the cut-off white noise has so many independent samples.
+  const double independent = static_cast<double>(inner) * 2.0 * cutoff_Hz / rate_Hz;
+  const auto index = static_cast<std::size_t>(std::lround(*shift) + kMostSamples);
+  const auto better = [&](double other) { return 0.5 * independent * std::log(other / squares[index]); };
+  if (better(squares[kMostSamples]) < kLogLikelihood) return {};
+  if (*shift > 0.0) {
+    const double keep = std::exp(-1.0 / *shift);
+    double lagged = speed.front();
+    for (Eigen::Index k = 0; k < n; ++k) {
+      lagged = keep * lagged + (1.0 - keep) * speed[static_cast<std::size_t>(k)];
+      if (k >= kMostSamples && k < kMostSamples + inner) regressors(k - kMostSamples, 0) = lagged;
+    }
+    if (better(squares_left(regressors, measured)) < kLogLikelihood) return {};
+  }
+  return std::round(*shift);
+}
+
+std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {
+  constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
+  constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
+  constexpr double kGain = 0.5;              // the squares must fall to this part
+  constexpr double kExplained = 0.002;       // of the effort's square: else friction decides where the optimum lies
+  MotionOptions options;
+  options.decimation = 1;
+  const Motion motion = prepare_motion(record, model.data, options);
+  const std::size_t n = motion.speed.size();
+  std::vector<std::size_t> rows;
+  for (std::size_t k = kMostSamples; k + kMostSamples < n; ++k)
+    if (motion.counts[k]) rows.push_back(k);
+  if (rows.size() < 200) return {};
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd regressors(count, 4);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::size_t k = rows[static_cast<std::size_t>(row)];
+    regressors.row(row) << motion.acceleration[k], motion.speed[k], motion.speed[k] > 0.0 ? 1.0 : 0.0,
+        motion.speed[k] < 0.0 ? 1.0 : 0.0;
+  }
+  Eigen::MatrixXd normal = regressors.transpose() * regressors;
+  normal.diagonal() *= 1.0 + 1e-9;  // a record may run one way only
+  const auto solver = normal.ldlt();
+  std::vector<double> squares;
+  Eigen::VectorXd effort(count);
+  for (int shift = -kMostSamples; shift <= kMostSamples; ++shift) {
+    for (Eigen::Index row = 0; row < count; ++row)
+      effort(row) = motion.effort[static_cast<std::size_t>(
+          static_cast<std::ptrdiff_t>(rows[static_cast<std::size_t>(row)]) + shift)];
+    const Eigen::VectorXd cross = regressors.transpose() * effort;
+    squares.push_back(std::max(0.0, effort.squaredNorm() - cross.dot(solver.solve(cross))) / effort.squaredNorm());
+  }
+  const std::optional<double> shift = lowest_shift(squares);
+  if (!shift) return {};
+  const sim::Drive drive(model);
+  const double modelled = (drive.delay_s + drive.current_lag_s) / record.sample_period_s;
+  const double beyond = *shift + modelled;
+  const bool too_early = beyond > kFirstAnswer;
+  const bool too_late = -*shift * record.sample_period_s > kLatestAnswer_s;
+  const auto index = static_cast<std::size_t>(std::lround(*shift) + kMostSamples);
+  if (!too_early && !too_late) return {};
+  if (std::abs(*shift - std::round(*shift)) > kWhole || squares[index] > kGain * squares[kMostSamples] ||
+      squares[index] > kExplained)
+    return {};
+  return std::round(*shift);
+}
+
+}  // namespace host

@@ -1,0 +1,75 @@
+#include "host/evidence/position_jumps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/identify/encoder_step.hpp"
+#include "sim/drive.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kEffortMargin = 5.0;  ///< full effort taken so many times: what no error of the model excuses
+constexpr double kStepMargin = 3.0;    ///< encoder steps that quantisation and interpolation may add
+constexpr int kFewestBits = 8;
+
+/// The power of two that a number of encoder steps is, or 0.
+int wrap_bits(double steps) {
+  const int bits = static_cast<int>(std::lround(std::log2(steps)));
+  constexpr double kTolerance = 2.0;  // steps
+  return bits >= kFewestBits && std::abs(steps - std::exp2(bits)) <= kTolerance ? bits : 0;
+}
+
+void note(std::size_t& count, PositionJump& first, std::size_t more, double t_s, double size) {
+  if (count == 0) first = {t_s, size};
+  count += more;
+}
+
+}  // namespace
+
+PositionJumps position_jumps(const Record& record, const sim::DriveDescription& model) {
+  PositionJumps jumps;
+  const sim::Drive drive(model);
+  const double resolution = encoder_step(record, model.data);
+  if (!record.has_position() || record.size() < 5 || !(drive.inertia > 0.0) || !(resolution > 0.0)) return jumps;
+  const double period_s = record.sample_period_s;
+  double largest_V = model.data.dac_limit_V;
+  for (const double u_V : record.u_V) largest_V = std::max(largest_V, std::abs(u_V));
+  const double per_sample = drive.effort_per_volt * largest_V / drive.inertia * period_s * period_s * drive.lead;
+  const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
+  const auto step = [&](std::size_t k) { return record.x[k] - record.x[k - 1]; };
+  // What a step exceeds the steps around it by.
+  const auto excess = [&](std::size_t k) { return step(k) - 0.5 * (step(k - 1) + step(k + 1)); };
+  for (std::size_t k = 3; k + 2 < record.size(); ++k) {
+    const double before = step(k - 1), after = step(k + 1), jump = excess(k);
+    if (step(k) == 0.0 && std::abs(before) > impossible && after * before > 0.0 &&
+        std::abs(after) > 1.5 * std::abs(before)) {
+      note(jumps.dropped, jumps.first_drop, 1, record.t_s[k], before);
+      k += 2;
+      continue;
+    }
+    if (std::abs(jump) <= impossible || std::abs(jump) < std::abs(excess(k - 1)) ||
+        std::abs(jump) < std::abs(excess(k + 1)))
+      continue;
+    const double speed = 0.5 * (before + after);
+    const double samples = speed == 0.0 ? 0.0 : jump / speed;
+    constexpr double kMostSamples = 50.0;
+    constexpr double kWhole = 0.1;  // of a sample: the speed hardly changes over a few of them
+    const bool whole = samples > 0.5 && samples < kMostSamples &&
+                       std::abs(samples - std::round(samples)) < kWhole + 3.0 * resolution / std::abs(speed) &&
+                       std::abs(before - after) < 0.2 * std::abs(speed);
+    if (const int bits = wrap_bits(std::abs(jump) / resolution); bits > 0 && jump * speed <= 0.0) {
+      note(jumps.wraps, jumps.first_wrap, 1, record.t_s[k], jump);
+      jumps.wrap_bits = bits;
+    } else if (whole) {
+      note(jumps.dropped, jumps.first_drop, static_cast<std::size_t>(std::lround(samples)), record.t_s[k], jump);
+    } else {
+      note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
+    }
+    ++k;  // the steps around a jump are no evidence of another
+  }
+  return jumps;
+}
+
+}  // namespace host

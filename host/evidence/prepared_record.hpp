@@ -1,0 +1,44 @@
+// A record made ready to be compared with a model: the motion behind it, and the windows that a prediction restarts in.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "host/evidence/smoothed_motion.hpp"
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// Restarts at row `begin` and predicts rows begin+1 ... begin+length.
+struct Window {
+  std::size_t begin;
+  std::size_t length;
+};
+
+/// Length of a window, s: long enough for an effect to move the axis, short enough that a drive whose friction falls
+/// with speed (errors grow by some 50 /s) does not carry a restart's uncertainty into everything.
+inline constexpr double kWindow_s = 0.1;
+
+/// A record made ready for comparison. Refers to the record, which must outlive it.
+struct PreparedRecord {
+  const Record* record;
+  std::vector<double> u_V;
+  MotionSmoother smoother;
+  std::vector<Window> windows;
+  double period_s;
+  std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< of every window that the record has room for
+
+  const SmoothedMotion& motion() const { return smoother.motion(); }
+  double window_s() const {
+    return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
+  }
+  const ShiftWeights& weights_of(const Window& window) const { return (*shift_weights)[window.begin / window.length]; }
+};
+
+/// `base` gives the inertia and viscous friction that the smoother needs. Throws Failure(bad_input) for a record
+/// without a command, or shorter than one window.
+PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, double window_s = kWindow_s);
+
+}  // namespace host

@@ -1,0 +1,109 @@
+#include "host/evidence/regime.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace host {
+
+namespace {
+
+constexpr double kReversalTravel_m = 50e-6;
+
+/// Speeds below this part of the record's top speed are low: friction curves fall within some 5 rad/s of 100.
+constexpr double kLowSpeed = 0.05;
+
+/// Speed is constant where the acceleration stays below this part of the record's large ones (their 95 % quantile).
+constexpr double kConstantSpeed = 0.1;
+
+/// A reversal is believed once the axis has come back by so many encoder steps.
+constexpr double kBelievedSteps = 2.0;
+
+/// Acceleration is taken over so many samples to each side.
+constexpr std::size_t kReach = 3;
+
+double quantile(std::vector<double> values, double part) {
+  const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+std::vector<double> acceleration_of(const std::vector<double>& w, double period_s) {
+  std::vector<double> acceleration(w.size());
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const std::size_t from = k - std::min(k, kReach), to = std::min(w.size() - 1, k + kReach);
+    acceleration[k] = (w[to] - w[from]) / (static_cast<double>(to - from) * period_s);
+  }
+  return acceleration;
+}
+
+/// Rows within `reach` of travel after each turning point that the axis has come back from by `believed`.
+std::vector<bool> rows_after_reversals(const std::vector<double>& x, double reach, double believed) {
+  std::vector<bool> after(x.size(), false);
+  std::size_t extreme = 0;
+  double direction = 0.0;  // unknown until the axis has moved
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    const double moved = x[k] - x[extreme];
+    if (direction == 0.0) {
+      if (std::abs(moved) > believed) {
+        direction = moved > 0.0 ? 1.0 : -1.0;
+        extreme = k;
+      }
+    } else if (moved * direction >= 0.0) {
+      extreme = k;
+    } else if (-moved * direction > believed) {
+      for (std::size_t row = extreme; row < x.size() && std::abs(x[row] - x[extreme]) <= reach; ++row)
+        after[row] = true;
+      direction = -direction;
+      extreme = k;
+    }
+  }
+  return after;
+}
+
+}  // namespace
+
+std::string_view regime_name(Regime regime) {
+  constexpr std::string_view kNames[] = {"standstill",   "reversal", "low_speed",        "constant_speed",
+                                         "acceleration", "braking",  "saturated_command"};
+  return kNames[static_cast<std::size_t>(regime)];
+}
+
+double reversal_travel(const sim::DataSheet& data) {
+  const double travel = data.kind == sim::DriveKind::rotary ? 1000.0 * kReversalTravel_m : kReversalTravel_m;
+  return std::max(travel, 2.0 * kBelievedSteps * data.encoder_resolution);
+}
+
+std::vector<Regime> regimes_of(const PreparedRecord& prepared, const sim::DataSheet& data) {
+  const SmoothedMotion& motion = prepared.motion();
+  const std::size_t n = motion.w.size();
+  const std::vector<double> acceleration = acceleration_of(motion.w, prepared.period_s);
+  std::vector<double> sizes(n);
+  std::ranges::transform(acceleration, sizes.begin(), [](double a) { return std::abs(a); });
+  constexpr double kLarge = 0.95;
+  const double constant = kConstantSpeed * quantile(sizes, kLarge);
+  double top_speed = 0.0;
+  for (const double w : motion.w) top_speed = std::max(top_speed, std::abs(w));
+  const std::vector<bool> reversed =
+      rows_after_reversals(motion.x, reversal_travel(data),
+                           std::max(kBelievedSteps * data.encoder_resolution, 1e-3 * reversal_travel(data)));
+  const double limit_V = data.dac_limit_V - 0.51 * data.dac_resolution_V;
+  std::vector<Regime> regimes(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double w = motion.w[k], a = acceleration[k];
+    if (data.dac_limit_V > 0.0 && std::abs(prepared.u_V[k]) >= limit_V)
+      regimes[k] = Regime::saturated_command;
+    else if (motion.standing[k])
+      regimes[k] = Regime::standstill;
+    else if (reversed[k])
+      regimes[k] = Regime::reversal;
+    else if (std::abs(w) <= kLowSpeed * top_speed)
+      regimes[k] = Regime::low_speed;
+    else if (std::abs(a) <= constant)
+      regimes[k] = Regime::constant_speed;
+    else
+      regimes[k] = a * w > 0.0 ? Regime::acceleration : Regime::braking;
+  }
+  return regimes;
+}
+
+}  // namespace host

@@ -1,0 +1,271 @@
+#include "host/evidence/smoothed_motion.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+using Eigen::Matrix3d;
+using Eigen::RowVector3d;
+using Eigen::Vector3d;
+
+/// One sample of what the smoother is told.
+struct MotionSmoother::Observation {
+  double value;     ///< travel or speed
+  double variance;  ///< of `value`
+  double step_V;    ///< standard deviation of the disturbance's next step
+  bool standing;    ///< the speed is zero
+};
+
+namespace {
+
+/// Step of the disturbance's random walk while nothing happens, V per sample at 1 kHz: the speed is then averaged over
+/// some 5 ms. A tenth of the paper's on-line variance (48), since a smoother sees both sides of a sample.
+constexpr double kQuietStep_V = 0.03;
+
+/// Signals farther from a sample do not reach its smoothed state, s: ten times the time over which the speed is
+/// averaged.
+constexpr double kReach_s = 0.05;
+
+/// Part of a recent change of the command that may not have arrived as the model says (dead time, current loop).
+constexpr double kCommandDoubt = 0.3;
+
+/// For so long after a change of the command that doubt lasts, s.
+constexpr double kCommandMemory_s = 0.004;
+
+/// An axis that passes no encoder edge for so long is taken to stand.
+constexpr double kStanding_s = 0.06;
+
+/// Before the first edge that a starting axis passes it has moved already; so long a part is not counted as standing.
+constexpr double kStart_s = 0.006;
+
+/// Speeds are known to be zero at standstill, up to creep below one count: this fraction of a count per standing time.
+constexpr double kCreepCounts = 0.1;
+
+std::vector<bool> find_standing(const std::vector<double>& x, double resolution, double period_s) {
+  std::vector<bool> standing(x.size(), false);
+  const auto shortest = static_cast<std::size_t>(std::max(2.0, kStanding_s / period_s));
+  const auto start = static_cast<std::size_t>(kStart_s / period_s);
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k <= x.size(); ++k) {
+    if (k < x.size() && std::abs(x[k] - x[begin]) <= 0.25 * resolution) continue;
+    if (k - begin >= shortest) {
+      // The first sample on a count may still move, and so do the last ones unless the record ends there.
+      const std::size_t end = k < x.size() ? k - std::min(start, k - begin) : k;
+      for (std::size_t row = begin == 0 ? 0 : begin + 1; row < end; ++row) standing[row] = true;
+    }
+    begin = k;
+  }
+  return standing;
+}
+
+/// What a quantised position tells: at an edge much (the axis is between two counts), on a count little.
+template <typename Observations>
+void observe_counts(const std::vector<double>& x, double resolution, double period_s, double lead,
+                    const std::vector<double>& w, Observations& observed) {
+  const double noise = resolution * resolution / 12.0;  // eq. (12)
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    const double counts = std::abs(x[k] - x[k - 1]) / resolution;
+    auto& sample = observed[k];
+    if (counts > 1.5) continue;
+    if (counts > 0.5) {
+      const double moved = std::clamp(w[k] * lead * period_s, -resolution, resolution);
+      sample.value = 0.5 * (x[k] + x[k - 1]) + 0.5 * moved;
+      sample.variance = moved * moved / 12.0 + 0.01 * noise;
+    } else {
+      sample.variance = 4.0 * noise;
+    }
+  }
+}
+
+/// Where friction turns over, the disturbance may jump by its level.
+template <typename Observations>
+void doubt_friction(const std::vector<double>& w, const std::vector<bool>& standing, double level_V,
+                    Observations& observed) {
+  constexpr std::size_t kReach = 2;  // the instant of a start or a reversal is known to some samples only
+  for (std::size_t k = 1; k < w.size(); ++k) {
+    if (!(w[k] * w[k - 1] < 0.0 || standing[k] != standing[k - 1])) continue;
+    for (std::size_t row = k - std::min(k, kReach + 1); row < std::min(w.size(), k + kReach); ++row)
+      observed[row].step_V = std::max(observed[row].step_V, level_V);
+  }
+}
+
+template <typename Observations>
+void doubt_command(const std::vector<double>& u_V, double period_s, Observations& observed) {
+  const auto memory = std::max<std::size_t>(1, static_cast<std::size_t>(kCommandMemory_s / period_s));
+  for (std::size_t k = 1; k < u_V.size(); ++k) {
+    const double doubt_V = kCommandDoubt * std::abs(u_V[k] - u_V[k - 1]);
+    for (std::size_t row = k - 1; row < std::min(u_V.size(), k + memory); ++row)
+      observed[row].step_V = std::max(observed[row].step_V, doubt_V);
+  }
+}
+
+}  // namespace
+
+std::vector<double> command_volts(const Record& record, const sim::DataSheet& data) {
+  if (!record.u_V.empty()) return record.u_V;
+  if (record.i_A.empty() || data.amplifier_gain_A_per_V <= 0.0)
+    throw Failure(ExitCode::bad_input,
+                  record.path + ": no column u_V, and i_A needs amplifier_gain_A_per_V in the model");
+  std::vector<double> u_V(record.i_A.size());
+  std::ranges::transform(record.i_A, u_V.begin(), [&](double i_A) { return i_A / data.amplifier_gain_A_per_V; });
+  return u_V;
+}
+
+MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
+                               double friction_level)
+    : by_position_(record.has_position()),
+      reach_(static_cast<std::size_t>(std::ceil(kReach_s / record.sample_period_s))),
+      effort_per_volt_(data.effort_per_volt()) {
+  const double period_s = record.sample_period_s;
+  // Eqs. (5), (7), (16) by the matrix exponential.
+  const double gain = effort_per_volt_ / inertia;
+  Eigen::Matrix4d continuous = Eigen::Matrix4d::Zero();
+  continuous(0, 1) = data.lead;
+  continuous(1, 1) = -viscous / inertia;
+  continuous(1, 2) = -gain;
+  continuous(1, 3) = gain;
+  const Eigen::Matrix4d discrete = (continuous * period_s).exp();
+  A_ = discrete.topLeftCorner<3, 3>();
+  B_ = discrete.topRightCorner<3, 1>();
+
+  const std::vector<double> u_V = command_volts(record, data);
+  const std::vector<double>& measured = by_position_ ? record.x : record.w;
+  const double resolution = data.encoder_resolution;
+  const double noise =
+      by_position_ ? std::max(resolution * resolution / 12.0, 1e-18) : data.tach_noise_variance.value_or(1e-6);
+  const double quiet_V = kQuietStep_V * std::sqrt(period_s / 1e-3);
+  const double creep = kCreepCounts * resolution / data.lead / kStanding_s;
+
+  std::vector<Observation> observed(record.size());
+  for (std::size_t k = 0; k < record.size(); ++k) observed[k] = {measured[k], noise, quiet_V, false};
+  doubt_command(u_V, period_s, observed);
+  const Vector3d start(by_position_ ? measured[0] : 0.0, by_position_ ? 0.0 : measured[0], u_V[0]);
+  solve_gains(observed, creep * creep);
+  smooth(observed, u_V, start);
+  if (!by_position_) return;
+
+  // A first pass finds where the axis turns over; the second knows it.
+  const std::vector<double> rough_w = motion_.w;
+  const std::vector<bool> standing = find_standing(record.x, resolution, period_s);
+  for (std::size_t k = 0; k < record.size(); ++k) observed[k].standing = standing[k];
+  doubt_friction(rough_w, standing, friction_level / effort_per_volt_, observed);
+  if (resolution > 0.0) observe_counts(record.x, resolution, period_s, data.lead, rough_w, observed);
+  solve_gains(observed, creep * creep);
+  smooth(observed, u_V, start);
+}
+
+void MotionSmoother::solve_gains(const std::vector<Observation>& observed, double creep_variance) {
+  const std::size_t n = observed.size();
+  const Eigen::Index seen = by_position_ ? 0 : 1;
+  const auto correct = [](Matrix3d& P, Eigen::Index channel, double variance) -> Vector3d {
+    const Vector3d column = P.col(channel);
+    const Vector3d K = column / (column(channel) + variance);
+    P -= K * column.transpose();
+    P = 0.5 * (P + P.transpose().eval());
+    return K;
+  };
+  gains_.resize(n);
+  std::vector<Matrix3d> filtered(n), predicted(n);
+  Matrix3d P = Vector3d(1e-2, 1.0, 1.0).asDiagonal();
+  for (std::size_t k = 0; k < n; ++k) {
+    predicted[k] = P;
+    gains_[k].standing = observed[k].standing;
+    gains_[k].measurement = correct(P, seen, observed[k].variance);
+    if (observed[k].standing) gains_[k].standstill = correct(P, 1, creep_variance);
+    filtered[k] = P;
+    P = A_ * P * A_.transpose();
+    P(2, 2) += observed[k].step_V * observed[k].step_V;
+  }
+  motion_.x_variance.resize(n);
+  motion_.w_variance.resize(n);
+  motion_.xw_covariance.resize(n);
+  Matrix3d smoothed = filtered[n - 1];
+  for (std::size_t k = n; k-- > 0;) {
+    if (k + 1 < n) {
+      gains_[k].backward = predicted[k + 1].ldlt().solve(A_ * filtered[k]).transpose();
+      smoothed = filtered[k] + gains_[k].backward * (smoothed - predicted[k + 1]) * gains_[k].backward.transpose();
+    }
+    motion_.x_variance[k] = smoothed(0, 0);
+    motion_.w_variance[k] = observed[k].standing ? 0.0 : smoothed(1, 1);
+    motion_.xw_covariance[k] = observed[k].standing ? 0.0 : smoothed(0, 1);
+  }
+}
+
+void MotionSmoother::smooth(const std::vector<Observation>& observed, const std::vector<double>& u_V,
+                            const Vector3d& start) {
+  const std::size_t n = observed.size();
+  motion_.x.resize(n);
+  motion_.w.resize(n);
+  motion_.disturbance.resize(n);
+  motion_.standing.resize(n);
+  const Eigen::Index seen = by_position_ ? 0 : 1;
+  std::vector<Vector3d> filtered(n), predicted(n);
+  Vector3d state = start;
+  for (std::size_t k = 0; k < n; ++k) {
+    predicted[k] = state;
+    state += gains_[k].measurement * (observed[k].value - state(seen));
+    if (gains_[k].standing) state -= gains_[k].standstill * state(1);
+    filtered[k] = state;
+    state = A_ * state + B_ * u_V[k];
+  }
+  Vector3d later = filtered[n - 1];
+  for (std::size_t k = n; k-- > 0;) {
+    if (k + 1 < n) later = filtered[k] + gains_[k].backward * (later - predicted[k + 1]);
+    motion_.x[k] = later(0);
+    motion_.w[k] = observed[k].standing ? 0.0 : later(1);
+    motion_.disturbance[k] = effort_per_volt_ * later(2);
+    motion_.standing[k] = observed[k].standing;
+  }
+}
+
+ShiftWeights MotionSmoother::shift_weights(std::size_t row) const {
+  // The smoother's two passes, transposed: from the state of one row back to everything that reaches it.
+  const Eigen::Index seen = by_position_ ? 0 : 1;
+  ShiftWeights weights;
+  weights.first = row - std::min(row, reach_);
+  const std::size_t count = std::min(row + reach_, gains_.size() - 1) - weights.first;
+  std::vector<Vector3d> of_filtered(count), of_predicted(count + 1);
+  const auto run = [&](const Vector3d& wanted, std::vector<double>& of_reading, std::vector<double>& of_command) {
+    of_reading.assign(count, 0.0);
+    of_command.assign(count, 0.0);
+    std::ranges::fill(of_filtered, Vector3d::Zero());
+    std::ranges::fill(of_predicted, Vector3d::Zero());
+    Vector3d later = wanted;
+    for (std::size_t k = row - weights.first; k < count; ++k) {
+      of_filtered[k] = later;
+      if (k + 1 == count) break;
+      later = (gains_[weights.first + k].backward.transpose() * later).eval();
+      of_predicted[k + 1] -= later;
+    }
+    for (std::size_t k = count; k-- > 0;) {
+      const Gains& gains = gains_[weights.first + k];
+      Vector3d state = of_filtered[k] + A_.transpose() * of_predicted[k + 1];
+      of_command[k] = B_.dot(of_predicted[k + 1]);
+      if (gains.standing) state(1) -= gains.standstill.dot(state);
+      of_reading[k] = gains.measurement.dot(state);
+      state(seen) -= of_reading[k];
+      of_predicted[k] += state;
+    }
+    if (by_position_ && count > 0) of_reading[0] += of_predicted[0](0);
+  };
+  run(Vector3d::UnitX(), weights.x_of_reading, weights.x_of_command);
+  const double moves = gains_[row].standing ? 0.0 : 1.0;
+  run(moves * Vector3d::UnitY(), weights.w_of_reading, weights.w_of_command);
+  return weights;
+}
+
+ShiftWeights::Shift ShiftWeights::shift(std::span<const double> reading, std::span<const double> command_V) const {
+  const auto product = [](const std::vector<double>& weights, std::span<const double> changes) {
+    return std::transform_reduce(changes.begin(), changes.end(), weights.begin(), 0.0);
+  };
+  return {product(x_of_reading, reading) + product(x_of_command, command_V),
+          product(w_of_reading, reading) + product(w_of_command, command_V)};
+}
+
+}  // namespace host

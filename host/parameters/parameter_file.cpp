@@ -1,0 +1,171 @@
+#include "host/parameters/parameter_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "firmware/app/parameters/parameter_check.hpp"
+#include "host/exit_codes.hpp"
+#include "host/parameters/parameter_names.hpp"
+#include "host/read_file.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr std::string_view kFormat = "axis-params/1";
+
+bool is_board_axis(std::string_view name) {
+  return std::ranges::find(firmware::kAxisNames, name) != firmware::kAxisNames.end();
+}
+
+bool is_board_group(std::string_view name) {
+  return std::ranges::any_of(firmware::kParameters, [&](const firmware::ParameterInfo& info) {
+    return info.scope == firmware::ParameterScope::board && info.name.substr(0, info.name.find('.')) == name;
+  });
+}
+
+class ParameterReader {
+ public:
+  ParameterReader(std::string_view name, std::string_view axis) : name_(name), axis_(axis) {}
+
+  std::vector<Assignment> read(std::string_view text) {
+    toml::table root;
+    try {
+      root = toml::parse(text);
+    } catch (const toml::parse_error& error) {
+      fail(error.source().begin.line, "not valid TOML: {}; correct the line", error.description());
+    }
+    const auto format = root["format"].value<std::string_view>();
+    if (format != kFormat)
+      fail(1, "format = \"{}\" is missing: this is no file of board parameters; `axistool design` writes one", kFormat);
+    for (const auto& [key, node] : root) {
+      if (key.str() == "format") continue;
+      const std::size_t line = std::max<std::size_t>(1, key.source().begin.line);
+      if (!node.is_table()) fail(line, "{}: parameters stand in tables, [x.kalman] for example", key.str());
+      read_table(*node.as_table(), std::string(board_name_of(key.str(), line)));
+    }
+    return std::move(list_);
+  }
+
+ private:
+  template <typename... Args>
+  [[noreturn]] void fail(std::size_t line, fmt::format_string<Args...> format, Args&&... args) const {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: line {}: {}", name_, line, fmt::format(format, std::forward<Args>(args)...)));
+  }
+
+  std::string_view board_name_of(std::string_view top, std::size_t line) {
+    if (is_board_group(top)) return top;
+    if (axis_.empty() && is_board_axis(top)) return top;
+    if (axis_.empty())
+      fail(line, "the board has no axis {}; say which of its axes ({}) is meant: --axis {}", top,
+           fmt::join(firmware::kAxisNames, ", "), firmware::kAxisNames.front());
+    if (!std::exchange(taken_, std::string(top)).empty())
+      fail(line, "the file holds more than one axis; --axis is for files with one");
+    return axis_;
+  }
+
+  void read_table(const toml::table& table, const std::string& prefix) {
+    for (const auto& [key, node] : table) {
+      const std::string name = prefix + "." + std::string(key.str());
+      const std::size_t line = std::max<std::size_t>(1, key.source().begin.line);
+      if (node.is_table())
+        read_table(*node.as_table(), name);
+      else
+        list_.push_back(assignment(name, node, line));
+    }
+  }
+
+  Assignment assignment(const std::string& name, const toml::node& node, std::size_t line) const {
+    const std::size_t place = require_place(name, fmt::format("{}: line {}: ", name_, line));
+    const bool is_switch = info_at(place).type == firmware::ParameterType::toggle;
+    if (is_switch != node.is_boolean() || (!is_switch && !node.is_number()))
+      fail(line, "{}: {} belongs here", name, is_switch ? "true or false" : "a number, without quotes,");
+    const float value = is_switch ? (**node.as_boolean() ? 1.0F : 0.0F)
+                                  : static_cast<float>(node.value<double>().value_or(std::nan("")));
+    const auto problem = firmware::check_value(firmware::rule_at(place), value);
+    if (problem != firmware::ValueProblem::none)
+      fail(line, "{}", describe(firmware::key_at(place), static_cast<std::uint8_t>(problem), value));
+    return {place, value};
+  }
+
+  std::string_view name_;
+  std::string_view axis_;
+  std::string taken_;
+  std::vector<Assignment> list_;
+};
+
+std::string comment_of(const firmware::ParameterInfo& info) {
+  const bool has_unit = !info.unit.empty() && info.unit != "1";
+  return fmt::format("{}{}{}", has_unit ? unit_text(info) : "", has_unit ? ": " : "", info.doc);
+}
+
+}  // namespace
+
+std::vector<Assignment> parse_parameter_text(std::string_view text, std::string_view name, std::string_view axis) {
+  return ParameterReader(name, axis).read(text);
+}
+
+std::vector<Assignment> read_parameter_file(const std::string& path, std::string_view axis) {
+  return parse_parameter_text(read_file(path), path, axis);
+}
+
+Assignment parse_assignment(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos)
+    throw Failure(ExitCode::usage, fmt::format("{}: write NAME=VALUE, for example x.feedback.k1=48.4", text));
+  std::size_t place = 0;
+  try {
+    place = require_place(text.substr(0, equals));
+  } catch (const Failure& failure) {
+    throw Failure(ExitCode::usage, failure.what());
+  }
+  const std::string number(text.substr(equals + 1));
+  float value = number == "true" ? 1.0F : 0.0F;
+  if (number != "true" && number != "false") {
+    char* end = nullptr;
+    value = std::strtof(number.c_str(), &end);
+    if (number.empty() || *end != '\0')
+      throw Failure(ExitCode::usage, fmt::format("{}: '{}' is not a number", text, number));
+  }
+  const auto problem = firmware::check_value(firmware::rule_at(place), value);
+  if (problem != firmware::ValueProblem::none)
+    throw Failure(ExitCode::usage, describe(firmware::key_at(place), static_cast<std::uint8_t>(problem), value));
+  return {place, value};
+}
+
+void require_fitting_set(const firmware::ParameterValues& values) {
+  const firmware::SetProblem problem = firmware::check<float>(values);
+  if (problem.kind == firmware::SetProblemKind::none) return;
+  const float value = values.at(firmware::place_of(problem.key).value());
+  throw Failure(ExitCode::bad_input, describe(problem.key, static_cast<std::uint8_t>(problem.kind), value));
+}
+
+std::string format_parameter_file(const firmware::ParameterValues& values,
+                                  const std::vector<firmware::StoredEntry>& foreign) {
+  std::string text =
+      fmt::format("# Parameters of an axis board, table {:#010x}.\nformat = \"{}\"\n", firmware::kSchemaHash, kFormat);
+  std::string table;
+  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+    const std::string name = full_name(place);
+    const std::size_t dot = name.rfind('.');
+    if (name.substr(0, dot) != table) {
+      table = name.substr(0, dot);
+      text += fmt::format("\n[{}]\n", table);
+    }
+    const firmware::ParameterInfo& info = info_at(place);
+    text += fmt::format("{} = {}  # {}\n", name.substr(dot + 1), value_text(info, values.at(place)), comment_of(info));
+  }
+  if (!foreign.empty()) text += "\n# In the board's flash, but unknown to this table (key, bits):\n";
+  for (const firmware::StoredEntry& entry : foreign)
+    text += fmt::format("# {:#06x} {:#010x}\n", entry.key, entry.value_bits);
+  return text;
+}
+
+}  // namespace host

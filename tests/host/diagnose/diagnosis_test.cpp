@@ -1,0 +1,75 @@
+#include "host/diagnose/diagnosis.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "tests/host/diagnose/drive_case.hpp"
+#include "tests/host/evidence/hand_made_record.hpp"
+
+namespace {
+
+using testing::Contains;
+using testing::IsEmpty;
+
+TEST(Diagnosis, AWrongInertiaIsAParameterAndNoEffect) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  DriveCase nothing_hidden("none/case-00");
+  const double given = nothing_hidden.model.find("inertia")->parameters["J"] *= 1.2;
+  const host::Diagnosis diagnosis = nothing_hidden.diagnose();
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::parameters) << diagnosis.verdict.explanation;
+  EXPECT_THAT(diagnosis.verdict.parameters, Contains("inertia"));
+  EXPECT_THAT(diagnosis.verdict.effects, IsEmpty());
+  // truth.json: 0.00992 kg m^2.
+  EXPECT_NEAR(diagnosis.base.find("inertia")->at("J"), 0.0099187, 0.02 * 0.0099187);
+  EXPECT_GT(given, 1.15 * 0.0099187);
+  EXPECT_LT(diagnosis.before_validate, diagnosis.given_validate);
+}
+
+TEST(Diagnosis, AnAxisThatStandsTellsNothing) {
+  host::Record record = HandMade::record(5.0);
+  std::ranges::fill(record.x, 12.0);
+  std::ranges::fill(record.u_V, 0.1);
+  for (std::size_t k = 0; k < record.size(); ++k) record.w[k] = 0.1 * std::sin(1.7 * static_cast<double>(k));
+  const host::Diagnosis diagnosis = host::diagnose(HandMade::model(), {&record}, {});
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::insufficient_data);
+  EXPECT_TRUE(diagnosis.held_back);
+  EXPECT_THAT(diagnosis.verdict.effects, IsEmpty());
+  EXPECT_THAT(diagnosis.candidates, IsEmpty());
+  EXPECT_THAT(diagnosis.verdict.next_experiment, testing::HasSubstr("V"));
+}
+
+/// A hard spot, which the catalogue does not know. The axis moved as it did under the recorded command; had the spot
+/// been there, the same motion would have taken the spot's effort more.
+void add_hard_spot(host::Record& record, const sim::DataSheet& data, double place_mm, double width_mm,
+                   double effort_Nm) {
+  constexpr double kSliding_rad_s = 0.5;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    const double distance = (record.x[k] - place_mm) / width_mm;
+    const double direction = record.w[k] > kSliding_rad_s ? 1.0 : record.w[k] < -kSliding_rad_s ? -1.0 : 0.0;
+    record.u_V[k] += effort_Nm * direction * std::exp(-distance * distance) / data.effort_per_volt();
+  }
+}
+
+TEST(Diagnosis, AnEffectOutsideTheCatalogueIsUnexplainedAndItsPlaceIsNamed) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  constexpr double place_mm = -10.0;
+  DriveCase spoilt("none/case-00");
+  for (auto* records : {&spoilt.train, &spoilt.validate})
+    for (host::Record& record : *records) add_hard_spot(record, spoilt.model.data, place_mm, 3.0, 1.0);
+  const host::Diagnosis diagnosis = spoilt.diagnose();
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::unexplained) << diagnosis.verdict.explanation;
+  EXPECT_THAT(diagnosis.verdict.effects, IsEmpty());
+  const host::ErrorRegion* worst = host::worst_region(diagnosis.where);
+  ASSERT_NE(worst, nullptr);
+  EXPECT_EQ(worst->partition, "place");
+  double from_mm = 0.0, to_mm = 0.0;
+  ASSERT_EQ(std::sscanf(worst->region.c_str(), "x = %lf to %lf mm", &from_mm, &to_mm), 2) << worst->region;
+  EXPECT_LT(from_mm, place_mm);
+  EXPECT_GT(to_mm, place_mm);
+  EXPECT_LT(to_mm - from_mm, 15.0);  // of 150 mm of travel
+}
+
+}  // namespace

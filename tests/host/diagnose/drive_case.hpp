@@ -1,0 +1,50 @@
+// A shipped drive case: what the engineer has, what was measured, and what is hidden in it.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+#include "host/model/model_file.hpp"
+#include "host/record/channel_checks.hpp"
+#include "host/record/read_record.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
+
+struct DriveCase {
+  sim::DriveDescription model;
+  std::vector<host::Record> train, validate;
+  std::vector<std::string> effects;              ///< what is hidden
+  std::vector<std::vector<std::string>> groups;  ///< effects that such data may be unable to tell apart
+
+  /// `name` is "single/case-06".
+  explicit DriveCase(const std::string& name) {
+    const std::filesystem::path folder = std::filesystem::path(AXIS_TEST_DATA) / "drive-cases" / name;
+    model = host::read_model((folder / "model.toml").string());
+    std::vector<std::string> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".csv") paths.push_back(entry.path().string());
+    std::ranges::sort(paths);
+    for (const std::string& path : paths) {
+      host::Record record = host::read_record(path);
+      host::adapt_to(record, model.data);
+      (path.ends_with("validate.csv") ? validate : train).push_back(std::move(record));
+    }
+    std::ifstream in(folder / "truth.json");
+    const nlohmann::json truth = nlohmann::json::parse(in);
+    effects = truth.at("effects").get<std::vector<std::string>>();
+    groups = truth.at("groups").get<std::vector<std::vector<std::string>>>();
+  }
+
+  host::Diagnosis diagnose() const {
+    const auto pointers = [](const std::vector<host::Record>& records) {
+      std::vector<const host::Record*> result;
+      for (const host::Record& record : records) result.push_back(&record);
+      return result;
+    };
+    return host::diagnose(model, pointers(train), pointers(validate));
+  }
+};

@@ -1,0 +1,131 @@
+#include "host/evidence/log_faults.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "host/model/model_file.hpp"
+#include "host/record/channel_checks.hpp"
+#include "host/record/read_record.hpp"
+#include "tests/host/evidence/hand_made_record.hpp"
+
+namespace {
+
+using host::LogFaultKind;
+namespace fs = std::filesystem;
+
+void shift_later(std::vector<double>& values, std::size_t samples) {
+  std::rotate(values.begin(), values.end() - static_cast<std::ptrdiff_t>(samples), values.end());
+  std::fill_n(values.begin(), samples, values[samples]);
+}
+
+class LogFaults : public testing::Test {
+ protected:
+  /// The one fault that is found, or nullptr (with a failure) where there is another number of them.
+  void expect_only(LogFaultKind kind, const std::string& channel, double size, double tolerance) {
+    const auto faults = host::log_faults(record, model);
+    ASSERT_EQ(faults.size(), 1u) << (faults.empty() ? "" : faults[0].message);
+    EXPECT_EQ(faults[0].kind, kind) << faults[0].message;
+    EXPECT_EQ(faults[0].channel, channel);
+    EXPECT_NEAR(faults[0].size, size, tolerance) << faults[0].message;
+    EXPECT_EQ(host::log_faults_json(faults)[0]["kind"], host::log_fault_name(kind));
+  }
+  host::Record record = HandMade::record();
+  sim::DriveDescription model = HandMade::model();
+};
+
+TEST_F(LogFaults, NoneInASoundRecord) { EXPECT_TRUE(host::log_faults(record, model).empty()); }
+
+TEST_F(LogFaults, NoneWhereInertiaAndFrictionDiffer) {
+  model.find("inertia")->parameters["J"] *= 1.5;
+  model.find("coulomb")->parameters["positive"] *= 0.6;
+  EXPECT_TRUE(host::log_faults(record, model).empty());
+}
+
+TEST_F(LogFaults, CounterRunsOver) {
+  const double wrap = 8192 * model.data.encoder_resolution;
+  for (double& x : record.x) x -= wrap * std::floor(x / wrap);
+  // The motion crosses a multiple of 16.384 mm many times; the first time upwards.
+  expect_only(LogFaultKind::integer_wrap, "x_mm", -wrap, 2 * model.data.encoder_resolution);
+}
+
+TEST_F(LogFaults, NewZeroAtStandstill) {
+  for (std::size_t k = 2300; k < record.size(); ++k) record.x[k] -= 17.3;
+  expect_only(LogFaultKind::new_zero, "x_mm", -17.3, 1e-6);
+}
+
+TEST_F(LogFaults, SamplesDroppedUnderSteadyTimeStamps) {
+  // Five samples of 50 rad/s * 1.6 mm/rad * 1 ms each.
+  for (auto* channel : {&record.u_V, &record.x, &record.w})
+    channel->erase(channel->begin() + 1000, channel->begin() + 1005);
+  record.t_s.resize(record.x.size());
+  expect_only(LogFaultKind::dropped_samples, "x_mm", 5.0, 0.0);
+}
+
+TEST_F(LogFaults, SpeedDerivedFromPosition) {
+  for (std::size_t k = 1; k < record.size(); ++k)
+    record.w[k] = (record.x[k] - record.x[k - 1]) / (model.data.lead * record.sample_period_s);
+  const auto faults = host::log_faults(record, model);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(faults[0].kind, LogFaultKind::derived_channel);
+}
+
+TEST_F(LogFaults, CommandOfTheWrongSign) {
+  for (double& u_V : record.u_V) u_V = -u_V;
+  expect_only(LogFaultKind::command_sign, "u_V", -1.0, 0.0);
+}
+
+TEST_F(LogFaults, CommandInAnotherUnit) {
+  model.data.dac_limit_V = 1000.0;
+  for (double& u_V : record.u_V) u_V *= 100.0;
+  expect_only(LogFaultKind::command_scale, "u_V", 100.0, 5.0);
+}
+
+TEST_F(LogFaults, PositionInAnotherUnit) {
+  record.w.clear();
+  model.data.encoder_resolution /= 25.4;
+  for (double& x : record.x) x /= 25.4;  // inches
+  expect_only(LogFaultKind::position_scale, "x_mm", 1.0 / 25.4, 1e-3);
+}
+
+TEST_F(LogFaults, TachometerLateByWholeSamples) {
+  shift_later(record.w, 4);
+  expect_only(LogFaultKind::time_shift, "w_rad_s", 0.004, 1e-9);
+}
+
+TEST_F(LogFaults, TachometerFilterIsPhysics) {
+  const double keep = std::exp(-1.0 / 3.0);  // 3 ms
+  double held = 0.0;
+  for (double& w : record.w) w = held = keep * held + (1.0 - keep) * w;
+  EXPECT_TRUE(host::log_faults(record, model).empty());
+}
+
+TEST_F(LogFaults, AnswerBeforeTheCommand) {
+  shift_later(record.u_V, 5);
+  expect_only(LogFaultKind::time_shift, "u_V", 0.005, 1e-9);
+}
+
+TEST_F(LogFaults, DeadTimeIsPhysics) {
+  shift_later(record.x, 2);
+  shift_later(record.w, 2);
+  EXPECT_TRUE(host::log_faults(record, model).empty());
+}
+
+TEST(LogFaultsOfDrives, NoneInRecordsOfAnIndependentPlant) {
+  std::size_t seen = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(AXIS_TEST_DATA) / "drive-cases")) {
+    if (entry.path().extension() != ".csv") continue;
+    const sim::DriveDescription model = host::read_model((entry.path().parent_path() / "model.toml").string());
+    host::Record record = host::read_record(entry.path().string());
+    host::adapt_to(record, model.data);
+    const auto faults = host::log_faults(record, model);
+    EXPECT_TRUE(faults.empty()) << entry.path() << ": " << faults[0].message;
+    ++seen;
+  }
+  EXPECT_GT(seen, 0u);
+}
+
+}  // namespace
