@@ -18,28 +18,6 @@ namespace host {
 
 namespace {
 
-/// Blocks of this length alternate between training and validation where no validation record is given, s.
-constexpr double kBlock_s = 2.0;
-/// Every so many-th block is kept back.
-constexpr std::size_t kKeptBack = 4;
-
-/// Splits the windows of a set into training and validation blocks.
-void hold_back(RecordSet& training, RecordSet& validation) {
-  validation = training;
-  for (std::size_t r = 0; r < training.records.size(); ++r) {
-    PreparedRecord& kept = training.records[r].prepared;
-    PreparedRecord& back = validation.records[r].prepared;
-    const std::vector<Window> all = kept.windows;
-    kept.windows.clear();
-    back.windows.clear();
-    for (const Window& window : all) {
-      const double t_s = static_cast<double>(window.begin) * kept.period_s;
-      const bool held = static_cast<std::size_t>(t_s / kBlock_s) % kKeptBack == kKeptBack - 1;
-      (held ? back : kept).windows.push_back(window);
-    }
-  }
-}
-
 /// What a base and the best model leave on both sets.
 struct FourErrors {
   SetError base_train, base_validate, best_train, best_validate;
@@ -57,10 +35,6 @@ struct FourErrors {
             best_validate.*rms, best_train.*floor, best_validate.*floor};
   }
 };
-
-}  // namespace
-
-namespace {
 
 std::size_t windows_per_second(const RecordSet& set) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(1.0 / set.records.front().prepared.window_s())));
@@ -88,41 +62,7 @@ ShareDone part(const ShareDone& progress, double from, double to) {
   return [progress, from, to](double share) { progress(from + share * (to - from)); };
 }
 
-/// Excitation below which nothing can be said: the axis must move for a second in all, in five windows at least.
-bool moves_enough(const RecordSet& set) {
-  double moving_s = 0.0;
-  for (const ComparedRecord& compared : set.records) {
-    const SmoothedMotion& motion = compared.prepared.motion();
-    double top = 0.0;
-    for (const double w : motion.w) top = std::max(top, std::abs(w));
-    for (std::size_t k = 0; k < motion.w.size(); ++k)
-      if (!motion.standing[k] && std::abs(motion.w[k]) > 0.05 * top) moving_s += compared.prepared.period_s;
-  }
-  constexpr double kShortestMotion_s = 1.0;
-  return moving_s >= kShortestMotion_s;
-}
-
 }  // namespace
-
-Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation, double window_s, Measure measure) {
-  Diagnosis result;
-  result.window_s = window_s;
-  result.measure = measure;
-  result.held_back = validation.empty();
-  result.training = compare_on(training, model, window_s, measure);
-  if (validation.empty()) {
-    hold_back(result.training, result.validation);
-  } else {
-    result.validation = compare_on(validation, model, window_s, measure);
-  }
-  result.base = result.best = model;
-  if (!moves_enough(result.training)) return result;
-  result.base = fit_base(model, result.training);
-  renew_floors(result.training, result.base);
-  renew_floors(result.validation, result.base);
-  return result;
-}
 
 namespace {
 
@@ -170,9 +110,9 @@ RecordSet together(const RecordSet& training, const RecordSet& validation) {
 Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescription& model,
                         const std::vector<const Record*>& training, const std::vector<const Record*>& validation,
                         const ShareDone& progress) {
-  Diagnosis result = prepare_sets(model, training, validation, window_s, measure);
+  Diagnosis result(prepare_sets(model, training, validation, window_s, measure));
   const sim::Drive given(model);
-  if (!moves_enough(result.training)) {
+  if (!result.moves_enough) {
     result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
     result.given_validate = result.before_validate = result.after_validate =
         error_of(given, result.validation).combined;

@@ -3,10 +3,12 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "host/compare/error_regions.hpp"
 #include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/prepared_sets.hpp"
 
 namespace host {
 
@@ -42,11 +44,12 @@ struct DiagnosisVerdict {
   std::string explanation;
 };
 
-struct Diagnosis {
-  double window_s = kWindow_s;
-  Measure measure = Measure::motion;
+/// What it began with, and what came of it.
+struct Diagnosis : PreparedSets {
+  Diagnosis() = default;
+  explicit Diagnosis(PreparedSets sets) : PreparedSets(std::move(sets)), best(base) {}
+
   bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
-  bool held_back = false;  ///< no validation record was given: blocks of the training data were kept back
   std::vector<ChannelError> channels;
   double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
@@ -54,16 +57,8 @@ struct Diagnosis {
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
   std::vector<JudgedCandidate> candidates;           ///< best first
   DiagnosisVerdict verdict;
-  sim::DriveDescription base;  ///< the given model, re-fitted
   sim::DriveDescription best;  ///< with the effects of the verdict; the base where there are none
-  RecordSet training, validation;
 };
-
-/// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
-/// be compared. Keeps references to the records.
-Diagnosis prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation, double window_s = kWindow_s,
-                       Measure measure = Measure::motion);
 
 /// Windows of a machine whose missing effects, not its sensors, set the limit: 10 ms, in which the position shows a
 /// force as a low-pass of 100 Hz would, and ten samples at least.

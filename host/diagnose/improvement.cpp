@@ -81,7 +81,7 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr)
     throw Failure(ExitCode::usage, fmt::format("{}: no such effect; axistool effects lists them", kind));
-  Diagnosis sets;
+  PreparedSets sets;
   std::vector<Candidate> found;
   const auto search = [&](double window_s, Measure measure) {
     sets = prepare_sets(model, training, validation, window_s, measure);

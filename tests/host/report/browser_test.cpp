@@ -180,7 +180,7 @@ TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
   std::vector<const Record*> train, validate;
   for (const Record& record : shipped.train) train.push_back(&record);
   for (const Record& record : shipped.validate) validate.push_back(&record);
-  Diagnosis diagnosis = prepare_sets(shipped.model, train, validate);
+  Diagnosis diagnosis(prepare_sets(shipped.model, train, validate));
   diagnosis.where = error_regions(diagnosis.base, diagnosis.validation);
   const std::string path = (folder_ / "diagnosis.html").string();
   write_diagnosis_report(diagnosis, "model.toml", path);
