@@ -1,0 +1,24 @@
+// Judging what a search found: errors on both sets, candidates side by side, and the verdict.
+#pragma once
+
+#include <vector>
+
+#include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// What a search found on a diagnosis' sets, each list best first.
+struct Findings {
+  std::vector<Candidate> singles;  ///< one effect added to the base
+  std::vector<Candidate> pairs;    ///< a second one added to the best single
+};
+
+/// The reference that floors suit: the best model that a search found.
+const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings);
+
+/// Fills errors, regions, candidates and verdict of `diagnosis`, whose sets and base are there; `given` is the model
+/// before its re-fit. The floors become those of the best model found.
+void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findings& findings);
+
+}  // namespace host
