@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "firmware/app/capture_stream.hpp"
+#include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/protocol/messages.hpp"
 #include "firmware/app/store/parameter_store.hpp"
@@ -50,7 +51,8 @@ class BoardApplication {
 
   /// Takes the staged set over, as a whole or not at all.
   Status commit(ProblemPayload& problem) {
-    if (const auto changed = change_that_needs_standstill(); changed < kParameterCount && any_enabled()) {
+    const std::size_t changed = change_that_needs_standstill();
+    if (changed < kParameterCount && any_enabled()) {
       problem = {key_at(changed).code, 0, 0, std::bit_cast<std::uint32_t>(staged_.at(changed))};
       return Status::drive_enabled;
     }
@@ -63,6 +65,12 @@ class BoardApplication {
     }
     if (staged_ == active_) return Status::ok;
     active_ = staged_;
+    if (changed == kParameterCount && set_fits_) {
+      const BoardLimits limits = limits_of_board();  // all that may change while an axis moves
+      const typename Board::ControlShutOut guard;
+      axes_.board().configure(limits);
+      return Status::ok;
+    }
     set_fits_ = true;
     configure_all();
     return Status::ok;
@@ -76,7 +84,7 @@ class BoardApplication {
     board_.begin_stall();
     const SaveResult result = store_.save(active_);
     board_.end_stall();
-    axes_.board().configure(limits_of_board());  // the pause was no overrun
+    axes_.board().excuse_pause();
     if (result == SaveResult::saved) saved_ = active_;
     if (!was_usable) configure_all();
     return result == SaveResult::saved          ? Status::ok
@@ -143,13 +151,21 @@ class BoardApplication {
     for (std::size_t axis = 0; axis < kAxisCount; ++axis) axes_[axis].clear_fault();
   }
 
-  /// Any request proves that the host is there; it need not be there while every axis stands.
-  void host_heard() {
+  // Whose motion it is. Everybody may look, stop and disable.
+  bool may_command(ClientToken client) { return owner_.may_command(client, is_in_motion()); }
+  /// The client has commanded motion, or takes over what another commanded.
+  void become_owner(ClientToken client) {
+    owner_.become(client);
+    owner_heard(client);
+  }
+  bool is_owner(ClientToken client) const { return owner_.is(client); }
+  /// A request of the owner proves that it is there; while every axis stands it may be silent for longer.
+  void owner_heard(ClientToken client) {
+    if (!owner_.is(client)) return;
+    const bool in_motion = is_in_motion();
     const typename Board::ControlShutOut guard;
     axes_.board().host_heard();
-    bool at_rest = true;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) at_rest = at_rest && axes_[axis].is_at_rest();
-    if (at_rest) axes_.board().host_commands(false);
+    if (!in_motion) axes_.board().host_commands(false);
   }
 
   // Capture.
@@ -193,7 +209,12 @@ class BoardApplication {
     return true;
   }
 
-  bool any_enabled() const { return axes_.outputs_on(); }
+  /// Or about to be.
+  bool any_enabled() const {
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      if (axes_[axis].is_or_will_be_on()) return true;
+    return false;
+  }
   std::uint32_t control_periods() const { return control_periods_; }
 
   TimingPayload timing() {
@@ -211,10 +232,18 @@ class BoardApplication {
  private:
   static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
+  bool is_in_motion() {
+    const typename Board::ControlShutOut guard;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      if (axes_[axis].is_or_will_be_on() && !axes_[axis].is_at_rest()) return true;
+    return false;
+  }
+
   BoardLimits limits_of_board() const {
     const auto rate_Hz = static_cast<float>(active_.template get<"control.rate">());
     BoardLimits limits = BoardWatch::default_limits(1.0F / rate_Hz);
     limits.heartbeat_samples = static_cast<std::int32_t>(active_.template get<"host.timeout">() * rate_Hz);
+    limits.standing_samples = static_cast<std::int32_t>(active_.template get<"host.standing_timeout">() * rate_Hz);
     return limits;
   }
 
@@ -222,6 +251,7 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     board_.set_control_rate(static_cast<std::uint32_t>(active_.template get<"control.rate">()));
     axes_.board().configure(limits_of_board());
+    axes_.board().excuse_pause();
     if (!store_is_usable()) return;
     for (std::size_t axis = 0; axis < kAxisCount; ++axis)
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
@@ -282,6 +312,7 @@ class BoardApplication {
   Store store_;
   Axes axes_;
   CaptureStream capture_;
+  MotionOwner owner_;
   ParameterValues active_;
   ParameterValues staged_;
   ParameterValues saved_;

@@ -19,7 +19,7 @@ struct MotionArguments : DeviceArguments {
   std::vector<std::string> axes;
   std::string axis;
   double value = 0.0, duration_s = 1.0;
-  bool relative = false;
+  bool relative = false, take_over = false;
 };
 
 std::atomic<bool> interrupted = false;
@@ -49,6 +49,7 @@ void enable(const MotionArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   if (!arguments.dry_run) {
     require_consent(arguments, "Close the control loop? The axis may move.");
+    if (arguments.take_over) board.take_over();
     host::enable_and_wait(board, mask);
   }
   report(arguments, "enable", {{"axes", arguments.axes}});
@@ -70,6 +71,7 @@ void jog(const MotionArguments& arguments) {
   const firmware::ParameterValues values = board.read_values();
   const double before = position_of(board, axis, values);
   catch_interrupts();
+  if (!arguments.dry_run && arguments.take_over) board.take_over();
   if (!arguments.dry_run)
     host::jog_for(board, axis, arguments.value, std::chrono::duration<double>(arguments.duration_s), is_interrupted);
   const double after = position_of(board, axis, values);
@@ -92,12 +94,17 @@ void move(const MotionArguments& arguments) {
   if (std::abs(target / resolution) > 9e15)
     throw host::Failure(host::ExitCode::usage, fmt::format("{:g} is too far for the axis to count", target));
   catch_interrupts();
+  if (!arguments.dry_run && arguments.take_over) board.take_over();
   if (!arguments.dry_run) host::move_and_wait(board, axis, std::llround(target / resolution), is_interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
   if (!talks(arguments)) return;
   fmt::print("{} {} {:.4f} from {:.4f}{}\n", arguments.axis, arguments.dry_run ? "would move to" : "is at",
              arguments.dry_run ? target : after, before, interrupted ? " (interrupted)" : "");
+}
+
+void add_take_over(CLI::App& command, MotionArguments& arguments) {
+  command.add_flag("--take-over", arguments.take_over, "even while another program moves the axes: it loses them");
 }
 
 }  // namespace
@@ -108,6 +115,7 @@ void add_enable(CLI::App& app) {
   command->add_option("AXIS", arguments->axes, "x, y, or both; default: both");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
+  add_take_over(*command, *arguments);
   command->footer("Example:\n  axistool enable x --yes\nAsks before; in a script give --yes.");
   command->callback([arguments] { enable(*arguments); });
 }
@@ -132,6 +140,7 @@ void add_jog(CLI::App& app) {
       ->check(CLI::Range(0.0, 3600.0));
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
+  add_take_over(*command, *arguments);
   command->footer("Example:\n  axistool jog x -20 --for 2\nCtrl-C slows down at once.");
   command->callback([arguments] { jog(*arguments); });
 }
@@ -144,6 +153,7 @@ void add_move(CLI::App& app) {
   command->add_flag("--relative", arguments->relative, "from where the axis is");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
+  add_take_over(*command, *arguments);
   command->footer("Examples:\n  axistool move x 100\n  axistool move y -5 --relative");
   command->callback([arguments] { move(*arguments); });
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <random>
 
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
@@ -57,6 +58,12 @@ void require_ok(const Message& reply) {
     case Status::not_fitted:
       fail(ExitCode::refused,
            "the axis is not fitted: give it the parameters of a design (axistool design, axistool set-params)");
+    case Status::others_motion:
+      fail(ExitCode::refused,
+           "another program moves the axes: wait until they rest, stop them (`axistool disable`), or take the motion "
+           "over (--take-over of enable, jog, move)");
+    case Status::restarting:
+      fail(ExitCode::refused, "the board is about to restart: try again in a second");
     case Status::unreachable:
       fail(ExitCode::refused, "the move would last too long: raise limits.velocity, or split it");
     case Status::device_fault:
@@ -83,6 +90,11 @@ void require_ok(const Message& reply) {
                    static_cast<unsigned>(reply.status)));
 }
 
+std::random_device& randomness() {
+  thread_local std::random_device device;
+  return device;
+}
+
 template <typename Payload>
 Payload payload_of(const Message& reply) {
   Payload payload;
@@ -93,7 +105,9 @@ Payload payload_of(const Message& reply) {
 }  // namespace
 
 BoardClient::BoardClient(std::unique_ptr<ReportLink> link, milliseconds patience)
-    : link_(std::move(link)), patience_(patience) {}
+    : link_(std::move(link)),
+      patience_(patience),
+      client_(static_cast<std::uint16_t>(std::uniform_int_distribution<unsigned>(1, 0xFFFF)(randomness()))) {}
 
 template <typename Payload>
 Message BoardClient::request(MessageType type, const Payload& payload) {
@@ -117,9 +131,11 @@ Message BoardClient::exchange(Message message, milliseconds patience) {
 
 Message BoardClient::reply_to(Message message, milliseconds patience) {
   message.sequence = ++sequence_;
+  message.client = client_;
   link_->send(firmware::encode(message));
   const auto deadline = steady_clock::now() + patience;
   while (const auto reply = receive(deadline)) {
+    if (reply->type != MessageType::rejected && reply->client != client_) continue;  // another program's
     if (reply->type == MessageType::samples) {
       keep_samples(*reply);
     } else if (reply->type == MessageType::rejected) {
@@ -255,6 +271,7 @@ void BoardClient::move(std::uint8_t axis, std::int64_t target_counts) {
 
 void BoardClient::clear_faults() { request(MessageType::clear_faults); }
 void BoardClient::heartbeat() { request(MessageType::heartbeat); }
+void BoardClient::take_over() { request(MessageType::take_over); }
 void BoardClient::restart() { request(MessageType::restart); }
 
 void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
@@ -281,7 +298,7 @@ std::optional<BoardClient::Samples> BoardClient::next_samples(milliseconds patie
   while (samples_.empty()) {
     const auto message = receive(deadline);
     if (!message) return std::nullopt;
-    if (message->type == MessageType::samples) keep_samples(*message);
+    if (message->type == MessageType::samples && message->client == client_) keep_samples(*message);
   }
   Samples samples = std::move(samples_.front());
   samples_.pop_front();

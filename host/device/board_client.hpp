@@ -46,6 +46,8 @@ class BoardClient {
   void move(std::uint8_t axis, std::int64_t target_counts);
   void clear_faults();
   void heartbeat();
+  /// Motion that another program commanded is this one's from now on.
+  void take_over();
   void restart();
 
   void start_capture(const firmware::CaptureRequest& request);
@@ -76,6 +78,7 @@ class BoardClient {
 
   std::unique_ptr<ReportLink> link_;
   std::chrono::milliseconds patience_;
+  std::uint16_t client_;  ///< this program among those that talk to the board; never 0
   std::uint16_t sequence_ = 0;
   std::deque<Samples> samples_;
 };

@@ -40,8 +40,15 @@ bool for_all(std::uint8_t mask, Each each) {
   return true;
 }
 
+/// Throws once the motion is another program's: it is no longer this one's to end.
+void require_own_motion(const firmware::StatusPayload& status) {
+  if ((status.flags & firmware::kBoardOthers) != 0)
+    throw Failure(ExitCode::refused, "another program has taken the motion over");
+}
+
 bool rests(const firmware::StatusPayload& status, std::uint8_t axis) {
   require_no_fault(status, axis);
+  require_own_motion(status);
   return (status.axis.at(axis).flags & firmware::kAxisAtRest) != 0;
 }
 
@@ -92,6 +99,7 @@ void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono
   board.jog(axis, velocity);
   ask_until(board, duration, [&](const auto& status) {
     require_no_fault(status, axis);
+    require_own_motion(status);
     return stop();
   });
   stop_and_wait(board, axis);

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <chrono>
 #include <ctime>
+#include <optional>
+#include <vector>
 
 namespace host {
 
@@ -15,6 +17,12 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
+
+/// A program at the other end. As with hidraw, everyone sees all that the board sends.
+struct Host {
+  OwnedDescriptor socket;
+  std::optional<hal::HidReport> waiting;  ///< that it had no room for yet
+};
 
 class SocketBoard {
  public:
@@ -37,24 +45,35 @@ class SocketBoard {
  private:
   hal::pc::SimulatedUsb& usb() { return device_.board().usb(); }
 
-  /// Waits for the host, at most until the next control period is due, and answers it at once.
+  /// Waits for the hosts, at most until the next control period is due, and answers them at once.
   void serve_until(steady_clock::time_point due) {
     const auto left = std::max(nanoseconds(due - steady_clock::now()), nanoseconds(0));
     const timespec patience{std::chrono::duration_cast<std::chrono::seconds>(left).count(),
                             (left % std::chrono::seconds(1)).count()};
-    pollfd end{host_ ? host_.get() : listener_.get(), POLLIN, 0};
-    if (::ppoll(&end, 1, &patience, nullptr) <= 0) return;
-    if (!host_) {
-      host_ = OwnedDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-      if (!host_) return;
-      constexpr int kRoom = 1 << 20;  // for a host that the computer keeps waiting
-      ::setsockopt(host_.get(), SOL_SOCKET, SO_SNDBUF, &kRoom, sizeof kRoom);
-      usb().plug_in();
-      return;
-    }
+    std::vector<pollfd> ends{{listener_.get(), POLLIN, 0}};
+    for (const Host& host : hosts_) ends.push_back({host.socket.get(), POLLIN, 0});
+    if (::ppoll(ends.data(), ends.size(), &patience, nullptr) <= 0) return;
+    for (std::size_t i = ends.size() - 1; i > 0; --i)
+      if (ends[i].revents != 0) serve(i - 1);
+    if (ends[0].revents != 0) welcome();
+  }
+
+  void welcome() {
+    OwnedDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!socket) return;
+    constexpr int kRoom = 1 << 20;  // for a host that the computer keeps waiting
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kRoom, sizeof kRoom);
+    hosts_.push_back({std::move(socket), {}});
+    usb().plug_in();
+  }
+
+  void serve(std::size_t index) {
+    if (index >= hosts_.size()) return;  // another was lost meanwhile
     hal::HidReport report;
-    if (::recv(host_.get(), report.data(), report.size(), 0) != static_cast<ssize_t>(report.size())) {
-      unplug();
+    const ssize_t got = ::recv(hosts_[index].socket.get(), report.data(), report.size(), 0);
+    if (got < 0 && errno == EAGAIN) return;
+    if (got != static_cast<ssize_t>(report.size())) {
+      lose(index);
       return;
     }
     usb().host_send(report);
@@ -62,33 +81,47 @@ class SocketBoard {
     deliver();
   }
 
-  /// What the board has sent goes on its way, as long as the host takes it.
+  /// What the board has sent goes on its way, as long as somebody takes it: who alone holds the others up misses it.
   void deliver() {
-    while (host_) {
-      if (!waits_ && !usb().host_receive(report_)) return;
-      waits_ = ::send(host_.get(), report_.data(), report_.size(), MSG_NOSIGNAL) < 0;
-      if (!waits_) continue;
-      if (errno != EAGAIN) unplug();
-      return;
+    for (std::size_t i = hosts_.size(); i-- > 0;)
+      if (hosts_[i].waiting && !is_sent(i, *hosts_[i].waiting) && hosts_.size() == 1) return;
+    hal::HidReport report;
+    while (!hosts_.empty() && usb().host_receive(report)) {
+      bool anybody = false;
+      for (std::size_t i = hosts_.size(); i-- > 0;) anybody = (!hosts_[i].waiting && is_sent(i, report)) || anybody;
+      if (!anybody) return;
     }
   }
 
-  void unplug() {
-    host_ = OwnedDescriptor();
-    waits_ = false;
-    usb().unplug();
+  /// False where it has to wait, or the host has gone.
+  bool is_sent(std::size_t index, const hal::HidReport& report) {
+    Host& host = hosts_[index];
+    if (::send(host.socket.get(), report.data(), report.size(), MSG_NOSIGNAL) >= 0) {
+      host.waiting.reset();
+      return true;
+    }
+    if (errno == EAGAIN)
+      host.waiting = report;
+    else
+      lose(index);
+    return false;
+  }
+
+  /// The last one takes the cable with it.
+  void lose(std::size_t index) {
+    hosts_.erase(hosts_.begin() + static_cast<std::ptrdiff_t>(index));
+    if (hosts_.empty()) usb().unplug();
   }
 
   void restart() {
-    unplug();
+    hosts_.clear();
+    usb().unplug();
     device_.power_up();
   }
 
   SimulatedDevice& device_;
   const OwnedDescriptor& listener_;
-  OwnedDescriptor host_;
-  hal::HidReport report_{};
-  bool waits_ = false;  ///< report_ is still to be sent
+  std::vector<Host> hosts_;
 };
 
 }  // namespace

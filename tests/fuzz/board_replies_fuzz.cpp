@@ -29,6 +29,8 @@ class FuzzedLink : public host::ReportLink {
       report[1] = asked_[1] | std::byte{firmware::kReplyBit};
       report[2] = asked_[2];
       report[3] = asked_[3];
+      report[6] = asked_[6];
+      report[7] = asked_[7];
     }
     if ((truth & 4) != 0) report[4] = std::byte{0};
     if ((truth & 8) != 0) {

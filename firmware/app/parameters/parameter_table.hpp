@@ -22,7 +22,9 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {1, board, "control.rate", whole, "Hz", "Hz", 250, 20000, 1000, while_disabled,
      "control periods a second; 1 / drive.sample_period of every fitted axis"},
     {2, board, "host.timeout", real, "s", "s", 0.02F, 10, 0.2F, any_time,
-     "silence of a host that commands motion, after which the axes slow down and stop"},
+     "silence of the client that commands motion, after which the axes slow down and stop"},
+    {3, board, "host.standing_timeout", real, "s", "s", 0.1F, 3600, 60, any_time,
+     "the same while the axes stand: then they are disabled"},
 
     {16, axis, "drive.fitted", toggle, "", "", 0, 1, 0, while_disabled, "the axis exists: it can be enabled"},
     {17, axis, "drive.sample_period", real, "s", "s", 5e-5F, 4e-3F, 1e-3F, while_disabled,

@@ -28,6 +28,7 @@ enum class MessageType : std::uint8_t {
   move = 0x24,
   clear_faults = 0x25,
   heartbeat = 0x26,
+  take_over = 0x27,
   start_capture = 0x30,
   stop_capture = 0x31,
   read_fault_capture = 0x32,
@@ -60,6 +61,8 @@ enum class Status : std::uint8_t {
   unreachable = 13,   ///< a move that cannot be planned
   device_fault = 14,  ///< a fault is latched: read the status
   no_such_row = 15,
+  others_motion = 16,  ///< another client moves the axes: wait, stop them, or take over
+  restarting = 17,
 };
 
 struct IdentityPayload {
@@ -102,7 +105,9 @@ struct StatusPayload {
   std::array<AxisStatus, 2> axis{};
 };
 static_assert(sizeof(StatusPayload) == kPayloadSize);
-inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8;
+inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8,
+                              kBoardYours = 16,  ///< the asking client owns the axes that are enabled
+    kBoardOthers = 32;                           ///< another one does
 
 /// Since start-up, or since the last request that asked to begin anew.
 struct TimingPayload {

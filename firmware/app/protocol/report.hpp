@@ -26,6 +26,7 @@ struct Message {
   Status status = Status::ok;
   std::uint16_t sequence = 0;
   std::uint8_t length = 0;
+  std::uint16_t client = 0;  ///< who asks; a reply repeats it
   std::array<std::byte, kPayloadSize> payload{};
 
   template <typename Payload>
@@ -57,6 +58,8 @@ inline hal::HidReport encode(const Message& message) {
   report[3] = static_cast<std::byte>(message.sequence >> 8);
   report[4] = static_cast<std::byte>(message.status);
   report[5] = static_cast<std::byte>(message.length);
+  report[6] = static_cast<std::byte>(message.client & 0xFF);
+  report[7] = static_cast<std::byte>(message.client >> 8);
   std::memcpy(report.data() + kPayloadOffset, message.payload.data(),
               std::min<std::size_t>(message.length, kPayloadSize));
   const std::uint32_t crc = crc32(std::span(report).first(kCrcOffset));
@@ -77,6 +80,8 @@ inline DecodeProblem decode(const hal::HidReport& report, Message& message) {
   message.sequence =
       static_cast<std::uint16_t>(std::to_integer<unsigned>(report[2]) | std::to_integer<unsigned>(report[3]) << 8);
   message.status = static_cast<Status>(report[4]);
+  message.client =
+      static_cast<std::uint16_t>(std::to_integer<unsigned>(report[6]) | std::to_integer<unsigned>(report[7]) << 8);
   message.length = length;
   std::memcpy(message.payload.data(), report.data() + kPayloadOffset, length);
   return DecodeProblem::none;

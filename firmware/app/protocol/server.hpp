@@ -35,6 +35,7 @@ class ProtocolServer {
     if (!usb.is_configured()) {
       reply_waits_ = false;
       app_.capture().stop();
+      if (restart_wanted_) restart_when_the_reply_is_gone();
       return;
     }
     hal::HidReport report;
@@ -63,10 +64,13 @@ class ProtocolServer {
       reply.status = problem == DecodeProblem::wrong_version ? Status::wrong_version : Status::damaged;
       return encode(reply);
     }
-    app_.host_heard();
     reply.type = reply_to(request.type);
     reply.sequence = request.sequence;
-    reply.status = handle(request, reply);
+    reply.client = request.client;
+    reply.status = may_act(request);
+    if (reply.status == Status::ok) reply.status = handle(request, reply);
+    if (reply.status == Status::ok && begins_motion(request.type)) app_.become_owner(request.client);
+    app_.owner_heard(request.client);  // last: a reply that says "at rest" also ends the watch for the heart-beat
     return encode(reply);
   }
 
@@ -77,13 +81,35 @@ class ProtocolServer {
     return request.get(payload) ? handler(payload) : Status::malformed;
   }
 
+  static constexpr bool begins_motion(MessageType type) {
+    return type == MessageType::enable || type == MessageType::jog || type == MessageType::move ||
+           type == MessageType::take_over;
+  }
+
+  /// Looking, stopping and disabling are everybody's; the rest waits for the end of another client's motion.
+  Status may_act(const Message& request) {
+    switch (request.type) {
+      case MessageType::enable:
+      case MessageType::jog:
+      case MessageType::move:
+      case MessageType::clear_faults:
+      case MessageType::commit:
+      case MessageType::save:
+      case MessageType::restart:
+        if (restart_wanted_) return Status::restarting;
+        return app_.may_command(request.client) ? Status::ok : Status::others_motion;
+      default:
+        return Status::ok;
+    }
+  }
+
   Status handle(const Message& request, Message& reply) {
     switch (request.type) {
       case MessageType::identify:
         reply.put(identity());
         return Status::ok;
       case MessageType::status:
-        reply.put(status());
+        reply.put(status(request.client));
         return Status::ok;
       case MessageType::timing:
         return with<TimingRequest>(request, [&](const TimingRequest& r) { return tell_timing(r, reply); });
@@ -102,6 +128,7 @@ class ProtocolServer {
       case MessageType::restart:
         return restart();
       case MessageType::heartbeat:
+      case MessageType::take_over:
         return Status::ok;
       default:
         return handle_motion(request, reply);
@@ -129,7 +156,7 @@ class ProtocolServer {
         app_.clear_faults();
         return Status::ok;
       case MessageType::start_capture:
-        return with<CaptureRequest>(request, [&](const CaptureRequest& r) { return start_capture(r); });
+        return with<CaptureRequest>(request, [&](const CaptureRequest& r) { return start_capture(r, request.client); });
       case MessageType::stop_capture:
         app_.capture().stop();
         reply.put(app_.capture().counts());
@@ -153,7 +180,7 @@ class ProtocolServer {
     return payload;
   }
 
-  StatusPayload status() {
+  StatusPayload status(ClientToken client) {
     const StoreReport& store = app_.store().report();
     StatusPayload payload;
     payload.control_periods = app_.control_periods();
@@ -166,7 +193,10 @@ class ProtocolServer {
     payload.flags = static_cast<std::uint8_t>((app_.has_unsaved_changes() ? kBoardUnsaved : 0) |
                                               (app_.board().emergency_stop().is_pressed() ? kBoardStopPressed : 0) |
                                               (app_.capture().is_running() ? kBoardCapturing : 0) |
-                                              (boot_.simulated ? kBoardSimulated : 0));
+                                              (boot_.simulated ? kBoardSimulated : 0) |
+                                              (!app_.any_enabled()     ? 0
+                                               : app_.is_owner(client) ? kBoardYours
+                                                                       : kBoardOthers));
     for (std::size_t axis = 0; axis < kAxisCount; ++axis) payload.axis[axis] = app_.axis_status(axis);
     return payload;
   }
@@ -264,11 +294,12 @@ class ProtocolServer {
 
   static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxisCount == 0; }
 
-  Status start_capture(const CaptureRequest& request) {
+  Status start_capture(const CaptureRequest& request, ClientToken client) {
     const bool has_unknown = ((request.channels[0] | request.channels[1]) >> kChannels) != 0;
     if (request.words() == 0 || request.words() > kWordsPerReport || has_unknown || request.every == 0)
       return Status::malformed;
     app_.start_capture(request);
+    capture_client_ = client;
     return Status::ok;
   }
 
@@ -292,7 +323,7 @@ class ProtocolServer {
     const std::uint32_t longest_way = static_cast<std::uint32_t>(app_.active().template get<"control.rate">()) / 50;
     if (app_.control_periods() - restart_asked_at_ < longest_way) return;
     restart_wanted_ = false;
-    app_.board().restart();
+    if (!app_.any_enabled()) app_.board().restart();
   }
 
   template <hal::UsbHid Usb>
@@ -304,6 +335,7 @@ class ProtocolServer {
       Message message;
       message.type = MessageType::samples;
       message.sequence = samples_sent_++;
+      message.client = capture_client_;
       message.put(payload);
       message.length = static_cast<std::uint8_t>(sizeof payload.first_row + 4 * rows * app_.capture().words_per_row());
       samples_ = encode(message);
@@ -323,6 +355,7 @@ class ProtocolServer {
   bool restart_wanted_ = false;
   std::uint32_t restart_asked_at_ = 0;
   std::uint16_t samples_sent_ = 0;
+  ClientToken capture_client_ = 0;  ///< whose capture it is
   std::uint32_t reports_ = 0;
   std::uint32_t rejected_ = 0;
 };

@@ -23,6 +23,7 @@ class PilStation {
     for (std::size_t i = 0; i < kPilAxes; ++i)
       result.error[i] = static_cast<std::uint32_t>(axes_[i].configure(parameters[i]));
     axes_.board().configure(BoardWatch::default_limits(kPilPeriod_s));
+    axes_.board().excuse_pause();
     return result;
   }
 

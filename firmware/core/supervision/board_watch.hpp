@@ -20,20 +20,24 @@ struct BoardLimits {
   std::uint32_t control_period_us = 1000;
   std::uint32_t longest_period_us = 1500;  ///< from one control period to the next
   std::int32_t heartbeat_samples = 100;    ///< longest silence of a host that commands motion
+  std::int32_t standing_samples = 60'000;  ///< the same while enabled axes stand
 };
 
 class BoardWatch {
  public:
-  /// Half a period late is an overrun; silence of 0.1 s is a lost host (ten of its 10 ms cycles).
+  /// Half a period late is an overrun; silence of 0.1 s is a lost host (ten of its 10 ms cycles), of a minute one that
+  /// has left enabled axes alone.
   static constexpr BoardLimits default_limits(float sample_period_s) {
     const auto period_us = static_cast<std::uint32_t>(ScalarTraits<float>::nearest_product(sample_period_s, 1e6f));
-    return {period_us, period_us + period_us / 2, ScalarTraits<float>::nearest_product(0.1f, 1.0f / sample_period_s)};
+    const float rate_Hz = 1.0f / sample_period_s;
+    return {period_us, period_us + period_us / 2, ScalarTraits<float>::nearest_product(0.1f, rate_Hz),
+            ScalarTraits<float>::nearest_product(60.0f, rate_Hz)};
   }
 
-  constexpr void configure(const BoardLimits& limits) {
-    limits_ = limits;
-    is_primed_ = false;
-  }
+  constexpr void configure(const BoardLimits& limits) { limits_ = limits; }
+
+  /// The next control period may come as late as it likes: the control interrupt was shut out on purpose.
+  constexpr void excuse_pause() { is_primed_ = false; }
 
   /// The host commands motion from now on, or lets go of it.
   constexpr void host_commands(bool commands) {
@@ -51,8 +55,9 @@ class BoardWatch {
     if (inputs.supply_low) return AxisFault::supply_low;
     if (late) return AxisFault::control_overrun;
     if (inputs.store_damaged) return AxisFault::parameter_store_damaged;
-    if (!outputs_on || !host_commands_) return AxisFault::none;
-    if (silent_samples_ >= limits_.heartbeat_samples) return AxisFault::host_heartbeat_lost;
+    if (!outputs_on) return AxisFault::none;
+    if (silent_samples_ >= (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples))
+      return AxisFault::host_heartbeat_lost;
     ++silent_samples_;
     return AxisFault::none;
   }

@@ -31,6 +31,7 @@ struct BoardOnABench {
   firmware::ImageHeader image;
   firmware::ProtocolServer<Application> server{application, image, {}};
   std::uint16_t sequence = 0;
+  std::uint16_t client = 1;  ///< who asks
 
   /// Starts with what the flash holds.
   explicit BoardOnABench(const hal::pc::SimulatedFlash* flash = nullptr) {
@@ -63,11 +64,13 @@ struct BoardOnABench {
     return ask(request);
   }
 
-  firmware::Message ask(const firmware::Message& request) {
+  firmware::Message ask(firmware::Message request) {
+    request.client = client;
     firmware::Message reply;
     EXPECT_EQ(firmware::decode(server.answer(firmware::encode(request)), reply), firmware::DecodeProblem::none);
     EXPECT_EQ(reply.type, firmware::reply_to(request.type));
     EXPECT_EQ(reply.sequence, request.sequence);
+    EXPECT_EQ(reply.client, request.client);
     return reply;
   }
 

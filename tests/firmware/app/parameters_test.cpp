@@ -105,8 +105,8 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   ASSERT_EQ(before_compensated.first, SetProblem{});
   for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
     if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
-    // Needs a host: board_application_test.cpp, BoardMotion.StopsWhenTheHostFallsSilent.
-    if (place == place_named("host.timeout")) continue;
+    // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
+    if (place == place_named("host.timeout") || place == place_named("host.standing_timeout")) continue;
     const auto changes = [place](ParameterValues of, const auto& behaved) {
       of.set(place, changed(firmware::rule_at(place), of.at(place)));
       return behaviour<TypeParam>(of) != behaved;
