@@ -6,9 +6,16 @@
 
 namespace hal {
 
-/// Contract: `send(byte)` waits until the transmitter takes the byte, for a bounded time (one character at the slowest
-/// rate). `receive(byte)` takes a byte that has arrived and returns at once; false if there is none. Bytes that arrive
-/// while an earlier one waits are lost.
+/// Contract of the hardware's side: `offer(byte)` gives the byte to the transmitter, or says that it has no room yet;
+/// `receive(byte)` takes a byte that has arrived, or says that there is none. Neither waits. Bytes that arrive while an
+/// earlier one waits are lost.
+template <typename T>
+concept SerialLine = requires(T& line, std::byte out, std::byte& in) {
+  { line.offer(out) } -> std::same_as<bool>;
+  { line.receive(in) } -> std::same_as<bool>;
+};
+
+/// Contract of the program's side: as SerialLine, but `send` takes the byte for good.
 template <typename T>
 concept SerialPort = requires(T& port, std::byte out, std::byte& in) {
   { port.send(out) } -> std::same_as<void>;

@@ -20,14 +20,27 @@ class Liveness {
     return true;
   }
 
+  /// For the control interrupt: the supervisor has reported within its last kMostPeriods periods. Ask once a period.
+  bool supervisor_ran_lately() {
+    if (supervisor_rounds_ != seen_round_) {
+      seen_round_ = supervisor_rounds_;
+      seen_at_period_ = control_periods_;
+    }
+    return control_periods_ - seen_at_period_ <= kMostPeriods;
+  }
+
   std::uint32_t control_periods() const { return control_periods_; }
   std::uint32_t supervisor_rounds() const { return supervisor_rounds_; }
 
  private:
+  static constexpr std::uint32_t kMostPeriods = 200;  ///< 10 ms at 20 kHz, where a round of the background takes 1 ms
+
   volatile std::uint32_t control_periods_ = 0;    // written in the interrupt, read in the background
   volatile std::uint32_t supervisor_rounds_ = 0;  // written in the background, read in the interrupt
   std::uint32_t fed_at_period_ = 0;
   std::uint32_t fed_at_round_ = 0;
+  std::uint32_t seen_round_ = 0;  // the interrupt's own
+  std::uint32_t seen_at_period_ = 0;
 };
 
 }  // namespace firmware

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-namespace hal::cortex_m {
+#include "hal/cortex_m/register.hpp"
 
-using Register = volatile std::uint32_t;
+namespace hal::cortex_m {
 
 /// A peripheral's registers at their place in the address space.
 template <typename Registers>
@@ -17,6 +17,7 @@ inline Registers& at_address(std::uintptr_t address) {
 struct SystemControl {
   Register CPUID, ICSR, VTOR, AIRCR, SCR, CCR, SHPR[3], SHCSR, CFSR, HFSR, DFSR, MMFAR, BFAR, AFSR;
 
+  static constexpr std::uint32_t kForgetSysTick = 1u << 25;         // ICSR.PENDSTCLR, B3.2.4
   static constexpr std::uint32_t kResetRequest = 0x05FA0004;        // AIRCR: key and SYSRESETREQ, B3.2.6
   static constexpr std::uint32_t kTrapDivideByZero = 1u << 4;       // CCR, B3.2.8
   static constexpr std::uint32_t kTrapUnaligned = 1u << 3;          // CCR
@@ -54,6 +55,16 @@ struct Mpu {
 };
 inline Mpu& mpu() { return at_address<Mpu>(0xE000ED90); }
 
+/// Cycle counter of the debug unit, C1.8: counts processor clocks modulo 2^32, while the trace unit is on (C1.6.5).
+struct CycleCounter {
+  Register CTRL, CYCCNT;
+
+  static constexpr std::uint32_t kEnable = 1u << 0;
+};
+inline CycleCounter& cycle_counter() { return at_address<CycleCounter>(0xE0001000); }
+inline Register& debug_monitor_control() { return at_address<Register>(0xE000EDFC); }
+inline constexpr std::uint32_t kTraceEnable = 1u << 24;  // DEMCR.TRCENA
+
 /// Interrupt controller, B3.4.
 struct InterruptController {
   Register ISER[8];
@@ -66,7 +77,7 @@ struct InterruptController {
   std::uint32_t reserved3[24];
   Register IABR[8];
   std::uint32_t reserved4[56];
-  volatile std::uint8_t IPR[240];
+  ByteRegister IPR[240];
 };
 inline InterruptController& interrupt_controller() { return at_address<InterruptController>(0xE000E100); }
 
@@ -84,7 +95,7 @@ inline constexpr int kSysTickException = 15;
 
 /// Priority of a system exception (4..15), B3.2.10.
 inline void set_exception_priority(int exception, std::uint8_t priority) {
-  at_address<volatile std::uint8_t>(0xE000ED18u + static_cast<std::uintptr_t>(exception) - 4) =
+  at_address<ByteRegister>(0xE000ED18u + static_cast<std::uintptr_t>(exception) - 4) =
       static_cast<std::uint8_t>(priority << 4);
 }
 

@@ -18,10 +18,10 @@ class UartPort {
     registers().CTRL = kTransmit | kReceive;
   }
 
-  void send(std::byte byte) {
-    constexpr int kMostPolls = 100000;
-    for (int poll = 0; poll < kMostPolls && (registers().STATE & kTransmitFull) != 0; ++poll) continue;
+  bool offer(std::byte byte) {
+    if ((registers().STATE & kTransmitFull) != 0) return false;
     registers().DATA = static_cast<std::uint32_t>(byte);
+    return true;
   }
 
   bool receive(std::byte& byte) {
@@ -38,7 +38,7 @@ class UartPort {
   static constexpr std::uint32_t kTransmitFull = 1u << 0, kReceiveFull = 1u << 1;  // STATE
   static constexpr std::uint32_t kTransmit = 1u << 0, kReceive = 1u << 1;          // CTRL
 };
-static_assert(SerialPort<UartPort>);
+static_assert(SerialLine<UartPort>);
 
 /// APB watchdog, section 4.6: its first time-out asks for an interrupt, its second resets.
 class Watchdog {

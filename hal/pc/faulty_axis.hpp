@@ -21,6 +21,7 @@ struct AxisDefects {
   bool motor_reversed = false;         ///< its leads are swapped
   bool dac_stuck = false;              ///< stays at dac_stuck_code
   std::int32_t dac_stuck_code = 0;
+  bool dac_unhealthy = false;  ///< its registers, read back, are not as they were set
   bool blocked = false;        ///< nothing moves
   bool drive_faulted = false;  ///< the amplifier gives no current, and says so
   bool positive_end_reached = false;
@@ -83,6 +84,7 @@ class FaultyAxis {
       const std::int32_t put_out = d.dac_stuck ? d.dac_stuck_code : code;
       return axis_.sound_.dac().write(d.motor_reversed ? -put_out : put_out);
     }
+    bool is_healthy() const { return !axis_.defects.dac_unhealthy; }
     std::int32_t commanded() const { return commanded_; }
 
    private:

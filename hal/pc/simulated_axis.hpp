@@ -81,6 +81,7 @@ class SimulatedAxis {
       plant_.set_command(code * plant_.data().dac_resolution_V);
       return true;
     }
+    bool is_healthy() const { return true; }
 
    private:
     sim::Plant& plant_;

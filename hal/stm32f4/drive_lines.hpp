@@ -1,6 +1,8 @@
 // The digital lines of one drive: enable out, fault and switches in.
 #pragma once
 
+#include <initializer_list>
+
 #include "hal/drive_enable.hpp"
 #include "hal/emergency_stop.hpp"
 #include "hal/limit_inputs.hpp"

@@ -74,7 +74,7 @@ class ParameterFlash {
     std::memcpy(&wanted, bytes.data(), sizeof wanted);
     std::memcpy(&present, cell, sizeof present);
     if ((wanted & ~present) != 0) return FlashResult::not_erased;
-    *reinterpret_cast<volatile std::uint32_t*>(cell) = wanted;
+    *reinterpret_cast<Register*>(cell) = wanted;
     return finish();
   }
 

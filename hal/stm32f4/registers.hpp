@@ -26,18 +26,23 @@ struct Rcc {
   std::uint32_t reserved5[2];
   Register BDCR, CSR;
 
-  static constexpr std::uint32_t kHseOn = 1u << 16, kHseReady = 1u << 17;  // CR, 7.3.1
-  static constexpr std::uint32_t kClockSecurity = 1u << 19;                // CR
-  static constexpr std::uint32_t kPllOn = 1u << 24, kPllReady = 1u << 25;  // CR
-  static constexpr std::uint32_t kPllFromHse = 1u << 22;                   // PLLCFGR, 7.3.2
+  static constexpr std::uint32_t kHsiOn = 1u << 0, kHsiReady = 1u << 1, kHsiTrim = 0x1Fu << 3;  // CR, 7.3.1
+  static constexpr std::uint32_t kHseOn = 1u << 16, kHseReady = 1u << 17;                       // CR
+  static constexpr std::uint32_t kClockSecurity = 1u << 19;                                     // CR
+  static constexpr std::uint32_t kPllOn = 1u << 24, kPllReady = 1u << 25;                       // CR
+  static constexpr std::uint32_t kPllFromHse = 1u << 22;                                        // PLLCFGR, 7.3.2
   static constexpr std::uint32_t kSwitchToPll = 2u << 0, kSwitchedMask = 3u << 2, kSwitchedToPll = 2u << 2;  // CFGR
   static constexpr std::uint32_t kApb1By4 = 5u << 10, kApb2By2 = 4u << 13;  // CFGR, 7.3.3
   static constexpr std::uint32_t kGpioA = 1u << 0, kGpioB = 1u << 1, kGpioC = 1u << 2, kCcm = 1u << 20,
                                  kDma2 = 1u << 22;  // AHB1ENR, 7.3.10
   static constexpr std::uint32_t kOtgFs = 1u << 7;  // AHB2ENR, 7.3.11
   static constexpr std::uint32_t kTim2 = 1u << 0, kTim3 = 1u << 1, kTim4 = 1u << 2, kTim5 = 1u << 3,
-                                 kPower = 1u << 28;                                                         // APB1ENR
+                                 kWindowWatchdog = 1u << 11, kPower = 1u << 28;                             // APB1ENR
   static constexpr std::uint32_t kUsart1 = 1u << 4, kAdc1 = 1u << 8, kSpi1 = 1u << 12, kSyscfg = 1u << 14;  // APB2ENR
+  // AHB1RSTR to APB2RSTR, 7.3.5 to 7.3.9: every peripheral that a boot ROM or an earlier program may have used. The
+  // bits of PWR (APB1) and SYSCFG (APB2) stay out: neither holds what could disturb.
+  static constexpr std::uint32_t kAhb1Resets = 0x2260'11FFu, kAhb2Resets = 0x0000'00F1u, kApb1Resets = 0x26FE'C9FFu,
+                                 kApb2Resets = 0x0007'1933u;
   static constexpr std::uint32_t kRemoveResetFlags = 1u << 24;  // CSR, 7.3.21
   static constexpr std::uint32_t kBrownOutReset = 1u << 25, kPinReset = 1u << 26, kPowerReset = 1u << 27,
                                  kSoftwareReset = 1u << 28, kWatchdogReset = 1u << 29, kWindowReset = 1u << 30,
@@ -66,6 +71,8 @@ struct FlashInterface {
   static constexpr std::uint32_t kProgram = 1u << 0, kSectorErase = 1u << 1, kStart = 1u << 16, kLock = 1u << 31,
                                  kWordParallelism = 2u << 8;                                 // CR, 3.9.5
   static constexpr std::uint32_t sector_field(std::uint32_t sector) { return sector << 3; }  // CR
+  static constexpr std::uint32_t kBrownOutField = 3u << 2, kBrownOutLevel3 = 0u << 2, kBrownOutLevel2 = 1u << 2,
+                                 kBrownOutLevel1 = 2u << 2, kBrownOutOff = 3u << 2;  // OPTCR.BOR_LEV, 3.9.6
 };
 inline FlashInterface& flash_interface() { return at_address<FlashInterface>(0x40023C00); }
 
@@ -99,8 +106,8 @@ inline Timer& timer5() { return at_address<Timer>(0x40000C00); }
 struct Spi {
   Register CR1, CR2, SR, DR;
 
-  static constexpr std::uint32_t kClockPhase2 = 1u << 0, kMaster = 1u << 2, kBaudBy4 = 1u << 3, kEnable = 1u << 6,
-                                 kSoftwareSelect = 3u << 8;                                       // CR1, 28.5.1
+  static constexpr std::uint32_t kClockPhase2 = 1u << 0, kMaster = 1u << 2, kBaudBy4 = 1u << 3, kBaudBy8 = 2u << 3,
+                                 kEnable = 1u << 6, kSoftwareSelect = 3u << 8;                    // CR1, 28.5.1
   static constexpr std::uint32_t kReceived = 1u << 0, kTransmitEmpty = 1u << 1, kBusy = 1u << 7;  // SR, 28.5.3
 };
 inline Spi& spi1() { return at_address<Spi>(0x40013000); }
@@ -109,8 +116,8 @@ inline Spi& spi1() { return at_address<Spi>(0x40013000); }
 struct Adc {
   Register SR, CR1, CR2, SMPR1, SMPR2, JOFR[4], HTR, LTR, SQR1, SQR2, SQR3, JSQR, JDR[4], DR;
 
-  static constexpr std::uint32_t kOverrun = 1u << 5;  // SR, 13.13.1
-  static constexpr std::uint32_t kScan = 1u << 8;     // CR1, 13.13.2
+  static constexpr std::uint32_t kOverrun = 1u << 5;                             // SR, 13.13.1
+  static constexpr std::uint32_t kScan = 1u << 8, kOverrunInterrupt = 1u << 26;  // CR1, 13.13.2
   static constexpr std::uint32_t kOn = 1u << 0, kDma = 1u << 8, kDmaContinues = 1u << 9, kTriggerTimer3 = 8u << 24,
                                  kTriggerRising = 1u << 28;  // CR2, 13.13.3
 };
@@ -151,6 +158,15 @@ struct IndependentWatchdog {
 };
 inline IndependentWatchdog& independent_watchdog() { return at_address<IndependentWatchdog>(0x40003000); }
 
+/// Window watchdog, section 22.6.
+struct WindowWatchdog {
+  Register CR, CFR, SR;
+
+  static constexpr std::uint32_t kRun = 1u << 7, kMost = 0x7Fu, kLeast = 0x40u;  // CR, 22.6.1
+  static constexpr std::uint32_t kBy8 = 3u << 7;                                 // CFR.WDGTB, 22.6.2
+};
+inline WindowWatchdog& window_watchdog() { return at_address<WindowWatchdog>(0x40002C00); }
+
 /// Full-speed USB, section 34.16.2: its global registers as far as TinyUSB leaves them to us.
 struct OtgFsGlobal {
   std::uint32_t reserved0[14];
@@ -167,6 +183,7 @@ struct UniqueIdentifier {
 inline const UniqueIdentifier& unique_identifier() { return at_address<const UniqueIdentifier>(0x1FFF7A10); }
 
 /// Interrupt numbers, table 62.
+inline constexpr std::uint32_t kAdcInterrupt = 18;
 inline constexpr std::uint32_t kDma2Stream0Interrupt = 56;
 inline constexpr std::uint32_t kOtgFsInterrupt = 67;
 inline constexpr std::uint32_t kInterruptCount = 82;

@@ -45,24 +45,63 @@ class TachometerChannel {
 static_assert(Tachometer<TachometerChannel>);
 
 /// Channels 10 and 11 (PC0, PC1) in turn; TIM3's update starts each scan; the end of the transfer interrupts.
-inline void start_tachometer_conversions(Adc& adc, Register& common_control, Dma& dma, TachometerSamples& samples) {
-  constexpr std::uint32_t kX = 10, kY = 11;
-  constexpr std::uint32_t kPair = kX | kY << 5;
-  constexpr std::uint32_t kConversions = 2 * kTachometerSamples;
-  DmaStream& stream = dma.stream[0];  // DMA2 stream 0, channel 0: ADC1 (table 43)
-  stream.CR = 0;
-  stream.PAR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&adc.DR));
-  stream.M0AR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(samples.data()));
-  stream.NDTR = kConversions;
-  stream.CR = DmaStream::kCircular | DmaStream::kMemoryIncrement | DmaStream::kPeripheral16 | DmaStream::kMemory16 |
-              DmaStream::kHighPriority | DmaStream::kInterruptOnComplete | DmaStream::kEnable;
-  common_control = kAdcClockBy4;  // 21 MHz
-  adc.CR1 = Adc::kScan;
-  adc.SMPR1 = 3u << 0 | 3u << 3;        // 56 cycles on both: a scan takes 8 * 68 / 21 MHz = 26 us
-  adc.SQR1 = (kConversions - 1) << 20;  // scan length (13.13.9)
-  adc.SQR3 = kPair | kPair << 10 | kPair << 20;
-  adc.SQR2 = kPair;
-  adc.CR2 = Adc::kOn | Adc::kDma | Adc::kDmaContinues | Adc::kTriggerTimer3 | Adc::kTriggerRising;
-}
+class TachometerScan {
+ public:
+  TachometerScan(Adc& adc, Register& common_control, Dma& dma, TachometerSamples& samples)
+      : adc_(adc), common_control_(common_control), dma_(dma), samples_(samples) {}
+
+  /// The converter needs 3 us from here to its first trigger (datasheet, table 67).
+  void start() {
+    begin_transfer();
+    common_control_ = kAdcClockBy4;  // 21 MHz
+    adc_.CR1 = Adc::kScan | Adc::kOverrunInterrupt;
+    adc_.SMPR1 = 3u << 0 | 3u << 3;        // 56 cycles on both: a scan takes 8 * 68 / 21 MHz = 26 us
+    adc_.SQR1 = (kConversions - 1) << 20;  // scan length (13.13.9)
+    adc_.SQR3 = kPair | kPair << 10 | kPair << 20;
+    adc_.SQR2 = kPair;
+    adc_.CR2 = kOn;
+  }
+
+  /// In the control interrupt.
+  void acknowledge() { dma_.LIFCR = Dma::kStream0All; }
+
+  /// In the converter's interrupt: a conversion found its predecessor unread. Requests and triggers are ignored until
+  /// transfer and converter begin anew (13.8.1); otherwise no control interrupt would ever come again.
+  void recover_from_overrun() {
+    if ((adc_.SR & Adc::kOverrun) == 0) return;
+    overruns_ = overruns_ + 1;
+    adc_.CR2 = 0;
+    begin_transfer();
+    adc_.SR = ~Adc::kOverrun;
+    adc_.CR2 = kOn;
+  }
+  std::uint32_t overruns() const { return overruns_; }
+
+ private:
+  static constexpr std::uint32_t kX = 10, kY = 11;
+  static constexpr std::uint32_t kPair = kX | kY << 5;
+  static constexpr std::uint32_t kConversions = 2 * kTachometerSamples;
+  static constexpr std::uint32_t kOn =
+      Adc::kOn | Adc::kDma | Adc::kDmaContinues | Adc::kTriggerTimer3 | Adc::kTriggerRising;
+
+  /// DMA2 stream 0, channel 0: ADC1 (table 43). 10.3.17: off, flags cleared, set up, on.
+  void begin_transfer() {
+    DmaStream& stream = dma_.stream[0];
+    stream.CR = stream.CR & ~DmaStream::kEnable;
+    for (int poll = 0; poll < 1000 && (stream.CR & DmaStream::kEnable) != 0; ++poll) continue;
+    dma_.LIFCR = Dma::kStream0All;
+    stream.PAR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&adc_.DR));
+    stream.M0AR = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(samples_.data()));
+    stream.NDTR = kConversions;
+    stream.CR = DmaStream::kCircular | DmaStream::kMemoryIncrement | DmaStream::kPeripheral16 | DmaStream::kMemory16 |
+                DmaStream::kHighPriority | DmaStream::kInterruptOnComplete | DmaStream::kEnable;
+  }
+
+  Adc& adc_;
+  Register& common_control_;
+  Dma& dma_;
+  TachometerSamples& samples_;
+  volatile std::uint32_t overruns_ = 0;  // written in the interrupt, read in the background
+};
 
 }  // namespace hal::stm32f4

@@ -1,4 +1,4 @@
-// Serial port on a USART, polled.
+// Serial line on a USART.
 #pragma once
 
 #include "hal/serial_port.hpp"
@@ -8,7 +8,7 @@ namespace hal::stm32f4 {
 
 class UsartPort {
  public:
-  explicit UsartPort(Usart& registers) : registers_(registers) {}
+  explicit constexpr UsartPort(Usart& registers) : registers_(registers) {}
 
   /// 8 data bits, no parity, one stop bit. RM0090, 30.3.4: with 16-fold oversampling BRR is clock / baud.
   void start(std::uint32_t clock_Hz, std::uint32_t baud) {
@@ -16,12 +16,13 @@ class UsartPort {
     registers_.CR1 = Usart::kEnable | Usart::kTransmitter | Usart::kReceiver;
   }
 
-  void send(std::byte byte) {
-    constexpr int kMostPolls = 100000;  // a character at 9600 baud takes some 30,000 polls at 168 MHz
-    for (int poll = 0; poll < kMostPolls && (registers_.SR & Usart::kTransmitEmpty) == 0; ++poll) continue;
+  bool offer(std::byte byte) {
+    if ((registers_.SR & Usart::kTransmitEmpty) == 0) return false;
     registers_.DR = static_cast<std::uint32_t>(byte);
+    return true;
   }
 
+  /// Reading SR and then DR also clears an overrun (30.6.1).
   bool receive(std::byte& byte) {
     if ((registers_.SR & Usart::kReceived) == 0) return false;
     byte = static_cast<std::byte>(registers_.DR & 0xFF);
@@ -32,6 +33,6 @@ class UsartPort {
   Usart& registers_;
 };
 
-static_assert(SerialPort<UsartPort>);
+static_assert(SerialLine<UsartPort>);
 
 }  // namespace hal::stm32f4

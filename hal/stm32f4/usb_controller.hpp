@@ -4,13 +4,24 @@
 
 #include <array>
 
-#include "hal/stm32f4/registers.hpp"
+#include "hal/stm32f4/pin.hpp"
 #include "hal/usb_identity.hpp"
 
 namespace hal::stm32f4 {
 
-/// Clock on, and connected for good: the board has a supply of its own and PA9, where VBUS could be sensed, is the
-/// service port's.
+/// A computer's supply, behind a divider. The controller's own input for it, PA9, is the service port's.
+class VbusInput {
+ public:
+  explicit constexpr VbusInput(Pin pin) : pin_(pin) {}
+  void start() { pin_.make_input(Pull::down); }
+  bool is_present() { return pin_.read(); }
+
+ private:
+  Pin pin_;
+};
+
+/// Clock on. The controller takes VBUS for present at all times; whether it pulls D+ up is then decided by who asks
+/// VbusInput: a device must not feed the bus of a host that is off (USB 2.0, 7.1.5).
 inline void power_usb_controller(Rcc& rcc, OtgFsGlobal& controller) {
   rcc.AHB2ENR = rcc.AHB2ENR | Rcc::kOtgFs;
   controller.GCCFG = controller.GCCFG | OtgFsGlobal::kNoVbusSensing;

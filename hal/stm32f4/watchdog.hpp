@@ -1,4 +1,4 @@
-// Independent watchdog: runs on its own oscillator, and nothing but a reset stops it. RM0090, section 21.3.
+// The two watchdogs: nothing but a reset stops them.
 #pragma once
 
 #include <algorithm>
@@ -7,9 +7,10 @@
 
 namespace hal::stm32f4 {
 
+/// Runs on an oscillator of its own: finds a program that has stopped, and one whose clock has. RM0090, section 21.3.
 class Watchdog {
  public:
-  explicit Watchdog(IndependentWatchdog& registers) : registers_(registers) {}
+  explicit constexpr Watchdog(IndependentWatchdog& registers) : registers_(registers) {}
 
   /// 1..32760 ms nominally; the oscillator has 17 to 47 kHz instead of 32 (datasheet, table 35).
   void start(std::uint32_t timeout_ms) {
@@ -25,7 +26,7 @@ class Watchdog {
     registers_.PR = is_long ? kBy256 : kBy16;
     registers_.RLR = std::min(is_long ? timeout_ms / 8 : timeout_ms * 2, kMostTicks);
     // A new value counts once it has crossed into the oscillator's domain: within five of its cycles (21.4.4), 0.3 ms.
-    for (std::uint32_t poll = 0; poll < 100'000 && registers_.SR != 0; ++poll) continue;
+    for (std::uint32_t poll = 0; poll < 50'000 && registers_.SR != 0; ++poll) continue;
     feed();
   }
 
@@ -33,6 +34,40 @@ class Watchdog {
 
  private:
   IndependentWatchdog& registers_;
+};
+
+/// Runs on the bus clock, and wants food neither too late nor too early: finds a control interrupt that comes at a
+/// wrong rate. RM0090, chapter 22.
+class PeriodWatchdog {
+ public:
+  explicit constexpr PeriodWatchdog(WindowWatchdog& registers) : registers_(registers) {}
+
+  /// Fed every 16 to 20 ms by a caller who comes every 50 us to 4 ms. A tick is 4096 * 8 clocks, 0.78 ms:
+  /// too early is before 9.4 ms, too late after 30 ms.
+  /// Not while period_passed() may come.
+  void start() {
+    registers_.CFR = WindowWatchdog::kBy8 | kEarliest;
+    registers_.CR = WindowWatchdog::kRun | kFrom;
+    passed_us_ = 0;
+    runs_ = true;
+  }
+
+  /// Once a period, with its length.
+  void period_passed(std::uint32_t period_us) {
+    passed_us_ += period_us;
+    if (!runs_ || passed_us_ < kFed_us) return;
+    passed_us_ = 0;
+    registers_.CR = WindowWatchdog::kRun | kFrom;
+  }
+
+ private:
+  static constexpr std::uint32_t kFed_us = 16'000;
+  static constexpr std::uint32_t kFrom = WindowWatchdog::kLeast + 38;      // 39 ticks: 30.4 ms
+  static constexpr std::uint32_t kEarliest = WindowWatchdog::kLeast + 26;  // 12 ticks after that: 9.4 ms
+
+  WindowWatchdog& registers_;
+  std::uint32_t passed_us_ = 0;
+  bool runs_ = false;
 };
 
 }  // namespace hal::stm32f4

@@ -45,6 +45,7 @@ struct Function {
   bool accepts = false;  ///< the OUT endpoint waits for a report
   bool sends = false;    ///< the IN endpoint waits for the host to fetch `leaving`
   std::uint8_t idle = 0;
+  bool attached = true;
 };
 constinit Function function;
 
@@ -163,6 +164,16 @@ bool HidPort::start(std::string_view serial_number) {
   return tusb_rhport_init(kPort, &device);
 }
 
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): it changes the one port that there is
+void HidPort::attach(bool is_present) {
+  if (is_present == function.attached) return;
+  function.attached = is_present;
+  if (is_present)
+    tud_connect();
+  else
+    tud_disconnect();
+}
+
 void HidPort::poll() { tud_task(); }
 
 void HidPort::handle_interrupt() { tusb_int_handler(kPort, true); }
@@ -180,7 +191,7 @@ bool HidPort::receive(HidReport& report) {
   return true;
 }
 
-bool HidPort::is_configured() const { return tud_mounted() && !tud_suspended(); }
+bool HidPort::is_configured() const { return function.attached && tud_mounted() && !tud_suspended(); }
 
 }  // namespace hal::tinyusb
 

@@ -14,6 +14,10 @@ class HidPort {
   /// Connects to the bus, with this serial number. False when the controller does not answer.
   bool start(std::string_view serial_number);
 
+  /// Whether a computer's supply is on the cable, as often as one likes. Without it the board pulls no data line up,
+  /// and is not configured. Taken for present until told otherwise.
+  void attach(bool is_present);
+
   /// Handles what the controller has reported since. Calls back, answers requests of the control pipe, moves reports.
   void poll();
 

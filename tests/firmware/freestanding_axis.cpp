@@ -26,6 +26,7 @@ struct RegisterAxis {
       registers.dac = code;
       return true;
     }
+    bool is_healthy() const { return true; }
   } dac_{registers};
   struct Enable {
     volatile Registers& registers;

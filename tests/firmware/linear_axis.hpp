@@ -33,6 +33,7 @@ class LinearAxis {
       if (works) axis.command_V = code * axis.dac_resolution_V;
       return works;
     }
+    bool is_healthy() const { return true; }
   };
   struct Enable {
     bool on = false;

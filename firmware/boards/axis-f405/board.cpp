@@ -12,7 +12,24 @@ namespace {
 constexpr std::uint32_t kTimer2Function = 1, kTimer5Function = 2, kSpi1Function = 5, kUsart1Function = 7,
                         kUsbFunction = 10;
 
-constexpr std::uint32_t kControlPrescaler = 8;  // 10.5 MHz: 250 Hz still fit 16 bits
+/// What the chip lacks until its option bytes are written (README.md).
+constexpr std::uint32_t kBrownOutWanted = 270;
+
+constexpr const char* name_of(hal::ConverterState state) {
+  switch (state) {
+    case hal::ConverterState::sound:
+      return "sound";
+    case hal::ConverterState::silent:
+      return "silent";
+    case hal::ConverterState::registers_differ:
+      return "not as it was set";
+    case hal::ConverterState::too_hot:
+      return "too hot";
+    case hal::ConverterState::overloaded:
+      break;
+  }
+  return "overloaded";
+}
 
 void connect_pins() {
   pins::dac_not_clear().make_output(false);  // the converter's own way to 0 V, whatever it holds
@@ -38,15 +55,17 @@ void connect_pins() {
 
 bool Board::start() {
   Rcc& clock = rcc();
+  const bool clocks_reset = reset_clocks(clock);
   clock.AHB1ENR = clock.AHB1ENR | Rcc::kGpioA | Rcc::kGpioB | Rcc::kGpioC | Rcc::kDma2;
   connect_pins();
-  const bool clocks_run = start_clocks(clock, power(), flash_interface());
+  const bool clocks_run = clocks_reset && start_clocks(clock, power(), flash_interface());
   clock.APB1ENR = clock.APB1ENR | Rcc::kTim2 | Rcc::kTim3 | Rcc::kTim4 | Rcc::kTim5;
   clock.APB2ENR = clock.APB2ENR | Rcc::kUsart1 | Rcc::kAdc1 | Rcc::kSpi1;
-  constexpr std::uint32_t kResetClock_Hz = 16'000'000;
-  serial_.start(clocks_run ? kApb2Clock_Hz : kResetClock_Hz, 115200);
+  usart_.start(clocks_run ? kApb2Clock_Hz : kResetClock_Hz, 115200);
   stop_.start();
   supply_.start();
+  vbus_.start();
+  pump_.start();
   clock_.start(kApb1TimerClock_Hz);
   x_.start();
   y_.start();
@@ -57,19 +76,64 @@ bool Board::start() {
 }
 
 void Board::set_control_rate(std::uint32_t rate_Hz) {
-  timer3().ARR = kApb1TimerClock_Hz / kControlPrescaler / rate_Hz - 1;
-  timer3().EGR = Timer::kUpdate;  // a count beyond the new end would run on to 65535
+  control_rate_Hz_ = rate_Hz;
+  period_us_ = 1'000'000 / rate_Hz;
+  control_timer_.set_rate(rate_Hz);
 }
 
 void Board::start_control() {
   constexpr std::uint8_t kPriority = 1;
-  start_tachometer_conversions(adc1(), adc_common_control(), dma2(), samples_);
+  scan_.start();
+  hal::cortex_m::enable_interrupt(kAdcInterrupt, kPriority);
   hal::cortex_m::enable_interrupt(kDma2Stream0Interrupt, kPriority);
-  Timer& timer = timer3();
-  timer.PSC = kControlPrescaler - 1;
-  timer.CR2 = Timer::kTriggerOnUpdate;
-  timer.EGR = Timer::kUpdate;
-  timer.CR1 = Timer::kEnable;
+  control_timer_.start(kApb1TimerClock_Hz, control_rate_Hz_);
+}
+
+void Board::start_watchdogs() {
+  Rcc& clock = rcc();
+  clock.APB1ENR = clock.APB1ENR | Rcc::kWindowWatchdog;
+  watchdog_.start(kWatchdog_ms);
+  const ControlShutOut guard;
+  period_watchdog_.start();
+}
+
+/// On this chip the window watchdog stands still without its clock (RM0090, 7.3.13: set and cleared by software); the
+/// independent one cannot be stopped.
+void Board::begin_stall() {
+  rcc().APB1ENR = rcc().APB1ENR & ~Rcc::kWindowWatchdog;
+  watchdog_.allow(kStall_ms);
+}
+
+void Board::end_stall() {
+  watchdog_.allow(kWatchdog_ms);
+  rcc().APB1ENR = rcc().APB1ENR | Rcc::kWindowWatchdog;
+}
+
+void Board::watch(bool outputs_off) {
+  usb_.attach(vbus_.is_present());
+  const std::uint32_t now_periods = control_periods_;
+  if (now_periods - watched_at_period_ < control_rate_Hz_ / kWatches_Hz) return;
+  watched_at_period_ = now_periods;
+  const ControlShutOut guard;  // 8 us: two frames of the converter that nobody may come between
+  if (converter_.state() == hal::ConverterState::sound) {
+    converter_.watch();
+    if (converter_.state() != hal::ConverterState::sound) converter_trouble_ = converter_.state();
+  } else if (outputs_off) {
+    converter_.start();
+  }
+}
+
+void Board::report(TextWriter<Serial>& out) const {
+  const std::uint32_t threshold = brown_out_threshold(flash_interface());
+  out << "option bytes: brown-out reset ";
+  if (threshold == 0)
+    out << "off";
+  else
+    out << "at " << threshold << " hundredths of a volt";
+  out << (threshold == kBrownOutWanted ? "\n" : ", should be 270: see the board's README\n");
+  out << "converter: " << name_of(converter_.state()) << ", last trouble: " << name_of(converter_trouble_)
+      << "; scans restarted after an overrun: " << scan_.overruns() << "; characters lost here: " << serial_.lost()
+      << "\n";
 }
 
 bool Board::start_usb() {
@@ -81,9 +145,15 @@ bool Board::start_usb() {
 }
 
 void Board::acknowledge_control() {
-  dma2().LIFCR = Dma::kStream0All;
+  control_periods_ = control_periods_ + 1;
+  scan_.acknowledge();
   x_.tachometer().conversions_have_arrived();
   y_.tachometer().conversions_have_arrived();
+}
+
+void Board::control_has_run(bool all_is_alive) {
+  if (all_is_alive) pump_.beat();
+  period_watchdog_.period_passed(period_us_);
 }
 
 void Board::show(bool running, bool fault) {

@@ -4,13 +4,18 @@
 #include "firmware/boards/axis-f405/pins.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/survival_record.hpp"
+#include "firmware/boards/image/text_writer.hpp"
 #include "hal/ad5752.hpp"
 #include "hal/board.hpp"
 #include "hal/cortex_m/control_shut_out.hpp"
+#include "hal/serial_queue.hpp"
+#include "hal/stm32f4/charge_pump.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
+#include "hal/stm32f4/control_timer.hpp"
 #include "hal/stm32f4/drive_lines.hpp"
 #include "hal/stm32f4/encoder_timer.hpp"
 #include "hal/stm32f4/microsecond_clock.hpp"
+#include "hal/stm32f4/option_bytes.hpp"
 #include "hal/stm32f4/parameter_flash.hpp"
 #include "hal/stm32f4/spi_port.hpp"
 #include "hal/stm32f4/supply_detector.hpp"
@@ -58,12 +63,15 @@ class Board {
   using AxisType = BoardAxisHal;
   using ControlShutOut = hal::cortex_m::ControlShutOut;
 
+  using Serial = hal::SerialQueue<hal::stm32f4::UsartPort, 2048>;  ///< room for a boot report with a fault
+
   /// Clocks, pins and peripherals, with the D/A at 0 V and the enables off from the first moment. False when the clock
   /// or the converter does not start; the board must then stay disabled.
   bool start();
 
-  /// Starts the watchdog, which wants food every 50 ms from now on.
-  void start_watchdog() { watchdog_.start(kWatchdog_ms); }
+  /// Starts the watchdogs: one wants food from the background every 50 ms from now on, the other from the control
+  /// interrupt at its rate.
+  void start_watchdogs();
   void feed_watchdog() { watchdog_.feed(); }
 
   /// 250 Hz to 20 kHz; before start_control(), or at any time after.
@@ -74,25 +82,37 @@ class Board {
   bool start_usb();
   /// First thing in the control interrupt.
   void acknowledge_control();
+  /// Last thing in it. The charge pump outside gets its beat only while all is alive.
+  void control_has_run(bool all_is_alive);
+  /// The converter's interrupt.
+  void recover_conversions() { scan_.recover_from_overrun(); }
+
+  /// The background's share: connects to a computer that is there, reads the D/A converter back, a register at a time,
+  /// and starts it anew while the outputs are off.
+  void watch(bool outputs_off);
+  /// What a builder should know: option bytes, converter, overruns.
+  void report(TextWriter<Serial>& out) const;
 
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
   hal::stm32f4::StopInput& emergency_stop() { return stop_; }
   hal::stm32f4::SupplyDetector& supply() { return supply_; }
   hal::stm32f4::MicrosecondClock& clock() { return clock_; }
-  hal::stm32f4::UsartPort& serial() { return serial_; }
+  Serial& serial() { return serial_; }
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::ParameterFlash& parameter_flash() { return parameter_flash_; }
 
-  /// Erasing a sector takes 2 s at most (datasheet, table 40); the watchdog's oscillator runs at 47 kHz instead of 32
-  /// at most, which makes 4 s 2.7.
-  void begin_stall() { watchdog_.allow(4000); }
-  void end_stall() { watchdog_.allow(kWatchdog_ms); }
+  void begin_stall();
+  void end_stall();
   void restart() { reset_processor(); }
 
   void show(bool running, bool fault);
 
  private:
   static constexpr std::uint32_t kWatchdog_ms = 50;
+  /// Erasing a sector takes 2 s at most (datasheet, table 40); the watchdog's oscillator runs at 47 kHz instead of 32
+  /// at most, which makes 4 s 2.7.
+  static constexpr std::uint32_t kStall_ms = 4000;
+  static constexpr std::uint32_t kWatches_Hz = 200;  ///< each of the converter's six registers every 30 ms
 
   hal::stm32f4::TachometerSamples samples_{};
   hal::stm32f4::SpiPort spi_{hal::stm32f4::spi1(), pins::dac_select()};
@@ -112,11 +132,22 @@ class Board {
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
   hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer4()};
-  hal::stm32f4::UsartPort serial_{hal::stm32f4::usart1()};
+  hal::stm32f4::VbusInput vbus_{pins::usb_supply()};
+  hal::stm32f4::ChargePump pump_{pins::charge_pump()};
+  hal::stm32f4::ControlTimer control_timer_{hal::stm32f4::timer3()};
+  hal::stm32f4::TachometerScan scan_{hal::stm32f4::adc1(), hal::stm32f4::adc_common_control(), hal::stm32f4::dma2(),
+                                     samples_};
+  hal::stm32f4::UsartPort usart_{hal::stm32f4::usart1()};
+  Serial serial_{usart_};
   hal::tinyusb::HidPort usb_;
   hal::stm32f4::ParameterFlash parameter_flash_{
       hal::stm32f4::flash_interface(), reinterpret_cast<std::byte*>(hal::stm32f4::ParameterFlash::kFirstAddress)};
   hal::stm32f4::Watchdog watchdog_{hal::stm32f4::independent_watchdog()};
+  hal::stm32f4::PeriodWatchdog period_watchdog_{hal::stm32f4::window_watchdog()};
+  std::uint32_t control_rate_Hz_ = 1000, period_us_ = 1000;
+  volatile std::uint32_t control_periods_ = 0;  // written in the interrupt, read in the background
+  std::uint32_t watched_at_period_ = 0;
+  hal::ConverterState converter_trouble_ = hal::ConverterState::sound;
 };
 
 static_assert(hal::Board<Board>);

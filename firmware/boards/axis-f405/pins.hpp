@@ -36,6 +36,8 @@ inline Pin home_y() { return {gpio_c(), 9}; }
 inline Pin emergency_stop() { return {gpio_c(), 10}; }
 inline Pin led_running() { return {gpio_b(), 8}; }
 inline Pin led_fault() { return {gpio_b(), 9}; }
+inline Pin charge_pump() { return {gpio_c(), 12}; }
+inline Pin usb_supply() { return {gpio_a(), 8}; }
 inline Pin usb_minus() { return {gpio_a(), 11}; }
 inline Pin usb_plus() { return {gpio_a(), 12}; }
 inline Pin serial_out() { return {gpio_a(), 9}; }

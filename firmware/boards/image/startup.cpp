@@ -14,9 +14,11 @@ extern void (*_init_array_start[])();
 extern void (*_init_array_end[])();
 [[noreturn]] void run_board();
 void fault_entry();
+void reset_entry();
 
 void control_interrupt();
 void usb_interrupt();
+void adc_interrupt();
 #ifdef AXIS_NMI_HANDLER
 void AXIS_NMI_HANDLER();
 #endif
@@ -53,15 +55,6 @@ void paint_stack() {
 
 }  // namespace
 
-/// The FPU comes first: start() may already use its registers.
-extern "C" [[gnu::used, noreturn]] void reset_entry() {
-#if defined(__ARM_FP)
-  hal::cortex_m::coprocessor_access() = hal::cortex_m::coprocessor_access() | hal::cortex_m::kFpuFullAccess;
-  asm volatile("dsb\n isb" ::: "memory");
-#endif
-  start();
-}
-
 namespace {
 
 using Handler = void (*)();
@@ -85,6 +78,9 @@ constexpr VectorTable make_vectors() {
 #ifdef AXIS_NMI_HANDLER
   table.exceptions[1] = AXIS_NMI_HANDLER;
 #endif
+#ifdef AXIS_ADC_INTERRUPT
+  table.interrupts[AXIS_ADC_INTERRUPT] = adc_interrupt;
+#endif
 #ifdef AXIS_USB_INTERRUPT
   table.interrupts[AXIS_USB_INTERRUPT] = usb_interrupt;
 #endif
@@ -94,3 +90,36 @@ constexpr VectorTable make_vectors() {
 [[gnu::section(".vectors"), gnu::used]] constinit const VectorTable vectors = make_vectors();
 
 }  // namespace
+
+/// As after a reset, whatever ran before: a boot ROM's loader starts a program with its own vector table, and with
+/// interrupts enabled whose sources may still be alive (AN3156: the program has to set the vector table itself).
+extern "C" [[gnu::used, noreturn]] void begin_program() {
+  using namespace hal::cortex_m;
+  sys_tick().CSR = 0;
+  system_control().ICSR = SystemControl::kForgetSysTick;
+  InterruptController& interrupts = interrupt_controller();
+  for (std::size_t word = 0; word < (AXIS_INTERRUPT_COUNT + 31) / 32; ++word) {
+    interrupts.ICER[word] = 0xFFFFFFFF;
+    interrupts.ICPR[word] = 0xFFFFFFFF;
+  }
+  system_control().VTOR = reinterpret_cast<std::uint32_t>(&vectors);
+#if defined(__ARM_FP)
+  coprocessor_access() = coprocessor_access() | kFpuFullAccess;  // start() may already use its registers
+#endif
+  asm volatile("dsb\n isb\n cpsie i" ::: "memory");
+  start();
+}
+
+/// Interrupts out and the main stack at its top before anything else. Thumb-1 only, so that it also serves parts
+/// without Thumb-2.
+extern "C" [[gnu::naked, gnu::used]] void reset_entry() {
+  asm volatile(
+      "cpsid i              \n"
+      "movs r0, #0          \n"
+      "msr  control, r0     \n"
+      "isb                  \n"
+      "ldr  r0, =_stack_top \n"
+      "msr  msp, r0         \n"
+      "bl   begin_program   \n"
+      ".ltorg               \n");
+}

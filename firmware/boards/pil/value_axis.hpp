@@ -26,6 +26,7 @@ class ValueAxis {
       ++writes;
       return true;
     }
+    bool is_healthy() const { return true; }
   };
   struct Enable {
     bool on = false;

@@ -12,6 +12,7 @@
 #include "firmware/boards/pil/pil_station.hpp"
 #include "firmware/boards/qemu-f405/provoke.hpp"
 #include "hal/qemu/semihosting.hpp"
+#include "hal/serial_queue.hpp"
 #include "hal/stm32f4/usart_port.hpp"
 
 namespace firmware::boards {
@@ -23,7 +24,8 @@ using Station = PilStation<BoardScalar>;
 
 [[gnu::section(".ccm")]] constinit Station station;
 constinit Liveness liveness;
-hal::stm32f4::UsartPort serial(hal::stm32f4::usart1());
+hal::stm32f4::UsartPort usart(hal::stm32f4::usart1());
+hal::SerialQueue<hal::stm32f4::UsartPort, 2048> serial(usart);
 
 /// Where the control interrupt's readings come from and its words go to.
 enum class Loop : std::uint8_t { none, standing, files };
@@ -102,7 +104,10 @@ void run_over_files() {
 /// The same over the serial port, with frames; a hello frame tells the other end that the receiver is on.
 void run_over_serial() {
   FrameReceiver<sizeof(Station::Parameters)> receiver;
-  const auto send = [](std::byte byte) { serial.send(byte); };
+  const auto send = [](std::byte byte) {
+    serial.send(byte);
+    serial.poll();  // the emulated port takes any number at once
+  };
   const auto next = [&receiver] {
     std::byte byte{};
     for (;;) {
@@ -137,6 +142,7 @@ void run_over_serial() {
   out << "ready\n";
   for (;;) {
     liveness.supervisor_ran();
+    serial.poll();
     std::byte letter{};
     if (!serial.receive(letter)) continue;
     switch (static_cast<char>(letter)) {
@@ -152,6 +158,8 @@ void run_over_serial() {
       case 'i':
         provoke_unexpected_interrupt();
         break;
+      case 'j':
+        start_again_like_a_boot_rom();
       case 'r':
         reset_processor();
       case 'u':
@@ -161,7 +169,7 @@ void run_over_serial() {
       case 'q':
         hal::qemu::exit_emulator(0);
       default:
-        out << "b d s i provoke faults, r resets, u tells stack use, q ends\n";
+        out << "b d s i provoke faults, j starts again, r resets, u tells stack use, q ends\n";
     }
   }
 }
@@ -185,7 +193,7 @@ extern "C" [[noreturn]] void run_board() {
   const LastRun last_run = take_over_survival_record(ResetCause::unknown);
   arm_fault_detection();
   constexpr std::uint32_t kResetClock_Hz = 16'000'000;  // the RC oscillator; QEMU sends at once anyway
-  serial.start(kResetClock_Hz, 115200);
+  usart.start(kResetClock_Hz, 115200);
   std::array<char, 64> wanted{};
   hal::qemu::command_line(wanted);
   if (std::strcmp(wanted.data(), "pil-files") == 0) run_over_files();

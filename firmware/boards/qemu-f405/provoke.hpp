@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "hal/cortex_m/registers.hpp"
+
 namespace firmware::boards {
 
 /// Writes where nothing is.
@@ -28,6 +30,31 @@ inline void provoke_unexpected_interrupt() {
   constexpr std::uint32_t kUnused = 50;
   *reinterpret_cast<volatile std::uint32_t*>(0xE000E100u + 4 * (kUnused / 32)) = 1u << (kUnused % 32);
   *reinterpret_cast<volatile std::uint32_t*>(0xE000E200u + 4 * (kUnused / 32)) = 1u << (kUnused % 32);
+}
+
+/// Starts the program again as a boot ROM's loader does, without a reset: the vector table is the loader's, whose
+/// handlers know nothing of this program, and interrupts of its own are enabled and pending.
+[[noreturn]] inline void start_again_like_a_boot_rom() {
+  using namespace hal::cortex_m;
+  constexpr std::uint32_t kVectors = 128, kPlace = 0x2001F000;  // where no image has data
+  constexpr std::uint32_t kPending = 30;
+  auto* table = reinterpret_cast<std::uint32_t*>(kPlace);
+  std::uint16_t* endless = reinterpret_cast<std::uint16_t*>(kPlace + 4 * kVectors);
+  *endless = 0xE7FE;  // b .
+  asm volatile("cpsid i" ::: "memory");
+  for (std::uint32_t i = 0; i < kVectors; ++i) table[i] = reinterpret_cast<std::uint32_t>(endless) | 1;
+  const auto* program = reinterpret_cast<const std::uint32_t*>(static_cast<std::uintptr_t>(system_control().VTOR));
+  const std::uint32_t entry = program[1];
+  system_control().VTOR = kPlace;
+  interrupt_controller().ISPR[kPending / 32] = 1u << (kPending % 32);
+  interrupt_controller().ISER[kPending / 32] = 1u << (kPending % 32);
+  asm volatile(
+      "dsb \n isb \n"
+      "msr msp, %0 \n"
+      "bx %1" ::"r"(kPlace),
+      "r"(entry)
+      : "memory");
+  __builtin_unreachable();
 }
 
 }  // namespace firmware::boards

@@ -1,9 +1,9 @@
-// The axis board's background: protocol, supervision, service port.
+// A board's background: protocol, supervision, service port. Nothing here waits: the watchdog gets its food in between.
 #include "firmware/app/protocol/server.hpp"
-#include "firmware/boards/axis-f405/application.hpp"
 #include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/stack_use.hpp"
+#include "firmware/boards/program/application.hpp"
 
 namespace firmware::boards {
 
@@ -14,24 +14,30 @@ void supervise() {
   bool fault = board.emergency_stop().is_pressed() || !application.store_is_usable();
   for (std::size_t i = 0; i < kAxisCount; ++i) fault = fault || application.axes()[i].fault() != AxisFault::none;
   board.show(true, fault);
+  board.watch(!application.any_enabled());
   liveness.supervisor_ran();
 }
 
-/// Letters on the service port: 'r' repeats the boot report, 'u' tells the use of stack and time.
+/// Letters on the service port: 'r' repeats the boot report, 'u' tells the use of stack and time. The answer to the one
+/// before goes out first.
 void serve(const LastRun& last_run, ImageState image) {
+  board.serial().poll();
   std::byte letter{};
-  if (!board.serial().receive(letter)) return;
+  if (!board.serial().is_empty() || !board.serial().receive(letter)) return;
   TextWriter out(board.serial());
   switch (static_cast<char>(letter)) {
     case 'r':
       report_boot(board.serial(), last_run, image);
+      board.report(out);
       break;
     case 'u':
       out << "stack: used " << stack_used_bytes() << " of " << stack_size_bytes() << " bytes, control periods "
-          << liveness.control_periods() << "\n";
+          << liveness.control_periods() << "\ncontrol: cycles " << control_cycles.average() << " on average, "
+          << control_cycles.worst() << " at worst\n";
+      board.report(out);
       break;
     default:
-      out << "r report, u use of stack\n";
+      out << "r report, u use of stack and time\n";
   }
 }
 
@@ -52,19 +58,22 @@ extern "C" [[noreturn]] void run_board() {
   const bool periphery_works = board.start();
   const LastRun last_run = take_over_survival_record(read_reset_cause());
   arm_fault_detection();
+  control_cycles.start();
   using firmware::ImageState;
   const ImageState image = verify_this_image();
   report_boot(board.serial(), last_run, image);
-  if (!periphery_works) TextWriter(board.serial()) << "periphery: the clock or the D/A converter does not start\n";
+  TextWriter out(board.serial());
+  board.report(out);
+  if (!periphery_works) out << "periphery: the clock or the D/A converter does not start\n";
   if (!periphery_works || image != ImageState::whole) stay_safe(last_run, image);
   survival_record().watchdog_armed = 1;
   application.start();
   const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
                                  false};
   firmware::ProtocolServer<Application> server(application, this_image(), boot);
+  if (!board.start_usb()) out << "periphery: the USB controller does not answer\n";
   board.start_control();
-  board.start_watchdog();
-  if (!board.start_usb()) TextWriter(board.serial()) << "periphery: the USB controller does not answer\n";
+  board.start_watchdogs();
   for (;;) {
     supervise();
     if (liveness.may_feed()) board.feed_watchdog();

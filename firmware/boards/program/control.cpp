@@ -1,11 +1,12 @@
 // The control interrupt. Compiled for speed; everything else in the image is compiled for size.
-#include "firmware/boards/axis-f405/application.hpp"
+#include "firmware/boards/program/application.hpp"
 
 namespace firmware::boards {
 
 Board board;
 Application application(board);
 constinit Liveness liveness;
+constinit hal::cortex_m::CycleMeter control_cycles;
 
 namespace {
 
@@ -27,8 +28,13 @@ void remember(const Application::Axes& axes, LastState& last) {
 
 extern "C" void control_interrupt() {
   using namespace firmware::boards;
+  control_cycles.begin();
   board.acknowledge_control();
   application.control_period();
   liveness.control_ran();
+  board.control_has_run(liveness.supervisor_ran_lately());
   remember(application.axes(), survival_record().running);
+  control_cycles.end();
 }
+
+extern "C" void adc_interrupt() { firmware::boards::board.recover_conversions(); }

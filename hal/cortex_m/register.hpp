@@ -1,0 +1,46 @@
+// One register of the chip: on the target a plain volatile word. Where a test answers for the chip
+// (AXIS_REGISTERS_ANSWERED), each access goes to it, with the address that the processor would have put on its bus.
+#pragma once
+
+#include <cstdint>
+#ifdef AXIS_REGISTERS_ANSWERED
+#include <type_traits>
+#endif
+
+namespace hal::cortex_m {
+
+#ifdef AXIS_REGISTERS_ANSWERED
+
+/// The test's. `size` in bytes.
+std::uint32_t answer_read(std::uintptr_t address, std::size_t size);
+void answer_write(std::uintptr_t address, std::size_t size, std::uint32_t value);
+
+/// Behaves as a volatile Word does; what lies at its own address is never touched.
+template <typename Word>
+class AnsweredRegister {
+ public:
+  AnsweredRegister() = default;
+  AnsweredRegister(const AnsweredRegister&) = delete;
+  AnsweredRegister& operator=(const AnsweredRegister&) = delete;
+
+  // NOLINTNEXTLINE(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment): a volatile's returns none
+  void operator=(std::uint32_t value) { answer_write(address(), sizeof(Word), value); }
+  // NOLINTNEXTLINE(google-explicit-constructor): a volatile converts by itself
+  operator Word() const { return static_cast<Word>(answer_read(address(), sizeof(Word))); }
+
+ private:
+  std::uintptr_t address() const { return reinterpret_cast<std::uintptr_t>(this); }
+  [[maybe_unused]] Word place_{};
+};
+using Register = AnsweredRegister<std::uint32_t>;
+using ByteRegister = AnsweredRegister<std::uint8_t>;
+static_assert(sizeof(Register) == 4 && sizeof(ByteRegister) == 1 && std::is_standard_layout_v<Register>);
+
+#else
+
+using Register = volatile std::uint32_t;
+using ByteRegister = volatile std::uint8_t;
+
+#endif
+
+}  // namespace hal::cortex_m

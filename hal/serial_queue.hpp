@@ -1,0 +1,46 @@
+// Room for what a serial line sends more slowly than the program writes, so that the program never waits for it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/serial_port.hpp"
+
+namespace hal {
+
+/// `send` queues and returns at once; what finds the queue full is lost and counted. `poll` hands on what the line
+/// takes: call it once a character or as often as it comes. One caller of all.
+template <SerialLine Line, std::size_t size>
+class SerialQueue {
+ public:
+  explicit constexpr SerialQueue(Line& line) : line_(line) {}
+
+  void send(std::byte byte) {
+    if (count_ == size) {
+      ++lost_;
+      return;
+    }
+    waiting_[(first_ + count_) % size] = byte;
+    ++count_;
+  }
+
+  bool receive(std::byte& byte) { return line_.receive(byte); }
+
+  void poll() {
+    while (count_ > 0 && line_.offer(waiting_[first_])) {
+      first_ = (first_ + 1) % size;
+      --count_;
+    }
+  }
+
+  bool is_empty() const { return count_ == 0; }
+  std::uint32_t lost() const { return lost_; }
+
+ private:
+  Line& line_;
+  std::array<std::byte, size> waiting_{};
+  std::size_t first_ = 0, count_ = 0;
+  std::uint32_t lost_ = 0;
+};
+
+}  // namespace hal

@@ -1,0 +1,36 @@
+// The timer that begins each control period by triggering the converter's scan. RM0090, 18.3.1 and 18.4.2.
+#pragma once
+
+#include "hal/stm32f4/registers.hpp"
+
+namespace hal::stm32f4 {
+
+class ControlTimer {
+ public:
+  explicit constexpr ControlTimer(Timer& timer) : timer_(timer) {}
+
+  /// The first period begins now.
+  void start(std::uint32_t timer_clock_Hz, std::uint32_t rate_Hz) {
+    ticks_Hz_ = timer_clock_Hz / kPrescaler;
+    timer_.PSC = kPrescaler - 1;
+    set_rate(rate_Hz);
+    timer_.CR1 = Timer::kEnable;
+  }
+
+  /// 250 Hz to 20 kHz; from now on, also while it runs. A count beyond the new end would run on to 65535, so that the
+  /// counter begins anew; that alone triggers nothing.
+  void set_rate(std::uint32_t rate_Hz) {
+    timer_.CR2 = 0;
+    timer_.ARR = ticks_Hz_ / rate_Hz - 1;
+    timer_.EGR = Timer::kUpdate;
+    timer_.CR2 = Timer::kTriggerOnUpdate;
+  }
+
+ private:
+  static constexpr std::uint32_t kPrescaler = 8;  // 10.5 MHz: 250 Hz still fit 16 bits
+
+  Timer& timer_;
+  std::uint32_t ticks_Hz_ = 10'500'000;
+};
+
+}  // namespace hal::stm32f4

@@ -1,0 +1,104 @@
+// The chip's bus as the drivers under test see it: each access to a register arrives here, takes its time, and is
+// answered by the part that lies at that address. Parts know their manuals, never the drivers' headers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace parts {
+
+/// Thrown out of the access that was the processor's last.
+struct ChipReset : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class Part {
+ public:
+  Part() = default;
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+  virtual ~Part() = default;
+
+  /// `offset` in bytes from the part's base. All that happens before this instant has happened: run() was called.
+  virtual std::uint32_t read(std::uint32_t offset) = 0;
+  virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
+  /// Lets the part's own time pass until now.
+  virtual void run(double /*now_ns*/) {}
+  /// As after a reset of the chip, or by the part's bit in the reset registers.
+  virtual void reset() = 0;
+};
+
+/// One at a time; the newest answers.
+class Bus {
+ public:
+  Bus();
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  static Bus& current();
+
+  /// While `is_clocked` says no, reads give 0 and writes are lost (RM0090, 7.3.10), and the part's time stands still.
+  void attach(std::uintptr_t base, std::uint32_t size, Part& part, std::function<bool()> is_clocked = {});
+
+  std::uint32_t read(std::uintptr_t address, std::size_t size);
+  void write(std::uintptr_t address, std::size_t size, std::uint32_t value);
+
+  double now_ns() const { return now_ns_; }
+  /// The processor does something else meanwhile.
+  void pass_ns(double time_ns);
+  void pass_ms(double time_ms) { pass_ns(1e6 * time_ms); }
+
+  /// The processor does this as soon as it may: between two accesses, not within another interrupt, not while shut out.
+  void interrupt(std::function<void()> handler);
+  void shut_out(bool begins);
+
+  /// Time that an access takes: four processor clocks, load or store and the bridge to a peripheral bus.
+  void set_processor_clock(double clock_Hz) { access_ns_ = 4e9 / clock_Hz; }
+
+  /// What no manual allows. Tests that expect none say so at their end.
+  void complain(const std::string& what);
+  const std::vector<std::string>& complaints() const { return complaints_; }
+  /// The complaints so far, which the test has seen.
+  std::vector<std::string> take_complaints();
+
+ private:
+  struct Place {
+    std::uintptr_t base;
+    std::uint32_t size;
+    Part* part;
+    std::function<bool()> is_clocked;
+  };
+  const Place& at(std::uintptr_t address) const;
+  void take_interrupts();
+
+  std::vector<Place> places_;
+  double now_ns_ = 0.0;
+  double access_ns_ = 250.0;  // 16 MHz
+  std::vector<std::function<void()>> pending_;
+  int shut_out_ = 0, passing_ = 0;
+  bool interrupted_ = false;
+  std::vector<std::string> complaints_;
+};
+
+/// Registers without behaviour.
+class PlainRegisters : public Part {
+ public:
+  std::uint32_t read(std::uint32_t offset) override { return words_.at(offset / 4); }
+  void write(std::uint32_t offset, std::uint32_t value) override { words_.at(offset / 4) = value; }
+  void reset() override { words_.assign(words_.size(), 0); }
+
+  explicit PlainRegisters(std::uint32_t size) : words_(size / 4) {}
+
+ private:
+  std::vector<std::uint32_t> words_;
+};
+
+/// Bits `first` and up of a register.
+constexpr std::uint32_t bits(std::uint32_t value, unsigned first, unsigned count = 1) {
+  return value >> first & ((1u << count) - 1);
+}
+
+}  // namespace parts

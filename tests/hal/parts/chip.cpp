@@ -1,0 +1,95 @@
+#include "tests/hal/parts/chip.hpp"
+
+namespace parts {
+
+namespace {
+
+enum : std::uint32_t { kAhb1Reset = 0x10, kAhb2Reset = 0x14, kApb1Reset = 0x20, kApb2Reset = 0x24 };
+enum : std::uint32_t { kAhb1Enable = 0x30, kAhb2Enable = 0x34, kApb1Enable = 0x40, kApb2Enable = 0x44 };
+constexpr unsigned kAdcInterrupt = 18, kDma2Stream0Interrupt = 56;
+constexpr int kSpi1 = 5, kTimer2 = 1, kTimer5 = 2;  // alternate functions: datasheet, table 9
+
+}  // namespace
+
+Chip::Chip() {
+  bus.attach(0x40023800, 0x90, clock);
+  bus.attach(0x40007000, 0x08, power, clock.enabled(kApb1Enable, 28));
+  bus.attach(0x40023C00, 0x18, flash);
+  bus.attach(0x40003000, 0x10, independent_watchdog);
+  bus.attach(0x40002C00, 0x0C, window_watchdog);
+  bus.attach(0xE000E010, 0xCF0, interrupts);  // SysTick, interrupt controller
+  bus.attach(0xE000ED00, 0x100, system);      // system control block, DEMCR
+  bus.attach(0xE0001000, 0x1000, trace);
+  const auto attach = [this](std::uintptr_t base, std::uint32_t size, Part& part, std::uint32_t enable,
+                             std::uint32_t reset, unsigned bit) {
+    bus.attach(base, size, part, clock.enabled(enable, bit));
+    clock.resets(reset, bit, part);
+  };
+  attach(0x40020000, 0x28, port_a, kAhb1Enable, kAhb1Reset, 0);
+  attach(0x40020400, 0x28, port_b, kAhb1Enable, kAhb1Reset, 1);
+  attach(0x40020800, 0x28, port_c, kAhb1Enable, kAhb1Reset, 2);
+  attach(0x40026400, 0xD0, dma, kAhb1Enable, kAhb1Reset, 22);
+  attach(0x50000000, 0x1000, usb, kAhb2Enable, kAhb2Reset, 7);
+  attach(0x40000000, 0x50, timer2, kApb1Enable, kApb1Reset, 0);
+  attach(0x40000400, 0x50, timer3, kApb1Enable, kApb1Reset, 1);
+  attach(0x40000800, 0x50, timer4, kApb1Enable, kApb1Reset, 2);
+  attach(0x40000C00, 0x50, timer5, kApb1Enable, kApb1Reset, 3);
+  attach(0x40011000, 0x1C, serial, kApb2Enable, kApb2Reset, 4);
+  attach(0x40012000, 0x400, adc, kApb2Enable, kApb2Reset, 8);
+  attach(0x40013000, 0x24, spi, kApb2Enable, kApb2Reset, 12);
+  clock.resets(kApb1Reset, 11, window_watchdog);
+
+  spi.slave = &converter;
+  timer3.on_trigger = [this] { adc.trigger_timer3(); };
+  dma.on_complete = [this](unsigned stream) {
+    if (stream == 0) interrupt(kDma2Stream0Interrupt);
+  };
+  adc.on_interrupt = [this] { interrupt(kAdcInterrupt); };
+  wire_ports();
+}
+
+void Chip::wire_ports() {
+  // The converter: PA4 selects, PA5 clocks, PA6 brings back, PA7 sends, PB0 clears.
+  spi.is_wired = [this] {
+    return port_a.function(5) == kSpi1 && port_a.function(6) == kSpi1 && port_a.function(7) == kSpi1;
+  };
+  port_a.on_change[4] = [this](Drive drive) { converter.select_line(drive != Drive::low); };
+  port_b.on_change[0] = [this](Drive drive) { converter.clear_line(drive == Drive::high); };  // pulled down outside
+  converter.clear_line(false);
+  timer2.is_wired = [this] {
+    return port_a.function(15) == kTimer2 && port_b.function(3) == kTimer2 && port_b.function(10) == kTimer2;
+  };
+  timer5.is_wired = [this] {
+    return port_a.function(0) == kTimer5 && port_a.function(1) == kTimer5 && port_a.function(2) == kTimer5;
+  };
+  adc.is_wired = [this](unsigned channel) { return channel >= 10 && port_c.is_analogue(channel - 10); };
+}
+
+/// ARMv7-M ARM, B3.4.4: ISER; what is not enabled stays pending.
+void Chip::interrupt(unsigned number) {
+  const std::uint32_t enabled = interrupts.read(0xF0 + number / 32 * 4);
+  if (bits(enabled, number % 32) == 0) return;
+  if (const auto handler = handlers.find(number); handler != handlers.end()) bus.interrupt(handler->second);
+}
+
+void Chip::run_at_full_speed() {
+  clock.write(kAhb1Enable, 0x00500007);
+  clock.write(kAhb2Enable, 0x00000080);
+  clock.write(kApb1Enable, 0x1000080F);
+  clock.write(kApb2Enable, 0x00001110);
+  flash.write(0x00, 5);
+  clock.write(0x00, 0x00010083);
+  pass_ms(3.0);
+  clock.write(0x04, 8u | 336u << 6 | 1u << 22 | 7u << 24);
+  clock.write(0x00, 0x01010083);
+  pass_ms(1.0);
+  clock.write(0x08, 5u << 10 | 4u << 13 | 2u);
+  pass_ms(0.01);
+}
+
+void Chip::pass_ms(double time_ms) {
+  constexpr double kStep_ns = 2000;
+  for (double left = 1e6 * time_ms; left > 0.0; left -= kStep_ns) bus.pass_ns(kStep_ns);
+}
+
+}  // namespace parts

@@ -1,0 +1,57 @@
+// The STM32F405 of the axis board with what hangs on it, as far as the drivers reach: parts at their addresses (RM0090,
+// 2.3), their clock enables and resets (7.3), their wires. `Chip chip;` in a test, and the drivers run.
+#pragma once
+
+#include <array>
+#include <map>
+
+#include "tests/hal/parts/adc_part.hpp"
+#include "tests/hal/parts/bus.hpp"
+#include "tests/hal/parts/clock_part.hpp"
+#include "tests/hal/parts/converter_part.hpp"
+#include "tests/hal/parts/flash_part.hpp"
+#include "tests/hal/parts/port_part.hpp"
+#include "tests/hal/parts/serial_part.hpp"
+#include "tests/hal/parts/spi_part.hpp"
+#include "tests/hal/parts/timer_part.hpp"
+#include "tests/hal/parts/watchdog_part.hpp"
+
+namespace parts {
+
+class Chip {
+ public:
+  Chip();
+
+  /// Clocks at 168 MHz and every peripheral's clock on, as if start-up had run: for tests of single drivers.
+  void run_at_full_speed();
+
+  /// Lets time pass, in steps short enough that interrupts come when they should.
+  void pass_ms(double time_ms);
+
+  Bus bus;
+  PowerPart power;
+  FlashPart flash{bus, 10, 2};
+  ClockPart clock{bus, power, [this] { return flash.wait_states(); }};
+  PortPart port_a{bus, 'A'}, port_b{bus, 'B'}, port_c{bus, 'C'};
+  TimerPart timer2{bus, 32, [this] { return clock.apb1_timers_Hz(); }};
+  TimerPart timer3{bus, 16, [this] { return clock.apb1_timers_Hz(); }};
+  TimerPart timer4{bus, 16, [this] { return clock.apb1_timers_Hz(); }};
+  TimerPart timer5{bus, 32, [this] { return clock.apb1_timers_Hz(); }};
+  SpiPart spi{bus, [this] { return clock.apb2_Hz(); }};
+  ConverterPart converter{bus};
+  DmaPart dma{bus};
+  AdcPart adc{bus, dma, [this] { return clock.apb2_Hz(); }};
+  SerialPart serial{bus, [this] { return clock.apb2_Hz(); }, 115200.0};
+  IndependentWatchdogPart independent_watchdog{bus};
+  WindowWatchdogPart window_watchdog{bus, [this] { return clock.apb1_Hz(); }, clock.enabled(0x40, 11)};
+  PlainRegisters usb{0x1000}, interrupts{0x1000}, trace{0x1000}, system{0x100};
+
+  /// What the processor does on an enabled interrupt, by its number (table 62).
+  std::map<unsigned, std::function<void()>> handlers;
+
+ private:
+  void wire_ports();
+  void interrupt(unsigned number);
+};
+
+}  // namespace parts

@@ -1,0 +1,59 @@
+// The flash interface and two sectors of flash behind it. RM0090, chapter 3.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "tests/hal/parts/bus.hpp"
+
+namespace parts {
+
+class FlashPart : public Part {
+ public:
+  /// Sectors `first_sector` and up, of 128 KB each; the first lies at sectors(), as the processor reads it.
+  FlashPart(Bus& bus, unsigned first_sector, unsigned sectors);
+
+  std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  void run(double now_ns) override;
+  void reset() override;
+
+  std::byte* sectors() { return cells_.data(); }
+  unsigned wait_states() const { return access_ & 7u; }
+  bool cache_is_stale() const { return cache_is_stale_; }
+  bool is_locked() const { return locked_; }
+
+  double erase_ns = 2e9;      ///< datasheet, table 40: 1 s, at most 2 s
+  double program_ns = 100e3;  ///< 16 us, at most 100 us
+  bool is_protected = false;  ///< option bytes protect the sectors (WRPERR)
+  bool never_ends = false;
+  std::uint32_t option_bytes = 0x0FFFAAED;  ///< OPTCR as delivered: brown-out reset off (3.9.10; 3.6, table 15)
+
+ private:
+  /// The memory itself, as programs write it.
+  class Cells : public Part {
+   public:
+    explicit Cells(FlashPart& flash) : flash_(flash) {}
+    std::uint32_t read(std::uint32_t offset) override;
+    void write(std::uint32_t offset, std::uint32_t value) override { flash_.program(offset, value); }
+    void reset() override {}
+
+   private:
+    FlashPart& flash_;
+  };
+
+  void program(std::uint32_t offset, std::uint32_t value);
+  void begin_erase();
+  void write_control(std::uint32_t value);
+  bool is_busy() const { return busy_until_ns_ > 0.0; }
+
+  Bus& bus_;
+  unsigned first_sector_;
+  std::vector<std::byte> cells_;
+  Cells cells_part_{*this};
+  std::uint32_t access_ = 0, status_ = 0, control_ = 0;
+  bool locked_ = true, half_unlocked_ = false, jammed_ = false, cache_is_stale_ = false;
+  double busy_until_ns_ = 0.0;
+};
+
+}  // namespace parts

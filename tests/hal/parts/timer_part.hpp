@@ -1,0 +1,49 @@
+// A general-purpose timer: counter, quadrature decoder, capture, trigger output. RM0090, chapter 18.
+#pragma once
+
+#include <functional>
+
+#include "tests/hal/parts/bus.hpp"
+
+namespace parts {
+
+class TimerPart : public Part {
+ public:
+  /// `width`: 32 bits in TIM2 and TIM5, 16 in TIM3 and TIM4.
+  TimerPart(Bus& bus, unsigned width, std::function<double()> clock_Hz);
+
+  std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  void run(double now_ns) override;
+  void reset() override;
+
+  // The encoder's side.
+  /// Turns it by so many edges; more than zero: A leads B.
+  void turn(int edges);
+  /// The index pulse, at the count that the encoder has now.
+  void index();
+  /// Noise on the index line: a spike of this length.
+  void index_spike(double length_ns);
+  /// False: the lines end at a pin that does not carry them to this timer.
+  std::function<bool()> is_wired = [] { return true; };
+
+  /// Called at each trigger output.
+  std::function<void()> on_trigger;
+
+ private:
+  void update();
+  void count(bool up);
+  void edge(unsigned channel, bool rises, bool other_level);
+  double filter_ns(unsigned channel) const;
+  bool is_input(unsigned channel) const;
+
+  Bus& bus_;
+  std::uint32_t most_;
+  std::function<double()> clock_Hz_;
+  std::uint32_t control_ = 0, control2_ = 0, slave_ = 0, interrupts_ = 0, status_ = 0, enabled_ = 0;
+  std::uint32_t mode_[2] = {}, counter_ = 0, prescaler_ = 0, prescaler_now_ = 0, reload_ = 0, capture_[4] = {};
+  int quadrature_ = 0;
+  double counted_until_ns_ = 0.0;
+};
+
+}  // namespace parts

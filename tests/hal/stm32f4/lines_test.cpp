@@ -1,0 +1,125 @@
+// Digital lines, and what broken wires look like on them.
+#include "hal/stm32f4/charge_pump.hpp"
+#include "hal/stm32f4/drive_lines.hpp"
+#include "hal/stm32f4/microsecond_clock.hpp"
+#include "hal/stm32f4/supply_detector.hpp"
+#include "hal/stm32f4/usb_controller.hpp"
+#include "tests/hal/stm32f4/on_chip.hpp"
+
+namespace {
+
+using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): the test is about all of it
+using parts::Drive;
+using parts::Outside;
+using Lines = driver_test::OnRunningChip;
+
+TEST_F(Lines, TheEnableIsOffFromItsFirstMomentOn) {
+  std::vector<Drive> seen;
+  chip.port_c.on_change[4] = [&seen](Drive drive) { seen.push_back(drive); };
+  gpio_c().ODR = 1u << 4;  // as an earlier program may have left it
+  DriveLines lines(Pin(gpio_c(), 4), Pin(gpio_c(), 6));
+  lines.start();
+  EXPECT_EQ(seen, std::vector<Drive>{Drive::low});
+  lines.set(true);
+  EXPECT_EQ(chip.port_c.drive(4), Drive::high);
+  lines.set(false);
+  EXPECT_EQ(chip.port_c.drive(4), Drive::low);
+}
+
+TEST_F(Lines, AnOpenWireIsADriveFault) {
+  DriveLines lines(Pin(gpio_c(), 4), Pin(gpio_c(), 6));
+  lines.start();
+  EXPECT_TRUE(lines.is_faulted());
+  chip.port_c.put(6, Outside::low);
+  EXPECT_FALSE(lines.is_faulted());
+}
+
+TEST_F(Lines, AnOpenStopCircuitIsAPressedStop) {
+  StopInput stop(Pin(gpio_c(), 10));
+  stop.start();
+  EXPECT_TRUE(stop.is_pressed());
+  chip.port_c.put(10, Outside::low);
+  EXPECT_FALSE(stop.is_pressed());
+}
+
+TEST_F(Lines, EndSwitchesOpenWhenActuatedAndTheHomeSwitchCloses) {
+  SwitchInputs switches(Pin(gpio_b(), 12), Pin(gpio_b(), 13), Pin(gpio_b(), 14));
+  switches.start();
+  EXPECT_TRUE(switches.read().positive_end);
+  EXPECT_TRUE(switches.read().negative_end);
+  EXPECT_FALSE(switches.read().home);
+  chip.port_b.put(12, Outside::low);
+  EXPECT_FALSE(switches.read().positive_end);
+  EXPECT_TRUE(switches.read().negative_end) << "each has its own pin";
+  chip.port_b.put(13, Outside::low);
+  chip.port_b.put(14, Outside::low);
+  EXPECT_FALSE(switches.read().negative_end);
+  EXPECT_TRUE(switches.read().home);
+}
+
+TEST_F(Lines, TheChargePumpIsASquareWaveThatStopsWithItsBeat) {
+  ChargePump pump(Pin(gpio_c(), 12));
+  pump.start();
+  int edges = 0;
+  chip.port_c.on_change[12] = [&edges](Drive) { ++edges; };
+  for (int beat = 0; beat < 10; ++beat) pump.beat();
+  EXPECT_EQ(edges, 10);
+  chip.pass_ms(1.0);
+  EXPECT_EQ(edges, 10);
+}
+
+TEST_F(Lines, NoUsbSupplyOnAnOpenWire) {
+  VbusInput vbus(Pin(gpio_a(), 8));
+  vbus.start();
+  EXPECT_FALSE(vbus.is_present());
+  chip.port_a.put(8, Outside::high);
+  EXPECT_TRUE(vbus.is_present());
+}
+
+TEST_F(Lines, TheSupplyIsLowBelowItsThresholdOnly) {
+  SupplyDetector detector(power());
+  detector.start();
+  EXPECT_FALSE(detector.is_low());
+  chip.power.supply_V = 2.95;
+  EXPECT_FALSE(detector.is_low());
+  chip.power.supply_V = 2.85;
+  EXPECT_TRUE(detector.is_low());
+  EXPECT_TRUE(chip.power.full_speed()) << "the regulator's scale stays";
+}
+
+TEST_F(Lines, MicrosecondsGoOnOverTheTimersEnd) {
+  MicrosecondClock clock(timer4());
+  clock.start(84'000'000);
+  const std::uint32_t began_us = clock.now_us();
+  for (int step = 0; step < 100; ++step) {
+    chip.pass_ms(4.0);
+    clock.now_us();
+  }
+  EXPECT_NEAR(clock.now_us() - began_us, 400e3, 10.0);
+}
+
+TEST_F(Lines, APinKeepsItsNeighboursSettings) {
+  const Pin first(gpio_b(), 2), second(gpio_b(), 5), third(gpio_b(), 10);
+  first.make_alternate(9, Pull::down);
+  second.make_analogue();
+  third.make_alternate(1, Pull::up);
+  EXPECT_EQ(chip.port_b.function(2), 9);
+  EXPECT_EQ(chip.port_b.drive(2), Drive::pulled_down);
+  EXPECT_TRUE(chip.port_b.is_analogue(5));
+  EXPECT_EQ(chip.port_b.function(10), 1);
+  EXPECT_EQ(chip.port_b.drive(10), Drive::pulled_up);
+}
+
+TEST_F(Lines, TheUsbControllerIsClockedAndTakesNoVbusPin) {
+  chip.clock.write(0x34, 0);
+  power_usb_controller(rcc(), otg_fs_global());
+  EXPECT_EQ(chip.usb.read(0x38), 1u << 21) << "GCCFG.NOVBUSSENS: the clock was on before";
+}
+
+TEST_F(Lines, TheChipsIdentifierIsTheSerialNumber) {
+  const UniqueIdentifier identifier{{0x89ABCDEF, 0x01234567, 0x00FEDCBA}};
+  const auto text = serial_number_text(identifier);
+  EXPECT_EQ(std::string(text.begin(), text.end()), "00FEDCBA0123456789ABCDEF");
+}
+
+}  // namespace
