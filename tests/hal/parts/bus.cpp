@@ -64,19 +64,22 @@ void Bus::pass_ns(double time_ns) {
   take_interrupts();
 }
 
-void Bus::interrupt(std::function<void()> handler) { pending_.push_back(std::move(handler)); }
+void Bus::interrupt(unsigned number, const std::function<void()>& handler) { pending_[number] = handler; }
 
-void Bus::shut_out(bool begins) {
-  shut_out_ += begins ? 1 : -1;
-  if (!begins) take_interrupts();
-}
+/// What waited comes with the next access: guards end in destructors, out of which no ChipReset may come.
+void Bus::shut_out(bool begins) { shut_out_ += begins ? 1 : -1; }
 
 void Bus::take_interrupts() {
   while (!pending_.empty() && shut_out_ == 0 && !interrupted_) {
-    const std::function<void()> handler = std::move(pending_.front());
+    const std::function<void()> handler = pending_.begin()->second;
     pending_.erase(pending_.begin());
     interrupted_ = true;
-    handler();
+    try {
+      handler();
+    } catch (...) {
+      interrupted_ = false;
+      throw;
+    }
     interrupted_ = false;
   }
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -52,7 +53,8 @@ class Bus {
   void pass_ms(double time_ms) { pass_ns(1e6 * time_ms); }
 
   /// The processor does this as soon as it may: between two accesses, not within another interrupt, not while shut out.
-  void interrupt(std::function<void()> handler);
+  /// An interrupt that is pending already comes once.
+  void interrupt(unsigned number, const std::function<void()>& handler);
   void shut_out(bool begins);
 
   /// Time that an access takes: four processor clocks, load or store and the bridge to a peripheral bus.
@@ -77,7 +79,7 @@ class Bus {
   std::vector<Place> places_;
   double now_ns_ = 0.0;
   double access_ns_ = 250.0;  // 16 MHz
-  std::vector<std::function<void()>> pending_;
+  std::map<unsigned, std::function<void()>> pending_;
   int shut_out_ = 0, passing_ = 0;
   bool interrupted_ = false;
   std::vector<std::string> complaints_;

@@ -69,7 +69,7 @@ void Chip::wire_ports() {
 void Chip::interrupt(unsigned number) {
   const std::uint32_t enabled = interrupts.read(0xF0 + number / 32 * 4);
   if (bits(enabled, number % 32) == 0) return;
-  if (const auto handler = handlers.find(number); handler != handlers.end()) bus.interrupt(handler->second);
+  if (const auto handler = handlers.find(number); handler != handlers.end()) bus.interrupt(number, handler->second);
 }
 
 void Chip::run_at_full_speed() {

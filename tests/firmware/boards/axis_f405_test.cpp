@@ -1,0 +1,254 @@
+// The axis board's own code, from start-up to control, on a chip that answers and with everything wired to its pins.
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "firmware/boards/axis-f405/board.hpp"
+#include "tests/hal/parts/chip.hpp"
+
+namespace firmware::boards {
+
+/// The image's; a board under test cannot be reset by software.
+void reset_processor() { throw parts::ChipReset("software"); }
+
+}  // namespace firmware::boards
+
+namespace {
+
+using firmware::boards::TextWriter;
+using parts::ChipReset;
+using parts::Drive;
+using parts::Outside;
+using Board = firmware::boards::Board;
+
+class AxisBoard : public testing::Test {
+ protected:
+  AxisBoard() {
+    chip.dma.knows(reinterpret_cast<volatile std::uint16_t*>(&board), sizeof board / 2);
+    chip.handlers[56] = [this] { control_period(); };
+    chip.handlers[18] = [this] { board.recover_conversions(); };
+    for (const unsigned pin : {4u, 5u})
+      chip.port_c.on_change[pin] = [this](Drive drive) { enables_were_on = enables_were_on || drive == Drive::high; };
+    chip.port_c.on_change[12] = [this](Drive) { ++beats; };
+  }
+  void TearDown() override { EXPECT_EQ(chip.bus.complaints(), std::vector<std::string>{}); }
+
+  void control_period() {
+    board.acknowledge_control();
+    ++periods;
+    for (const std::size_t axis : {0u, 1u}) {
+      counts[axis] = board.axis(axis).encoder().read().counts;
+      tachometer[axis] = board.axis(axis).tachometer().read();
+      EXPECT_TRUE(board.axis(axis).dac().write(words ? periods % 1000 * 10 + static_cast<int>(axis) : 0));
+    }
+    board.control_has_run(background_is_alive);
+  }
+
+  void start(std::uint32_t rate_Hz = 1000) {
+    ASSERT_TRUE(board.start());
+    board.set_control_rate(rate_Hz);
+    board.start_control();
+    board.start_watchdogs();
+  }
+
+  /// The background for so long, as main.cpp runs it, with a round every 0.1 ms.
+  void run_ms(double time_ms, bool outputs_off = false) {
+    double fed_at_ns = chip.bus.now_ns();
+    for (double left = time_ms; left > 0.0; left -= 0.1) {
+      board.watch(outputs_off);
+      board.feed_watchdog();
+      longest_between_food_ms = std::max(longest_between_food_ms, 1e-6 * (chip.bus.now_ns() - fed_at_ns));
+      fed_at_ns = chip.bus.now_ns();
+      board.serial().poll();
+      chip.pass_ms(0.1);
+    }
+  }
+
+  parts::Chip chip;
+  Board board;
+  int periods = 0, beats = 0;
+  std::array<std::uint32_t, 2> counts{};
+  std::array<hal::TachometerReading, 2> tachometer{};
+  bool words = true, background_is_alive = true, enables_were_on = false;
+  double longest_between_food_ms = 0.0;
+};
+
+TEST_F(AxisBoard, StartsSafelyFromAReset) {
+  ASSERT_TRUE(board.start());
+  EXPECT_EQ(chip.clock.system_Hz(), 168e6);
+  EXPECT_EQ(chip.converter.output_V(0), 0.0);
+  EXPECT_EQ(chip.converter.output_V(1), 0.0);
+  EXPECT_EQ(chip.port_c.drive(4), Drive::low);
+  EXPECT_EQ(chip.port_c.drive(5), Drive::low);
+  EXPECT_FALSE(enables_were_on);
+}
+
+TEST_F(AxisBoard, StartsTheSameAfterABootRomAndAfterAnEarlierProgram) {
+  chip.clock.leave_as_boot_rom();
+  start();
+  run_ms(5.0);
+  EXPECT_FALSE(enables_were_on);
+  new (&board) Board;  // as start-up makes its variables anew
+  chip.interrupts.reset();
+  ASSERT_NO_THROW(start());
+  run_ms(5.0);
+  EXPECT_FALSE(enables_were_on);
+  EXPECT_GE(periods, 8);
+}
+
+TEST_F(AxisBoard, EachAxisHasItsOwnEncoderTachometerAndOutput) {
+  chip.adc.input_V = [](unsigned channel) { return channel == 10 ? 2.0 : channel == 11 ? 1.0 : 0.0; };
+  start();
+  chip.timer2.turn(100);
+  chip.timer5.turn(-7);
+  run_ms(3.5);
+  EXPECT_EQ(counts[0], 100u);
+  EXPECT_EQ(counts[1], 0xFFFFFFF9u);
+  ASSERT_TRUE(tachometer[0].valid && tachometer[1].valid);
+  EXPECT_GT(tachometer[0].code, 1000);
+  EXPECT_LT(tachometer[1].code, -1000);
+  EXPECT_EQ(chip.converter.output_V(0), periods * 10 * 20.0 / 65536.0);
+  EXPECT_EQ(chip.converter.output_V(1), (periods * 10 + 1) * 20.0 / 65536.0);
+}
+
+TEST_F(AxisBoard, EachAxisHasItsOwnLines) {
+  start();
+  board.axis(0).drive_enable().set(true);
+  EXPECT_EQ(chip.port_c.drive(4), Drive::high);
+  EXPECT_EQ(chip.port_c.drive(5), Drive::low);
+  chip.port_c.put(7, Outside::low);
+  EXPECT_TRUE(board.axis(0).drive_enable().is_faulted());
+  EXPECT_FALSE(board.axis(1).drive_enable().is_faulted());
+  chip.port_b.put(15, Outside::low);
+  EXPECT_TRUE(board.axis(0).limits().read().positive_end);
+  EXPECT_FALSE(board.axis(1).limits().read().positive_end);
+  chip.port_c.put(9, Outside::low);
+  EXPECT_TRUE(board.axis(1).limits().read().home);
+  EXPECT_FALSE(board.axis(0).limits().read().home);
+  EXPECT_TRUE(board.emergency_stop().is_pressed());
+}
+
+/// The control interrupt writes words at any time; a reading takes two frames.
+TEST_F(AxisBoard, ReadsTheConverterBackWithoutDisturbingControl) {
+  start(20'000);
+  run_ms(60.0);
+  EXPECT_GE(periods, 1190);
+  EXPECT_TRUE(board.axis(0).dac().is_healthy());
+}
+
+TEST_F(AxisBoard, AConverterThatLostItsRegistersIsFoundAndStartedAnewOnlyWhileTheOutputsAreOff) {
+  start();
+  run_ms(10.0);
+  words = false;
+  chip.converter.power_up();
+  run_ms(40.0);
+  EXPECT_FALSE(board.axis(0).dac().is_healthy());
+  EXPECT_FALSE(board.axis(1).dac().is_healthy());
+  EXPECT_FALSE(chip.converter.output_V(0)) << "nobody has powered it up";
+  run_ms(10.0, true);
+  EXPECT_TRUE(board.axis(0).dac().is_healthy());
+  EXPECT_EQ(chip.converter.output_V(0), 0.0);
+}
+
+/// Both oscillators at their quickest; a report of 2 KB takes the line 180 ms.
+TEST_F(AxisBoard, AReportKeepsTheBackgroundFromNothing) {
+  chip.independent_watchdog.oscillator_Hz = 47e3;
+  start();
+  run_ms(5.0);
+  longest_between_food_ms = 0.0;
+  TextWriter out(board.serial());
+  const double began_ns = chip.bus.now_ns();
+  for (int line = 0; line < 40; ++line) out << "fault: cfsr 0x00008200 hfsr 0x00000000 bfar 0x\n";
+  EXPECT_LT(chip.bus.now_ns() - began_ns, 5e6);
+  run_ms(200.0);
+  EXPECT_EQ(chip.serial.sent().size(), 40u * 47u);
+  EXPECT_LT(longest_between_food_ms, 5.0) << "a tenth of the watchdog's time";
+}
+
+TEST_F(AxisBoard, SavingParametersDoesNotEndInAReset) {
+  chip.independent_watchdog.oscillator_Hz = 47e3;
+  start();
+  run_ms(30.0);
+  {
+    const Board::ControlShutOut guard;
+    board.begin_stall();
+    hal::stm32f4::ParameterFlash flash(hal::stm32f4::flash_interface(), chip.flash.sectors());
+    EXPECT_EQ(flash.erase(1), hal::FlashResult::ok);
+    board.end_stall();
+  }
+  run_ms(60.0);
+  EXPECT_TRUE(chip.window_watchdog.is_running());
+}
+
+TEST_F(AxisBoard, ABackgroundThatHangsEndsInAReset) {
+  start();
+  run_ms(60.0);
+  EXPECT_THROW(chip.pass_ms(60.0), ChipReset);
+}
+
+TEST_F(AxisBoard, AControlInterruptThatStopsEndsInAReset) {
+  start();
+  run_ms(60.0);
+  chip.handlers.erase(56);
+  EXPECT_THROW(run_ms(40.0), ChipReset);
+}
+
+TEST_F(AxisBoard, TheChargePumpBeatsOnceAPeriodWhileAllIsAlive) {
+  start();
+  run_ms(10.0);
+  const int before = beats, periods_before = periods;
+  run_ms(20.0);
+  EXPECT_EQ(beats - before, periods - periods_before);
+  background_is_alive = false;
+  const int at_end = beats;
+  run_ms(20.0);
+  EXPECT_EQ(beats, at_end);
+}
+
+TEST_F(AxisBoard, ItsOutputsAreMadeSafeByPinsAlone) {
+  start();
+  board.axis(0).drive_enable().set(true);
+  board.axis(1).drive_enable().set(true);
+  run_ms(10.0);
+  ASSERT_NE(chip.converter.output_V(0), 0.0);
+  firmware::boards::make_outputs_safe();
+  EXPECT_EQ(chip.port_c.drive(4), Drive::low);
+  EXPECT_EQ(chip.port_c.drive(5), Drive::low);
+  EXPECT_EQ(chip.converter.output_V(0), 0.0);
+  EXPECT_EQ(chip.converter.output_V(1), 0.0);
+}
+
+TEST_F(AxisBoard, ADeadCrystalLeavesItDisabledButReporting) {
+  chip.clock.crystal_works = false;
+  EXPECT_FALSE(board.start());
+  TextWriter out(board.serial());
+  board.report(out);
+  for (int round = 0; round < 5000; ++round) {
+    board.serial().poll();
+    chip.bus.pass_ns(50'000);
+  }
+  EXPECT_EQ(chip.serial.sent().find("option bytes: brown-out reset off, should be 270"), 0u) << chip.serial.sent();
+}
+
+TEST_F(AxisBoard, AnAbsentConverterLeavesItDisabled) {
+  chip.converter.answers = false;
+  EXPECT_FALSE(board.start());
+  EXPECT_FALSE(board.axis(0).dac().is_healthy());
+}
+
+TEST_F(AxisBoard, TellsWhyItWasReset) {
+  using firmware::boards::ResetCause;
+  const auto cause = [this](std::uint32_t flags) {
+    chip.clock.set_reset_flags(flags);
+    return firmware::boards::read_reset_cause();
+  };
+  EXPECT_EQ(cause(0x0E000000), ResetCause::power_on);  // 7.3.21: power, pin and brown-out come together
+  EXPECT_EQ(cause(0x06000000), ResetCause::brown_out);
+  EXPECT_EQ(cause(0x24000000), ResetCause::watchdog);
+  EXPECT_EQ(cause(0x44000000), ResetCause::watchdog) << "the window watchdog too";
+  EXPECT_EQ(cause(0x14000000), ResetCause::software);
+  EXPECT_EQ(cause(0x04000000), ResetCause::reset_pin);
+  EXPECT_EQ(firmware::boards::read_reset_cause(), ResetCause::unknown) << "the flags are cleared";
+}
+
+}  // namespace
