@@ -112,6 +112,13 @@ class Axis {
     return generator_.at_rest() && preview_.position() == preview_.leading() && !backlash_.is_crossing();
   }
 
+  /// Reads the encoder for the step that follows, so that several axes are read at one instant; a step without it
+  /// reads its encoder itself.
+  constexpr void latch() {
+    encoder_ = hal_.encoder().read();
+    is_latched_ = true;
+  }
+
   /// One control period with the axis's own reference.
   constexpr const AxisTelemetry<Scalar>& step() { return follow(telemetry_.enabled ? generator_.next() : 0); }
 
@@ -123,6 +130,9 @@ class Axis {
 
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
   constexpr const AxisParameters<Scalar>& parameters() const { return parameters_; }
+
+  /// Travel of the whole reference in the newest sample, kPreviewSamples ahead.
+  constexpr Increment newest_increment() const { return preview_.newest(); }
 
   /// The reference without what backlash compensation added to it: where the table is wanted.
   constexpr CountPosition table_reference() const {
@@ -151,7 +161,9 @@ class Axis {
   }
 
   constexpr bool measure() {
-    const hal::EncoderReading encoder = hal_.encoder().read();
+    if (!is_latched_) latch();
+    is_latched_ = false;
+    const hal::EncoderReading encoder = encoder_;
     if (!encoder.valid) return fail(AxisFault::encoder_invalid);
     if (!is_synchronised_) {
       telemetry_.estimate = estimator_.at_rest(counter_.extend(encoder.counts));
@@ -178,15 +190,16 @@ class Axis {
     const AxisEstimate<Scalar>& estimate = telemetry_.estimate;
     telemetry_.reference = preview_.position();
     telemetry_.reference_velocity = preview_.velocity(0);
-    telemetry_.position_error =
-        counts_near<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution -
-        estimate.offset;
+    telemetry_.tracking_error =
+        counts_near<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution;
+    telemetry_.position_error = telemetry_.tracking_error - estimate.offset;
     if (compensation_.is_on())
       telemetry_.friction_V = compensation_.advance(friction_, backlash_, preview_.velocity(1), preview_.halfway());
     else
       telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
+    const Scalar feedforward_V = preview_.weighted_sum(feedforward_);
     Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity +
-                       preview_.weighted_sum(feedforward_) + telemetry_.friction_V;
+                       feedforward_V + telemetry_.friction_V;
     if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
     telemetry_.control_V = control_V;
     if (Traits::is_nan(control_V)) {
@@ -198,7 +211,9 @@ class Axis {
     const DacWord<Scalar> word = dac_(control_V);
     telemetry_.dac_code = word.code;
     telemetry_.saturated = word.saturated;
+    telemetry_.output_V = word.volts;
     model_input_V_ = word.volts - telemetry_.friction_V;
+    telemetry_.feedback_V = model_input_V_ - feedforward_V + parameters_.Kc[1] * telemetry_.reference_velocity;
     if (!hal_.dac().write(word.code)) fail(AxisFault::dac_write_failed);
   }
 
@@ -208,11 +223,13 @@ class Axis {
     preview_.reset(CountPosition::at(telemetry_.encoder_counts));
     telemetry_.reference = preview_.position();
     telemetry_.reference_velocity = Scalar(0);
+    telemetry_.tracking_error = Scalar(0);
     telemetry_.position_error = Scalar(0) - telemetry_.estimate.offset;
   }
 
   constexpr void put_out_zero() {
-    telemetry_.control_V = telemetry_.friction_V = model_input_V_ = Scalar(0);
+    telemetry_.control_V = telemetry_.friction_V = telemetry_.output_V = telemetry_.feedback_V = Scalar(0);
+    model_input_V_ = Scalar(0);
     telemetry_.dac_code = 0;
     telemetry_.saturated = false;
     if (!hal_.dac().write(0) && telemetry_.fault == AxisFault::none) telemetry_.fault = AxisFault::dac_write_failed;
@@ -236,6 +253,8 @@ class Axis {
   ReferenceFeedforward<Scalar> feedforward_{};
   DacConversion<Scalar> dac_;
   CountExtender counter_;
+  hal::EncoderReading encoder_{};
+  bool is_latched_ = false;
   Scalar model_input_V_{};
   AxisTelemetry<Scalar> telemetry_{};
   bool is_configured_ = false;

@@ -125,6 +125,7 @@ constexpr ParameterError check_monitors(const AxisParameters<Scalar>& p) {
     return ParameterError::disagreement;
   if (!is_positive(m.overspeed) || !(m.overspeed > p.velocity_limit / p.lead)) return ParameterError::overspeed;
   if (!is_positive(m.polarity_command_V)) return ParameterError::polarity_command;
+  if (!is_positive(m.oscillation_V)) return ParameterError::oscillation;
   if (m.travel_min_counts >= m.travel_max_counts) return ParameterError::travel;
   if (m.saturation_samples <= 0 || m.capture_stride <= 0) return ParameterError::saturation_time;
   return ParameterError::none;

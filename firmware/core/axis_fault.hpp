@@ -31,6 +31,8 @@ enum class AxisFault : std::uint8_t {
   supply_low = 21,
   reference_out_of_limits = 22,
   other_axis_stopped = 23,
+  command_without_motion = 24,
+  limit_cycle = 25,
 };
 
 }  // namespace firmware

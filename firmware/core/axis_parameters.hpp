@@ -72,6 +72,7 @@ enum class ParameterError : std::uint8_t {
   presliding = 25,             ///< on, and the stiffness not above 0 or the damping below 0
   backlash = 26,               ///< on, and the gap not above 0 or gap or wind-up of 2^10 counts and more
   backlash_crossing = 27,      ///< on, and not 1..4096 samples
+  oscillation = 28,            ///< not above 0
 };
 
 }  // namespace firmware

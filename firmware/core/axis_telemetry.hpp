@@ -25,7 +25,10 @@ struct AxisTelemetry : AxisSample<Scalar> {
   std::int64_t encoder_counts = 0;
   std::int32_t encoder_travel = 0;  ///< counts since the last sample
   CountPosition reference{};        ///< xref(k), counts
+  Scalar tracking_error{};          ///< xref(k) less the encoder's reading, whatever the estimate says; mm (m)
   Scalar friction_V{};              ///< feed-forward of friction and cogging contained in the control signal
+  Scalar output_V{};                ///< what the converter was given, as a voltage
+  Scalar feedback_V{};              ///< what of it answers errors of position and speed: no feed-forward
   Scalar control_V{};               ///< u(k) before limits and rounding
   bool saturated = false;           ///< u(k) was beyond the converter's range
   bool enabled = false;

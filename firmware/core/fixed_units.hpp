@@ -80,17 +80,20 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
   q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;
   const MonitorLimits<Real>& m = p.monitors;
-  q.monitors = {fixed(m.following_error_floor / unit.length),
-                fixed(m.following_error_per_velocity * unit.velocity / unit.length),
-                fixed(m.disagreement_floor / unit.velocity),
-                fixed(m.disagreement_share),
-                fixed(m.encoder_jump / unit.velocity),
-                fixed(m.overspeed / unit.velocity),
-                fixed(m.polarity_command_V / unit.volts),
-                m.travel_min_counts,
-                m.travel_max_counts,
-                m.saturation_samples,
-                m.capture_stride};
+  q.monitors = {.following_error_floor = fixed(m.following_error_floor / unit.length),
+                .following_error_per_velocity = fixed(m.following_error_per_velocity * unit.velocity / unit.length),
+                .disagreement_floor = fixed(m.disagreement_floor / unit.velocity),
+                .disagreement_share = fixed(m.disagreement_share),
+                .encoder_jump = fixed(m.encoder_jump / unit.velocity),
+                .overspeed = fixed(m.overspeed / unit.velocity),
+                .polarity_command_V = fixed(m.polarity_command_V / unit.volts),
+                .oscillation_V = fixed(m.oscillation_V / unit.volts),
+                .load_share = fixed(m.load_share),
+                .swing_share = fixed(m.swing_share),
+                .travel_min_counts = m.travel_min_counts,
+                .travel_max_counts = m.travel_max_counts,
+                .saturation_samples = m.saturation_samples,
+                .capture_stride = m.capture_stride};
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
   q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);
   q.jerk_limit = fixed(p.jerk_limit / unit.travel_velocity * unit.time_s * unit.time_s);

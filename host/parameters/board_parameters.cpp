@@ -27,8 +27,9 @@ std::string value_text(const firmware::ParameterInfo& info, double value) {
 }
 
 /// The monitors' initial values are for a rotary drive with a screw; a linear drive's are those of the same machine
-/// seen from its table: lengths in m, and the paper's 10 mm a turn for what is a speed.
-void append_monitors(bool rotary, std::vector<BoardParameter>& list) {
+/// seen from its table: lengths in m, and the paper's 10 mm a turn for what is a speed. Commands go by the converter's
+/// limit, and by the friction that a command must be able to overcome.
+void append_monitors(bool rotary, double dac_limit_V, double friction_V, std::vector<BoardParameter>& list) {
   constexpr double kLead_m_per_rad = 0.010 / (2.0 * std::numbers::pi);
   const double length = rotary ? 1.0 : 1e-3;
   const double speed = rotary ? 1.0 : kLead_m_per_rad;
@@ -40,6 +41,8 @@ void append_monitors(bool rotary, std::vector<BoardParameter>& list) {
     const auto* const info = std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name);
     list.push_back({name, static_cast<double>(info->initial) * unit});
   }
+  list.push_back({"monitor.polarity_command", std::clamp(1.3 * friction_V, 0.3 * dac_limit_V, 0.8 * dac_limit_V)});
+  list.push_back({"monitor.oscillation", 0.25 * dac_limit_V});
 }
 
 }  // namespace
@@ -96,7 +99,9 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
   list.push_back({"limits.velocity", limits.velocity});
   list.push_back({"limits.acceleration", limits.acceleration});
   list.push_back({"limits.jerk", limits.jerk});
-  append_monitors(rotary, list);
+  const double hardest = std::max({friction.positive.static_level, friction.positive.coulomb,
+                                   friction.negative.static_level, friction.negative.coulomb});
+  append_monitors(rotary, model.data.dac_limit_V, hardest / design.axis.effort_per_volt, list);
   return list;
 }
 

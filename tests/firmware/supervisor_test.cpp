@@ -32,7 +32,9 @@ TEST(FaultTable, NumbersAreFrozen) {
   EXPECT_EQ(static_cast<int>(AxisFault::following_error), 6);
   EXPECT_EQ(static_cast<int>(AxisFault::emergency_stop), 16);
   EXPECT_EQ(static_cast<int>(AxisFault::other_axis_stopped), 23);
-  EXPECT_EQ(firmware::kFaults.size(), 24u) << "a new fault takes the next number; freeze it here too";
+  EXPECT_EQ(static_cast<int>(AxisFault::command_without_motion), 24);
+  EXPECT_EQ(static_cast<int>(AxisFault::limit_cycle), 25);
+  EXPECT_EQ(firmware::kFaults.size(), 26u) << "a new fault takes the next number; freeze it here too";
 }
 
 TEST(StateTable, IsWhatTheDocumentationSays) {
@@ -202,6 +204,107 @@ TEST_F(Board, AnInterpolatorThatRunsAwayIsStoppedAlongARamp) {
   run(400);
   EXPECT_EQ(axes[0].state(), SupervisorState::fault);
   expect_safe(0);
+}
+
+TEST_F(Board, AnotherFaultDuringAStopIsSeenAndTheWorseOneTakesOver) {
+  enable();
+  axes[0].jog(100.0f);
+  run(300);
+  axes.board().host_commands(true);
+  run(102);  // nobody is heard
+  ASSERT_EQ(axes[0].state(), SupervisorState::stopping);
+  io[0].drive_enable().faulted = true;
+  step();
+  EXPECT_EQ(axes[0].state(), SupervisorState::fault);
+  expect_safe(0);
+  EXPECT_EQ(axes[0].fault(), AxisFault::host_heartbeat_lost) << "the first cause stays";
+  EXPECT_EQ(axes[0].second_fault(), AxisFault::drive_fault);
+  EXPECT_EQ(axes[1].second_fault(), AxisFault::none);
+}
+
+TEST_F(Board, OfSeveralFaultsDuringAStopTheWorstIsTheSecond) {
+  enable();
+  axes[0].jog(100.0f);
+  run(300);
+  io[1].drive_enable().faulted = true;
+  run(2);
+  ASSERT_EQ(axes[0].fault(), AxisFault::other_axis_stopped);
+  io[0].limits().state.positive_end = true;
+  step();
+  EXPECT_EQ(axes[0].second_fault(), AxisFault::limit_switch_positive);
+  EXPECT_EQ(axes[0].state(), SupervisorState::stopping);
+  io[0].encoder().reading.valid = false;
+  step();
+  EXPECT_EQ(axes[0].second_fault(), AxisFault::encoder_invalid);
+  EXPECT_EQ(axes[0].state(), SupervisorState::fault);
+  io[0].encoder().reading.valid = true;
+  io[0].limits().state.positive_end = false;
+  ASSERT_TRUE(axes[0].clear_fault());
+  EXPECT_EQ(axes[0].second_fault(), AxisFault::none);
+}
+
+TEST_F(Board, AStopWhoseSensorFailsForOneSampleEndsInAFault) {
+  enable();
+  axes[0].jog(100.0f);
+  run(300);
+  ASSERT_TRUE(axes[0].disable());
+  run(5);
+  io[0].encoder().reading.valid = false;
+  step({.now_us = 0, .emergency_stop = false, .supply_low = false, .store_damaged = true});
+  io[0].encoder().reading.valid = true;
+  EXPECT_EQ(axes[0].state(), SupervisorState::fault) << "a loop that has opened is never left stopping";
+  expect_safe(0);
+}
+
+TEST_F(Board, AnInterpolatorsSpeedAddsToTheAxisOwn) {
+  enable();
+  axes[0].jog(200.0f);
+  run(400);
+  const auto limit = motion_limits(parameters(0)).velocity;
+  firmware::Increment increment = 0;
+  for (int k = 0; k < 2000 && axes[0].fault() == AxisFault::none; ++k) {
+    increment += limit / 500;
+    axes.step_with({increment, 0}, {now += 1000, false, false, false});
+    run_drives();
+  }
+  EXPECT_EQ(axes[0].fault(), AxisFault::reference_out_of_limits);
+  EXPECT_NEAR(static_cast<double>(increment) / static_cast<double>(limit), 1.0625 - 0.8, 0.005);
+}
+
+/// Notes when each encoder was read and each converter written.
+TEST_F(Board, ReadsBothEncodersBeforeItComputesEither) {
+  struct Log {
+    std::string text;
+  };
+  struct LoggedAxis : ValueAxis {
+    struct LoggedEncoder {
+      Log* log = nullptr;
+      hal::EncoderReading read() const {
+        log->text += 'e';
+        return {0, true};
+      }
+    };
+    struct LoggedDac {
+      Log* log = nullptr;
+      bool write(std::int32_t) const {
+        log->text += 'd';
+        return true;
+      }
+      bool is_healthy() const { return true; }
+    };
+    explicit LoggedAxis(Log& log) : encoder_{&log}, dac_{&log} { tachometer().reading = {0, true}; }
+    LoggedEncoder& encoder() { return encoder_; }
+    LoggedDac& dac() { return dac_; }
+    LoggedEncoder encoder_;
+    LoggedDac dac_;
+  };
+  Log log;
+  LoggedAxis x(log), y(log);
+  firmware::AxisGroup<float, LoggedAxis> group(x, y);
+  for (std::size_t i = 0; i < 2; ++i) ASSERT_EQ(group[i].configure(parameters(i)), firmware::ParameterError::none);
+  log.text.clear();
+  group.step({});
+  EXPECT_EQ(log.text, "eedd");
 }
 
 TEST_F(Board, TheCaptureHoldsTheTenthOfASecondBeforeTheFault) {

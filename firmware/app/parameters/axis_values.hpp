@@ -27,6 +27,8 @@ constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
   m.encoder_jump = v.get<"monitor.encoder_jump">();
   m.overspeed = v.get<"monitor.overspeed">();
   m.polarity_command_V = v.get<"monitor.polarity_command">();
+  m.oscillation_V = v.get<"monitor.oscillation">();
+  set_filters(m, sample_period_s);
   m.travel_min_counts = whole_counts(v.get<"monitor.travel_min">(), v.get<"drive.encoder_resolution">());
   m.travel_max_counts = whole_counts(v.get<"monitor.travel_max">(), v.get<"drive.encoder_resolution">());
   m.saturation_samples = ScalarTraits<float>::nearest_product(v.get<"monitor.saturation_time">(), samples_a_second);

@@ -68,6 +68,8 @@ constexpr std::uint16_t id_behind(ParameterError error) {
       return id_of<"monitor.overspeed">();
     case ParameterError::polarity_command:
       return id_of<"monitor.polarity_command">();
+    case ParameterError::oscillation:
+      return id_of<"monitor.oscillation">();
     case ParameterError::travel:
       return id_of<"monitor.travel_max">();
     case ParameterError::saturation_time:

@@ -115,11 +115,13 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
      "largest such difference in one sample"},
     {149, axis, "monitor.overspeed", real, "rad/s", "m/s", 1e-9F, 1e4F, 300, while_disabled, "largest speed"},
     {150, axis, "monitor.polarity_command", real, "V", "V", 1e-3F, 1e3F, 3, while_disabled,
-     "command beyond which the drive must not accelerate against it"},
+     "command beyond any friction: it must accelerate the drive"},
     {151, axis, "monitor.travel_min", real, "mm", "m", -1e6F, 1e6F, -1e5F, while_disabled, "end of travel"},
     {152, axis, "monitor.travel_max", real, "mm", "m", -1e6F, 1e6F, 1e5F, while_disabled, "end of travel"},
     {153, axis, "monitor.saturation_time", real, "s", "s", 1e-3F, 10, 0.1F, while_disabled,
      "longest time at the D/A converter's limit"},
+    {154, axis, "monitor.oscillation", real, "V", "V", 1e-3F, 1e3F, 2.5F, while_disabled,
+     "rms that the feedback's command may swing by while no motion asks for it"},
 
     // What identification finds a drive to do besides: firmware/core/compensation.
     {160, axis, "calibration.tachometer_gain", real, "1", "1", 0.5F, 2, 1, while_disabled,

@@ -24,18 +24,25 @@ class AxisGroup {
   /// One control period; each axis follows its own reference.
   constexpr void step(const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, outputs_on());
+    latch();
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer)); });
   }
 
   /// One control period; an interpolator leads both axes.
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, outputs_on());
+    latch();
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer)); });
   }
 
   constexpr bool outputs_on() const { return outputs_are_on(axes_[0].state()) || outputs_are_on(axes_[1].state()); }
 
  private:
+  /// All positions belong to one instant, whatever the steps then take.
+  constexpr void latch() {
+    for (BoardAxis& axis : axes_) axis.latch();
+  }
+
   /// A fault of one axis stops the other; its own and the board's faults come first.
   constexpr AxisFault fault_for(std::size_t index, AxisFault outer) {
     if (outer != AxisFault::none || !must_stop_[index]) return outer;

@@ -5,10 +5,13 @@
 
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
-#include "hal/limit_inputs.hpp"
+#include "firmware/core/supervision/effort_monitor.hpp"
+#include "firmware/core/supervision/travel_monitor.hpp"
 
 namespace firmware {
 
+/// Motion is judged by what the sensors read, never by what the estimator makes of it: an estimator with bad gains
+/// believes anything.
 template <typename Scalar>
 class AxisMonitors {
  public:
@@ -16,8 +19,9 @@ class AxisMonitors {
   constexpr void configure(const AxisParameters<Scalar>& p) {
     limits_ = p.monitors;
     velocity_per_count_ = p.encoder_resolution / (p.lead * p.sample_period_s);
-    dac_limit_V_ = p.dac_limit_V;
     tachometer_fitted_ = p.tachometer_fitted;
+    effort_.configure(p);
+    travel_.configure(p);
     restart();
     forget_high_water();
   }
@@ -25,31 +29,38 @@ class AxisMonitors {
   /// Before the first sample of a self-test: nothing is known of the time before.
   constexpr void restart() {
     disagreement_ = Scalar(0);
-    saturated_samples_ = reversed_samples_ = 0;
+    encoder_velocity_ = Scalar(0);
+    restart_motion();
+    travel_.restart();
   }
 
   /// Faults of the sensors, which count whether the loop is closed or not.
   constexpr AxisFault watch_sensors(const AxisTelemetry<Scalar>& seen) {
     const Scalar measured = tachometer_fitted_ ? seen.tachometer_velocity : seen.estimate.velocity;
-    const Scalar difference = Traits::times(seen.encoder_travel, velocity_per_count_) - measured;
+    const Scalar before = encoder_velocity_;
+    encoder_velocity_ = Traits::times(seen.encoder_travel, velocity_per_count_);
+    const Scalar difference = encoder_velocity_ - measured;
+    if (magnitude(encoder_velocity_ - before) > limits_.encoder_jump) return AxisFault::encoder_jump;
     if (magnitude(difference) > limits_.encoder_jump)
-      return which_jumped(difference + measured, measured, seen.reference_velocity);
+      return which_jumped(encoder_velocity_, measured, seen.reference_velocity);
     disagreement_ = disagreement_ + (difference - disagreement_) * kFilterShare;
     if (magnitude(disagreement_) > limits_.disagreement_floor + limits_.disagreement_share * magnitude(measured))
       return AxisFault::encoder_tachometer_disagreement;
     return AxisFault::none;
   }
 
-  /// Faults of a closed loop. `seen` is this sample's.
+  /// Faults of a closed loop. `seen` is this sample's, which watch_sensors() has seen already.
   constexpr AxisFault watch_motion(const AxisTelemetry<Scalar>& seen) {
-    const Scalar error = magnitude(seen.position_error);
+    const Scalar error = magnitude(seen.tracking_error);
     if (error > high_water_) high_water_ = error;
     if (error >
         limits_.following_error_floor + limits_.following_error_per_velocity * magnitude(seen.reference_velocity))
       return AxisFault::following_error;
-    if (magnitude(seen.estimate.velocity) > limits_.overspeed) return AxisFault::overspeed;
-    if (magnitude(seen.control_V) > limits_.polarity_command_V && is_reversed(seen))
-      return AxisFault::feedback_polarity;
+    if (magnitude(encoder_velocity_) > limits_.overspeed ||
+        (tachometer_fitted_ && magnitude(seen.tachometer_velocity) > limits_.overspeed))
+      return AxisFault::overspeed;
+    const AxisFault effort = effort_.watch(seen, encoder_velocity_);
+    if (effort != AxisFault::none) return effort;
     if (!seen.saturated)
       saturated_samples_ = 0;
     else if (++saturated_samples_ > limits_.saturation_samples)
@@ -57,22 +68,15 @@ class AxisMonitors {
     return AxisFault::none;
   }
 
-  /// Only motion that leads out counts: an axis that stands beyond an end may always go back.
   template <hal::LimitInputs Switches>
-  constexpr AxisFault watch_travel(const AxisTelemetry<Scalar>& seen, Switches& switches) const {
-    if (seen.reference_velocity > Scalar(0)) {
-      if (switches.read().positive_end) return AxisFault::limit_switch_positive;
-      if (seen.encoder_counts > limits_.travel_max_counts) return AxisFault::travel_limit;
-    } else if (seen.reference_velocity < Scalar(0)) {
-      if (switches.read().negative_end) return AxisFault::limit_switch_negative;
-      if (seen.encoder_counts < limits_.travel_min_counts) return AxisFault::travel_limit;
-    }
-    return AxisFault::none;
+  constexpr AxisFault watch_travel(const AxisTelemetry<Scalar>& seen, Switches& switches) {
+    return travel_.watch(seen, switches.read());
   }
 
   /// While the loop is open there is nothing to follow, and no control signal that a broken state would show in.
   constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
-    saturated_samples_ = reversed_samples_ = 0;
+    restart_motion();
+    travel_.restart();
     const bool is_broken = Traits::is_nan(seen.estimate.offset + seen.estimate.velocity + seen.estimate.disturbance);
     return is_broken ? AxisFault::state_not_a_number : AxisFault::none;
   }
@@ -81,7 +85,14 @@ class AxisMonitors {
   constexpr Scalar high_water() const { return high_water_; }
   constexpr void forget_high_water() { high_water_ = Scalar(0); }
 
+  const EffortMonitor<Scalar>& effort() const { return effort_; }
+
  private:
+  using Traits = ScalarTraits<Scalar>;
+  static constexpr Scalar kFilterShare = Scalar(1.0f / (1 << kDisagreementShift));
+
+  static constexpr Scalar magnitude(Scalar value) { return Traits::magnitude(value); }
+
   /// Of two sensors that part within one sample, the one that left the reference is the bad one.
   static constexpr AxisFault which_jumped(Scalar encoder, Scalar tachometer, Scalar expected) {
     return magnitude(encoder - expected) >= magnitude(tachometer - expected)
@@ -89,38 +100,20 @@ class AxisMonitors {
                : AxisFault::encoder_tachometer_disagreement;
   }
 
-  using Traits = ScalarTraits<Scalar>;
-  static constexpr Scalar kFilterShare = Scalar(1.0f / (1 << kDisagreementShift));
-
-  static constexpr Scalar magnitude(Scalar value) { return Traits::magnitude(value); }
-
-  /// A drive that is connected the wrong way round runs against its command, and looks like a disturbance of twice that
-  /// command. Braking runs against it too, but by a disturbance of friction's size; a blocked drive has a disturbance
-  /// of once the command, and stands.
-  constexpr bool is_reversed(const AxisTelemetry<Scalar>& seen) {
-    const bool forward = seen.control_V > Scalar(0);
-    const auto along = [forward](Scalar value) { return forward ? value : Scalar(0) - value; };
-    if (along(seen.estimate.disturbance) < limits_.polarity_command_V) {  // nearly always
-      reversed_samples_ = 0;
-      return false;
-    }
-    const Scalar given = seen.saturated ? dac_limit_V_ : along(seen.control_V);
-    if (along(seen.estimate.disturbance) > given * Scalar(1.75f) &&
-        along(seen.estimate.velocity) < Scalar(0) - limits_.disagreement_floor * Scalar(0.25f) &&
-        magnitude(disagreement_) < limits_.disagreement_floor)  // else the estimate has a bad sensor to blame
-      return ++reversed_samples_ >= kPolaritySamples;
-    reversed_samples_ = 0;
-    return false;
+  constexpr void restart_motion() {
+    saturated_samples_ = 0;
+    effort_.restart(encoder_velocity_);
   }
 
   MonitorLimits<Scalar> limits_{};
   Scalar velocity_per_count_{};
-  Scalar dac_limit_V_{};
+  Scalar encoder_velocity_{};
   Scalar disagreement_{};
   Scalar high_water_{};
   std::int32_t saturated_samples_ = 0;
-  std::int32_t reversed_samples_ = 0;
   bool tachometer_fitted_ = true;
+  EffortMonitor<Scalar> effort_;
+  TravelMonitor<Scalar> travel_;
 };
 
 }  // namespace firmware

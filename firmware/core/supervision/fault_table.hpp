@@ -24,7 +24,7 @@ struct FaultInfo {
 };
 
 /// In the order of their numbers.
-inline constexpr std::array<FaultInfo, 24> kFaults{{
+inline constexpr std::array<FaultInfo, 26> kFaults{{
     {AxisFault::none, "none", "no fault", "", FaultReaction::none},
     {AxisFault::encoder_invalid, "encoder_invalid",
      "the encoder's input reports a broken wire, an illegal edge or a bus error",
@@ -52,7 +52,8 @@ inline constexpr std::array<FaultInfo, 24> kFaults{{
      "the encoder left the drive's motion within one sample: wires cut or interchanged, counts lost, noise",
      "check shield and earth, the encoder's frequency limit and its supply", FaultReaction::drop_enable},
     {AxisFault::feedback_polarity, "feedback_polarity",
-     "the drive accelerated against its command: motor or both sensors the wrong way round, or the D/A output stuck",
+     "the drive accelerates against its command: motor or both sensors the wrong way round, the D/A output stuck, or a "
+     "load that is stronger than the drive",
      "swap the motor's leads, or the sign of encoder and tachometer", FaultReaction::drop_enable},
     {AxisFault::overspeed, "overspeed", "the drive is faster than its limit",
      "look for a stuck D/A output or a wrong gain; check the limit against the velocity limit",
@@ -80,7 +81,7 @@ inline constexpr std::array<FaultInfo, 24> kFaults{{
      "the host that commands the motion has gone silent: cable, program or computer",
      "connect again; raise the time-out if the host is slow", FaultReaction::ramp_stop},
     {AxisFault::parameter_store_damaged, "parameter_store_damaged", "the stored parameters fail their check",
-     "load the parameters from their file and save them", FaultReaction::drop_enable},
+     "load the parameters from their file and save them", FaultReaction::ramp_stop},
     {AxisFault::supply_low, "supply_low", "the board's supply is below its threshold", "check supply and wiring",
      FaultReaction::drop_enable},
     {AxisFault::reference_out_of_limits, "reference_out_of_limits",
@@ -88,6 +89,16 @@ inline constexpr std::array<FaultInfo, 24> kFaults{{
      "check the path and its feed; check the limit", FaultReaction::ramp_stop},
     {AxisFault::other_axis_stopped, "other_axis_stopped", "the other axis has a fault, and both stop together",
      "see the other axis", FaultReaction::ramp_stop},
+    {AxisFault::command_without_motion, "command_without_motion",
+     "the command should long have moved the axis, and the encoder does not show it: a dead encoder, an axis that is "
+     "blocked, a motor without current or with the wrong one",
+     "turn the shaft by hand and watch the position; free the axis; check the motor's leads and the encoder's coupling",
+     FaultReaction::drop_enable},
+    {AxisFault::limit_cycle, "limit_cycle",
+     "the feedback swings the command to and fro without motion that asks for it: the loop is unstable or nearly so",
+     "design the gains again with less bandwidth; check inertia, delay and resonances; raise the limit only if the "
+     "tachometer's noise is what swings",
+     FaultReaction::drop_enable},
 }};
 
 namespace fault_table {

@@ -16,7 +16,10 @@ struct MonitorLimits {
   Scalar disagreement_share{};            ///< what it may grow to, as a share of the speed; 0..1
   Scalar encoder_jump{};                  ///< the same difference within one sample, > disagreement_floor
   Scalar overspeed{};                     ///< > 0
-  Scalar polarity_command_V{};            ///< beyond this command the drive must not accelerate against it, > 0
+  Scalar polarity_command_V{};            ///< a command beyond any friction: it must accelerate the drive; > 0
+  Scalar oscillation_V{};                 ///< rms that the feedback may swing by, > 0
+  Scalar load_share{};                    ///< of a sample in kLoadTime_s, 0..1
+  Scalar swing_share{};                   ///< of a sample in kTransientTime_s, 0..1/2
   std::int64_t travel_min_counts = 0;     ///< encoder counts
   std::int64_t travel_max_counts = 0;     ///< > travel_min_counts
   std::int32_t saturation_samples = 0;    ///< longest time at the D/A converter's limit, > 0
@@ -26,8 +29,11 @@ struct MonitorLimits {
 /// Time constant of the filter over the difference of encoder and tachometer: 16 samples leave an eighteenth of the
 /// tachometer's noise power, and a sixteenth of an encoder count a sample.
 inline constexpr int kDisagreementShift = 4;
-/// Samples in a row that a drive must seem to accelerate against its command.
-inline constexpr std::int32_t kPolaritySamples = 5;
+/// A command that lasts as long is what the load needs (effort_monitor.hpp).
+inline constexpr float kLoadTime_s = 0.5f;
+/// The feedback's swing is what is left without the mean of this time, and is averaged over the longer one: ramps of
+/// references last longer than the first, and friction's jump at a reversal is small within the second.
+inline constexpr float kTransientTime_s = 0.008f, kSwingTime_s = 0.1f;
 /// Samples that the inputs are watched before an axis is ready; three time constants of the filter above.
 inline constexpr std::int32_t kSelfTestSamples = 50;
 
@@ -37,12 +43,20 @@ constexpr std::int32_t capture_stride(Real samples_a_second) {
   return (ScalarTraits<Real>::truncate(samples_a_second * Real(0.1f) + Real(0.5f)) - 1) / 100 + 1;
 }
 
+/// The monitors' filters, for a sample period.
+template <typename Real>
+constexpr void set_filters(MonitorLimits<Real>& limits, Real sample_period_s) {
+  limits.load_share = sample_period_s / Real(kLoadTime_s);
+  limits.swing_share = sample_period_s / Real(kTransientTime_s);
+  if (limits.swing_share > Real(0.5f)) limits.swing_share = Real(0.5f);
+}
+
 /// Where nothing better is known. Following error: the way of 2 ms at the velocity limit, and 5 ms of the present
 /// speed; state feedback without any feed-forward is some 1 ms late. Disagreement: 4 % of the velocity limit and 10 %
 /// of the speed (tachometers are within 2 %, ripple included); a jump: a quarter of the limit; neither below what the
 /// encoder's steps look like. Overspeed: a fifth above the limit. Polarity: 30 % of the converter, well above any
-/// friction that can still be overcome. Saturation: 0.1 s. Travel: all that an encoder counter holds. `velocity_limit`
-/// mm/s (m/s), `lead` mm/rad (1).
+/// friction that can still be overcome. Oscillation: 25 % of the converter. Saturation: 0.1 s. Travel: all that an
+/// encoder counter holds. `velocity_limit` mm/s (m/s), `lead` mm/rad (1).
 template <typename Real>
 constexpr MonitorLimits<Real> default_monitor_limits(Real velocity_limit, Real lead, Real encoder_resolution,
                                                      Real sample_period_s, Real dac_limit_V) {
@@ -55,8 +69,10 @@ constexpr MonitorLimits<Real> default_monitor_limits(Real velocity_limit, Real l
   limits.disagreement_floor = larger(fastest * Real(0.04f), count * Real(2));
   limits.disagreement_share = Real(0.1f);
   limits.encoder_jump = larger(fastest * Real(0.25f), count * Real(8));
-  limits.overspeed = fastest * Real(1.2f);
+  limits.overspeed = larger(fastest * Real(1.2f), fastest + count * Real(2));
   limits.polarity_command_V = dac_limit_V * Real(0.3f);
+  limits.oscillation_V = dac_limit_V * Real(0.25f);
+  set_filters(limits, sample_period_s);
   limits.travel_min_counts = -(std::int64_t{1} << 31);
   limits.travel_max_counts = std::int64_t{1} << 31;
   const std::int32_t samples = ScalarTraits<Real>::truncate(Real(0.1f) / sample_period_s + Real(0.5f));

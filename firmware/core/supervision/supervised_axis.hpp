@@ -39,6 +39,7 @@ class SupervisedAxis {
     const MotionLimits limits = motion_limits(parameters);
     fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
     largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
+    longest_stop_ = longest_ramp(limits) + kLongestSettling;
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
     happen(SupervisorEvent::configured);
@@ -52,7 +53,7 @@ class SupervisedAxis {
   /// Forgets fault and capture; the self-test decides what comes next.
   constexpr bool clear_fault() {
     if (state_ != SupervisorState::fault) return false;
-    fault_ = AxisFault::none;
+    fault_ = second_fault_ = AxisFault::none;
     axis_.clear_fault();
     capture_.restart();
     begin_self_test();
@@ -74,6 +75,9 @@ class SupervisedAxis {
   }
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const { return axis_.plan_move_to(target); }
   constexpr void stop() { axis_.stop(); }
+
+  /// As of Axis: the encoder's reading for the step that follows.
+  constexpr void latch() { axis_.latch(); }
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) {
@@ -102,6 +106,8 @@ class SupervisedAxis {
   }
   /// The first fault since the last clear_fault().
   constexpr AxisFault fault() const { return fault_; }
+  /// What went wrong besides while the first fault brought the axis to a stop; the worst of it. none: nothing.
+  constexpr AxisFault second_fault() const { return second_fault_; }
   constexpr LimitingReasons limiting() const { return {axis_.telemetry().saturated, limiting_.velocity_limited}; }
   constexpr bool is_at_rest() const { return axis_.is_at_rest(); }
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return axis_.telemetry(); }
@@ -115,9 +121,18 @@ class SupervisedAxis {
   static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
   static constexpr std::int32_t kStandingSamples = 20;
 
+  /// Twice the time that a stop from a path's highest speed takes, samples: no stop lasts longer, whatever happens.
+  static constexpr std::int32_t longest_ramp(const MotionLimits& limits) {
+    const std::int64_t ramp = 2 * (limits.velocity / limits.acceleration + limits.acceleration / limits.jerk + 2);
+    constexpr std::int64_t kMost = std::int64_t{1} << 30;
+    return static_cast<std::int32_t>((ramp < kMost ? ramp : kMost) + (ramp < kMost ? ramp >> 3 : 0));
+  }
+
+  /// Of the whole reference: the axis's own, as it was in the last sample, and the increment on top.
   constexpr bool is_within_limits(Increment increment) const {
     const Increment change = increment - last_increment_;
-    return increment <= fastest_ && increment >= -fastest_ && change <= largest_change_ && change >= -largest_change_;
+    const Increment whole = axis_.newest_increment() + change;
+    return whole <= fastest_ && whole >= -fastest_ && change <= largest_change_ && change >= -largest_change_;
   }
 
   constexpr bool request(SupervisorEvent event) {
@@ -134,16 +149,16 @@ class SupervisedAxis {
 
   constexpr void supervise(AxisFault outer) {
     const AxisTelemetry<Scalar>& seen = axis_.telemetry();
-    const AxisFault found = watch(seen, outer);
-    if (found == AxisFault::none) {
+    const AxisFault own = watch(seen);
+    if (own == AxisFault::none && outer == AxisFault::none) {
       capture_.take(seen);
       if (state_ == SupervisorState::enabled && requests_ == 0) return;
     }
-    advance(found);
+    advance(outer, own);
   }
 
-  constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, AxisFault outer) {
-    if (outer != AxisFault::none) return outer;
+  /// Whatever is wrong outside: what the axis does is watched until its outputs are off.
+  constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
     if (hal_.drive_enable().is_faulted()) return AxisFault::drive_fault;
     const AxisFault sensors = monitors_.watch_sensors(seen);
@@ -154,19 +169,29 @@ class SupervisedAxis {
   }
 
   /// What is rare: faults, requests, and all states but a closed loop that simply runs.
-  [[gnu::noinline]] constexpr void advance(AxisFault found) {
+  [[gnu::noinline]] constexpr void advance(AxisFault outer, AxisFault own) {
     SupervisorEvents events = requests_;
     requests_ = 0;
     if (state_ == SupervisorState::off && events == 0) return;
-    if (found != AxisFault::none) {
-      if (fault_ == AxisFault::none) latch(found);
-      events = events | (reaction_to(found) == FaultReaction::ramp_stop ? SupervisorEvent::ramp_fault
-                                                                        : SupervisorEvent::drop_fault);
-    }
+    if (outer == AxisFault::other_axis_stopped && own != AxisFault::none) outer = AxisFault::none;
+    for (const AxisFault found : {outer, own})
+      if (found != AxisFault::none) events = events | note(found);
     if (state_ == SupervisorState::self_test && ++self_test_samples_ >= kSelfTestSamples)
       events = events | SupervisorEvent::test_passed;
     if (state_ == SupervisorState::stopping && has_stopped()) events = events | SupervisorEvent::standing;
     if (events != 0) enter(next_state(state_, events, fault_ != AxisFault::none));
+  }
+
+  /// The first fault is the one that is reported; of those that follow before the outputs are off, the first of the
+  /// worst kind is reported beside it.
+  constexpr SupervisorEvent note(AxisFault found) {
+    const bool drops = reaction_to(found) != FaultReaction::ramp_stop;
+    if (fault_ == AxisFault::none)
+      latch(found);
+    else if (found != fault_ && outputs_are_on(state_) &&
+             (second_fault_ == AxisFault::none || (drops && reaction_to(second_fault_) == FaultReaction::ramp_stop)))
+      second_fault_ = found;
+    return drops ? SupervisorEvent::drop_fault : SupervisorEvent::ramp_fault;
   }
 
   constexpr void latch(AxisFault found) {
@@ -175,6 +200,7 @@ class SupervisedAxis {
   }
 
   constexpr bool has_stopped() {
+    if (++stopping_samples_ > longest_stop_) return true;
     if (!axis_.is_at_rest()) {
       settling_samples_ = standing_samples_ = 0;
       return false;
@@ -197,7 +223,7 @@ class SupervisedAxis {
         axis_.stop_interpolated();
       else
         axis_.stop();
-      settling_samples_ = standing_samples_ = 0;
+      settling_samples_ = standing_samples_ = stopping_samples_ = 0;
     }
     if (!outputs_are_on(state_)) {
       is_interpolated_ = limiting_.velocity_limited = false;
@@ -211,6 +237,7 @@ class SupervisedAxis {
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;
   AxisFault fault_ = AxisFault::none;
+  AxisFault second_fault_ = AxisFault::none;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
   Increment fastest_ = 0;
@@ -220,6 +247,8 @@ class SupervisedAxis {
   std::int32_t self_test_samples_ = 0;
   std::int32_t settling_samples_ = 0;
   std::int32_t standing_samples_ = 0;
+  std::int32_t stopping_samples_ = 0;
+  std::int32_t longest_stop_ = 0;
   Axis<Scalar, Hal> axis_;  // the large tables come last: a load reaches no farther than 1 to 4 kB
   CaptureRing<Scalar> capture_;
 };

@@ -37,26 +37,27 @@ std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& pa
 
   std::vector<std::int32_t> points;
   points.push_back(first_trip(
-      1, [](Telemetry& seen, float level) { seen.position_error = Scalar(level); }, motion));
+      1, [](Telemetry& seen, float level) { seen.tracking_error = Scalar(level); }, motion));
   points.push_back(first_trip(
       1,
       [](Telemetry& seen, float level) {
         seen.reference_velocity = Scalar(100.0f);
-        seen.position_error = Scalar(level);
+        seen.tracking_error = Scalar(level);
       },
       motion));
   points.push_back(first_trip(1, tachometer, sensors));
   points.push_back(first_trip(120, tachometer, sensors));
   points.push_back(first_trip(
-      1, [](Telemetry& seen, float level) { seen.estimate.velocity = Scalar(level); }, motion));
+      1, [](Telemetry& seen, float level) { seen.tachometer_velocity = Scalar(level); }, motion));
   points.push_back(first_trip(
-      firmware::kPolaritySamples,
-      [](Telemetry& seen, float level) {
-        seen.control_V = Scalar(level);
-        seen.estimate.disturbance = Scalar(2.0f * level);
-        seen.estimate.velocity = Scalar(-100.0f);
-      },
-      motion));
+      20, [](Telemetry& seen, float level) { seen.output_V = Scalar(level); }, motion));
+  int sample = 0;
+  points.push_back(first_trip(
+      200, [](Telemetry& seen, float level) { seen.feedback_V = Scalar(level); },
+      [&sample](Monitors& monitors, Telemetry seen) {
+        if (++sample % 2 == 0) seen.feedback_V = Scalar(0) - seen.feedback_V;
+        return monitors.watch_motion(seen);
+      }));
   for (const std::int64_t sign : {1, -1}) {
     points.push_back(first_trip(
         1,

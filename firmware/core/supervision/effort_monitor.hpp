@@ -1,0 +1,96 @@
+// What the command should have done, against what the encoder shows; and whether the command swings for nothing.
+#pragma once
+
+#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/axis_telemetry.hpp"
+
+namespace firmware {
+
+/// Needs neither the estimator nor the friction curve, so that a fault of either cannot hide from it.
+///
+/// Speed owed. A command beyond any friction must change the speed. Of the change that the sampled drive (7) promises
+/// for what lies beyond, half is enough: inertia may be twice what the model says. What the encoder's speed lacks of
+/// that half adds up, and is forgotten once the command is small again. A dead encoder, a blocked axis and a motor
+/// without current leave the debt to grow, and so does a drive that runs against its command. What the command has been
+/// for half a second is what holds a load, and is not counted.
+///
+/// Swinging. The feedback's part of the command, without its slow part, is noise and a few transients on a sound axis.
+/// Its mean square over a tenth of a second is what an unstable loop raises. A quarter of that time is the shortest in
+/// which the largest swing is found, and five samples the shortest for speed owed: neither is for a single bad reading.
+template <typename Scalar>
+class EffortMonitor {
+ public:
+  constexpr void configure(const AxisParameters<Scalar>& p) {
+    const MonitorLimits<Scalar>& m = p.monitors;
+    friction_V_ = m.polarity_command_V;
+    const Scalar count = p.encoder_resolution / (p.lead * p.sample_period_s);
+    debt_limit_ = m.disagreement_floor * Scalar(0.5f);
+    if (debt_limit_ < count * Scalar(3)) debt_limit_ = count * Scalar(3);
+    largest_step_ = debt_limit_ * Scalar(0.24f);
+    oscillation_square_ = m.oscillation_V * m.oscillation_V;
+    promised_per_volt_ = p.drive.Bd2 * Scalar(0.5f);
+    load_share_ = m.load_share;
+    power_share_ = m.load_share * Scalar(kLoadTime_s / kSwingTime_s);
+    mean_share_ = m.swing_share;
+    restart(Scalar(0));
+  }
+
+  /// `velocity`: by the encoder, rad/s (m/s).
+  constexpr void restart(Scalar velocity) {
+    last_velocity_ = velocity;
+    applied_V_ = load_V_ = debt_ = mean_V_ = power_ = Scalar(0);
+  }
+
+  constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, Scalar velocity) {
+    const AxisFault motion = compare(velocity);
+    last_velocity_ = velocity;
+    applied_V_ = seen.output_V;
+    load_V_ = load_V_ + (applied_V_ - load_V_) * load_share_;
+    return motion != AxisFault::none ? motion : watch_swing(seen.feedback_V);
+  }
+
+  /// Mean square of the swinging part of the feedback, V^2.
+  constexpr Scalar swing() const { return power_; }
+
+ private:
+  using Traits = ScalarTraits<Scalar>;
+
+  /// What the command of the last sample has done until this one.
+  constexpr AxisFault compare(Scalar velocity) {
+    if (Traits::magnitude(applied_V_) <= friction_V_) {  // nearly always
+      debt_ = Scalar(0);
+      return AxisFault::none;
+    }
+    const bool forward = applied_V_ > Scalar(0);
+    if (forward != was_forward_) debt_ = Scalar(0);
+    was_forward_ = forward;
+    const auto along = [forward](Scalar value) { return forward ? value : Scalar(0) - value; };
+    const Scalar held = along(load_V_) > Scalar(0) ? along(load_V_) : Scalar(0);
+    const Scalar beyond = along(applied_V_) - friction_V_ - held;
+    const Scalar change = along(velocity - last_velocity_);
+    const Scalar lacking = beyond * promised_per_volt_ - change;
+    debt_ = debt_ + (lacking < largest_step_ ? lacking : largest_step_);
+    if (beyond <= Scalar(0) || debt_ < Scalar(0)) debt_ = Scalar(0);
+    if (debt_ <= debt_limit_) return AxisFault::none;
+    return along(velocity) < Scalar(0) - debt_limit_ * Scalar(0.25f) ? AxisFault::feedback_polarity
+                                                                     : AxisFault::command_without_motion;
+  }
+
+  constexpr AxisFault watch_swing(Scalar feedback_V) {
+    const Scalar swing = feedback_V - mean_V_;
+    mean_V_ = mean_V_ + swing * mean_share_;
+    const Scalar most = oscillation_square_ * Scalar(4);
+    const Scalar square = swing * swing;
+    power_ = power_ + ((square < most ? square : most) - power_) * power_share_;
+    return power_ > oscillation_square_ ? AxisFault::limit_cycle : AxisFault::none;
+  }
+
+  Scalar friction_V_{}, debt_limit_{}, largest_step_{}, oscillation_square_{}, promised_per_volt_{};
+  Scalar load_share_{}, power_share_{}, mean_share_{};
+  Scalar applied_V_{}, load_V_{}, last_velocity_{};
+  Scalar debt_{};  ///< speed that the command has promised and the encoder has not shown, rad/s (m/s)
+  Scalar mean_V_{}, power_{};
+  bool was_forward_ = true;
+};
+
+}  // namespace firmware

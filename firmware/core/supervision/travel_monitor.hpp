@@ -1,0 +1,62 @@
+// The ends of travel: switches and limits, by the motion that the encoder shows.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/axis_telemetry.hpp"
+#include "hal/limit_inputs.hpp"
+
+namespace firmware {
+
+/// Beyond an end an axis may stand, and may go back. It may neither be led farther out nor go there by itself: the
+/// innermost place that it has reached since it came beyond the end, and a little play for a loop that holds its
+/// place, is as far out as it may be.
+template <typename Scalar>
+class TravelMonitor {
+ public:
+  constexpr void configure(const AxisParameters<Scalar>& p) {
+    min_counts_ = p.monitors.travel_min_counts;
+    max_counts_ = p.monitors.travel_max_counts;
+    play_ = play_in_counts(p);
+    restart();
+  }
+
+  /// A quarter of the following error that is allowed at standstill, and two counts.
+  static constexpr std::int64_t play_in_counts(const AxisParameters<Scalar>& p) {
+    const Scalar counts = p.monitors.following_error_floor / p.encoder_resolution;
+    constexpr Scalar kMost = Scalar(1000.0f);
+    return 2 + ScalarTraits<Scalar>::truncate(counts < kMost ? counts * Scalar(0.25f) : kMost * Scalar(0.25f));
+  }
+
+  constexpr void restart() {
+    upper_bound_ = std::numeric_limits<std::int64_t>::max();
+    lower_bound_ = std::numeric_limits<std::int64_t>::min();
+  }
+
+  constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
+    const std::int64_t counts = seen.encoder_counts;
+    if (switches.positive_end || counts > max_counts_) {
+      if (counts + play_ < upper_bound_) upper_bound_ = counts + play_;
+      if (seen.reference_velocity > Scalar(0) || counts > upper_bound_)
+        return switches.positive_end ? AxisFault::limit_switch_positive : AxisFault::travel_limit;
+    } else {
+      upper_bound_ = std::numeric_limits<std::int64_t>::max();
+    }
+    if (switches.negative_end || counts < min_counts_) {
+      if (counts - play_ > lower_bound_) lower_bound_ = counts - play_;
+      if (seen.reference_velocity < Scalar(0) || counts < lower_bound_)
+        return switches.negative_end ? AxisFault::limit_switch_negative : AxisFault::travel_limit;
+    } else {
+      lower_bound_ = std::numeric_limits<std::int64_t>::min();
+    }
+    return AxisFault::none;
+  }
+
+ private:
+  std::int64_t min_counts_ = 0, max_counts_ = 0, play_ = 0;
+  std::int64_t upper_bound_ = 0, lower_bound_ = 0;
+};
+
+}  // namespace firmware
