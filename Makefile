@@ -115,6 +115,13 @@ scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	$(BUILD)/bin/axistool scoreboard $(or $(CASES),tests/data/drive-cases)
 
+.PHONY: mutants
+mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axis_parts
+	tests/hal/mutants.sh . $(BUILD)/tests/libaxis_parts.a c++ all
+
 .PHONY: format
 format: ## Format all sources in place
 	$(NEED) format

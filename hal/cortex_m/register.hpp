@@ -21,10 +21,11 @@ class AnsweredRegister {
  public:
   AnsweredRegister() = default;
   AnsweredRegister(const AnsweredRegister&) = delete;
-  AnsweredRegister& operator=(const AnsweredRegister&) = delete;
 
-  // NOLINTNEXTLINE(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment): a volatile's returns none
+  // NOLINTBEGIN(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment): a volatile's returns nothing
   void operator=(std::uint32_t value) { answer_write(address(), sizeof(Word), value); }
+  void operator=(const AnsweredRegister& other) { *this = std::uint32_t{static_cast<Word>(other)}; }
+  // NOLINTEND(misc-unconventional-assign-operator, bugprone-unhandled-self-assignment)
   // NOLINTNEXTLINE(google-explicit-constructor): a volatile converts by itself
   operator Word() const { return static_cast<Word>(answer_read(address(), sizeof(Word))); }
 

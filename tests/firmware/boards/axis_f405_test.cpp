@@ -13,6 +13,23 @@ void reset_processor() { throw parts::ChipReset("software"); }
 
 }  // namespace firmware::boards
 
+/// TinyUSB's place; it has tests of its own.
+namespace hal::tinyusb {
+
+namespace {
+bool attached = true;
+}
+
+bool HidPort::start(std::string_view) { return true; }
+void HidPort::attach(bool is_present) { attached = is_present; }
+void HidPort::poll() {}
+void HidPort::handle_interrupt() {}
+bool HidPort::send(const HidReport&) { return false; }
+bool HidPort::receive(HidReport&) { return false; }
+bool HidPort::is_configured() const { return attached; }
+
+}  // namespace hal::tinyusb
+
 namespace {
 
 using firmware::boards::TextWriter;
@@ -234,6 +251,15 @@ TEST_F(AxisBoard, AnAbsentConverterLeavesItDisabled) {
   chip.converter.answers = false;
   EXPECT_FALSE(board.start());
   EXPECT_FALSE(board.axis(0).dac().is_healthy());
+}
+
+TEST_F(AxisBoard, IsOnTheBusOnlyWhileAComputersSupplyIs) {
+  start();
+  run_ms(1.0);
+  EXPECT_FALSE(board.usb().is_configured());
+  chip.port_a.put(8, Outside::high);
+  run_ms(1.0);
+  EXPECT_TRUE(board.usb().is_configured());
 }
 
 TEST_F(AxisBoard, TellsWhyItWasReset) {

@@ -98,6 +98,35 @@ class PlainRegisters : public Part {
   std::vector<std::uint32_t> words_;
 };
 
+/// The debug unit's cycle counter (ARMv7-M ARM, C1.8.7 and C1.8.8): counts while it and the trace unit are on.
+class CyclePart : public Part {
+ public:
+  /// `trace_is_on`: DEMCR.TRCENA.
+  CyclePart(std::function<double()> clock_Hz, std::function<bool()> trace_is_on)
+      : clock_Hz_(std::move(clock_Hz)), trace_is_on_(std::move(trace_is_on)) {}
+
+  std::uint32_t read(std::uint32_t offset) override {
+    if (offset == 0) return trace_is_on_() ? control_ : 0;
+    return offset == 4 ? static_cast<std::uint32_t>(static_cast<std::int64_t>(cycles_)) : 0;
+  }
+  void write(std::uint32_t offset, std::uint32_t value) override {
+    if (!trace_is_on_()) return;
+    if (offset == 0) control_ = value;
+    if (offset == 4) cycles_ = value;
+  }
+  void run(double now_ns) override {
+    if (trace_is_on_() && (control_ & 1u) != 0) cycles_ += (now_ns - ran_until_ns_) * 1e-9 * clock_Hz_();
+    ran_until_ns_ = now_ns;
+  }
+  void reset() override { control_ = 0; }
+
+ private:
+  std::function<double()> clock_Hz_;
+  std::function<bool()> trace_is_on_;
+  std::uint32_t control_ = 0;
+  double cycles_ = 0.0, ran_until_ns_ = 0.0;
+};
+
 /// Bits `first` and up of a register.
 constexpr std::uint32_t bits(std::uint32_t value, unsigned first, unsigned count = 1) {
   return value >> first & ((1u << count) - 1);

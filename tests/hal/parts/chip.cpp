@@ -19,7 +19,7 @@ Chip::Chip() {
   bus.attach(0x40002C00, 0x0C, window_watchdog);
   bus.attach(0xE000E010, 0xCF0, interrupts);  // SysTick, interrupt controller
   bus.attach(0xE000ED00, 0x100, system);      // system control block, DEMCR
-  bus.attach(0xE0001000, 0x1000, trace);
+  bus.attach(0xE0001000, 0x1000, cycles);
   const auto attach = [this](std::uintptr_t base, std::uint32_t size, Part& part, std::uint32_t enable,
                              std::uint32_t reset, unsigned bit) {
     bus.attach(base, size, part, clock.enabled(enable, bit));

@@ -1,4 +1,5 @@
 // Digital lines, and what broken wires look like on them.
+#include "hal/cortex_m/cycle_meter.hpp"
 #include "hal/stm32f4/charge_pump.hpp"
 #include "hal/stm32f4/drive_lines.hpp"
 #include "hal/stm32f4/microsecond_clock.hpp"
@@ -96,6 +97,20 @@ TEST_F(Lines, MicrosecondsGoOnOverTheTimersEnd) {
     clock.now_us();
   }
   EXPECT_NEAR(clock.now_us() - began_us, 400e3, 10.0);
+}
+
+TEST_F(Lines, TheCycleMeterTellsAverageAndWorstInProcessorClocks) {
+  hal::cortex_m::CycleMeter meter;
+  meter.start();
+  const auto work_us = [&](double time_us) {
+    meter.begin();
+    chip.bus.pass_ns(1e3 * time_us);
+    meter.end();
+  };
+  work_us(20.0);
+  for (int piece = 0; piece < 3000; ++piece) work_us(5.0);
+  EXPECT_NEAR(meter.worst(), 20 * 168, 10.0);
+  EXPECT_NEAR(meter.average(), 5 * 168, 10.0);
 }
 
 TEST_F(Lines, APinKeepsItsNeighboursSettings) {

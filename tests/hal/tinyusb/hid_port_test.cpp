@@ -275,4 +275,21 @@ TEST_F(HidPortOnBus, OutlivesRequestsThatAreCutShort) {
   }
 }
 
+/// USB 2.0, 7.1.5: a device with its own supply must not feed the bus of a host that is off.
+TEST_F(HidPortOnBus, PullsItsLineUpOnlyWhileAComputersSupplyIsThere) {
+  ASSERT_TRUE(bus.enumerate(7));
+  ASSERT_TRUE(port.is_configured());
+  port.attach(true);
+  EXPECT_TRUE(MockBus::sees_device()) << "nothing changes";
+  port.attach(false);
+  EXPECT_FALSE(MockBus::sees_device());
+  EXPECT_FALSE(port.is_configured());
+  EXPECT_FALSE(port.send(report_of(1)));
+  port.attach(true);
+  EXPECT_TRUE(MockBus::sees_device());
+  bus.reset();
+  EXPECT_TRUE(bus.enumerate(8));
+  EXPECT_TRUE(port.is_configured());
+}
+
 }  // namespace

@@ -126,9 +126,19 @@ bool MockBus::enumerate(std::uint8_t address) {
 
 // The controller's side, as TinyUSB sees it.
 
+namespace {
+
+bool pulls_up = false;
+
+}  // namespace
+
+bool usb_test::MockBus::sees_device() { return pulls_up; }
+
 extern "C" {
 
-bool dcd_init(std::uint8_t, const tusb_rhport_init_t*) { return true; }
+bool dcd_init(std::uint8_t, const tusb_rhport_init_t*) { return pulls_up = true; }
+void dcd_connect(std::uint8_t) { pulls_up = true; }
+void dcd_disconnect(std::uint8_t) { pulls_up = false; }
 void dcd_int_enable(std::uint8_t) {}
 void dcd_int_disable(std::uint8_t) {}
 void dcd_int_handler(std::uint8_t) {}

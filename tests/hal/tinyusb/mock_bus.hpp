@@ -41,6 +41,9 @@ class MockBus {
   /// What a computer does with a device that it has found; true if every step was answered.
   bool enumerate(std::uint8_t address);
 
+  /// The device pulls D+ up.
+  static bool sees_device();
+
   /// The address that the device has been given; 0 after a reset.
   static std::uint8_t address();
 
