@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "host/axistool/commands.hpp"
+#include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/axistool/load_records.hpp"
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/model/model_file.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 struct CompareArguments {
   std::string model;
-  std::vector<std::string> records;
+  std::vector<std::string> records, accepted;
   std::string json, report, predictions;
   double window_s = host::kWindow_s;
   double fail_above = 0.0;
@@ -37,12 +37,12 @@ std::string predictions_path(const CompareArguments& arguments, std::size_t inde
 
 void run(const CompareArguments& arguments) {
   const sim::DriveDescription read = host::read_model(arguments.model);
-  const std::vector<host::Record> records = load_records(arguments.records, read.data);
+  const host::GateOptions as_logged{.accepted = arguments.accepted, .as_logged = true};
+  const host::Measurements measured = host::MeasurementGate(read, as_logged).read(arguments.records);
+  const std::vector<host::Record>& records = measured.training();
   const sim::DriveDescription model = host::with_measured_sensors(read, records);
-  std::vector<const host::Record*> pointers;
-  for (const host::Record& record : records) pointers.push_back(&record);
-  const host::RecordSet set = host::compare_on(pointers, model, arguments.window_s);
-  const host::ModelComparison comparison = host::compare_model(model, records, set, arguments.window_s);
+  const host::RecordSet set = host::compare_on(measured.training_records(), model, arguments.window_s);
+  const host::ModelComparison comparison = host::compare_model(model, measured, set, arguments.window_s);
 
   if (!arguments.predictions.empty()) {
     for (std::size_t r = 0; r < records.size(); ++r)
@@ -66,6 +66,7 @@ void add_compare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "how well a model predicts records, and where it fails");
   command->add_option("MODEL", arguments->model, "model of the drive (axis-model/1)")->required();
   command->add_option("RECORD", arguments->records, "records of the drive (axis-record/1)")->required();
+  add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->add_option("--report", arguments->report, "write an HTML page with plots to this file");
   command->add_option("--predictions", arguments->predictions,
@@ -87,7 +88,8 @@ void add_compare(CLI::App& app) {
       "The model predicts from the recorded command alone. The floor is what sensor noise and the uncertainty of the\n"
       "restart leave; error/floor is about 1 for a perfect model. Log faults (shifted, wrapped, mis-scaled channels)\n"
       "are listed first: mend them before believing the rest.");
-  command->callback([arguments] { run(*arguments); });
+  command->callback(
+      [arguments] { with_log_of_failure(arguments->json, "axis-comparison/1", [&] { run(*arguments); }); });
 }
 
 }  // namespace axistool

@@ -15,6 +15,7 @@ namespace axistool {
 namespace {
 
 void print(const host::Diagnosis& diagnosis) {
+  print_log(diagnosis.log);
   const host::DiagnosisVerdict& verdict = diagnosis.verdict;
   fmt::print("Verdict: {}{}{}\n  {}\n", host::status_name(verdict.status), verdict.effects.empty() ? "" : ": ",
              fmt::join(verdict.effects, verdict.status == host::Status::ambiguous ? " or " : " + "),
@@ -45,8 +46,7 @@ void run(const InsightArguments& arguments) {
   host::Diagnosis diagnosis;
   {
     SearchProgress progress("diagnose");
-    diagnosis = host::diagnose(records.model, InsightRecords::pointers(records.train),
-                               InsightRecords::pointers(records.validate), progress.callback());
+    diagnosis = host::diagnose(records.model, records.measurements, progress.callback());
   }
   if (!arguments.report.empty()) host::write_diagnosis_report(diagnosis, arguments.model, arguments.report);
   if (!arguments.json.empty()) write_json(host::to_json(diagnosis), arguments.json);
@@ -64,7 +64,8 @@ void add_diagnose(CLI::App& app) {
   command->footer(
       "Example:\n  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
       "Exit code 0 whatever the verdict; 9 for a bad file.");
-  command->callback([arguments] { run(*arguments); });
+  command->callback(
+      [arguments] { with_log_of_failure(arguments->json, "axis-diagnosis/1", [&] { run(*arguments); }); });
 }
 
 }  // namespace axistool

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "host/axistool/commands.hpp"
+#include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/axistool/load_records.hpp"
 #include "host/identify/friction_json.hpp"
 #include "host/model/model_file.hpp"
 
@@ -14,7 +14,7 @@ namespace axistool {
 namespace {
 
 struct FrictionArguments {
-  std::vector<std::string> records;
+  std::vector<std::string> records, accepted;
   std::string model, output, json, method = "joint";
   host::ConstantSpeedOptions options;
 };
@@ -76,12 +76,18 @@ void print_table(const host::FrictionIdentification& found, const std::string& o
 
 void run(const FrictionArguments& arguments) {
   const sim::DriveDescription model = host::read_model(arguments.model);
-  const std::vector<host::Record> records = load_records(arguments.records, model.data);
+  const host::Measurements measured = host::MeasurementGate(model, {arguments.accepted}).read(arguments.records);
   const auto method = arguments.method == "paper" ? host::FrictionMethod::paper : host::FrictionMethod::joint;
-  const host::FrictionIdentification found = host::identify_friction(records, model, method, arguments.options);
+  const host::FrictionIdentification found = host::identify_friction(measured, model, method, arguments.options);
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
-  if (!arguments.json.empty()) write_json(host::friction_json(found), arguments.json);
-  if (arguments.json != "-") print_table(found, arguments.output);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::friction_json(found);
+    document["log"] = host::log_faults_json(measured.log());
+    write_json(document, arguments.json);
+  }
+  if (arguments.json == "-") return;
+  print_log(measured.log());
+  print_table(found, arguments.output);
 }
 
 }  // namespace
@@ -105,6 +111,7 @@ void add_friction(CLI::App& app) {
   command->add_option("--shortest", arguments->options.shortest_s, "a speed must be held for this long, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
@@ -112,7 +119,7 @@ void add_friction(CLI::App& app) {
       "  axistool friction slow.csv fast.csv --model x.toml -o x.toml --method paper\n"
       "Jog in closed loop at about ten speeds both ways, for example 0.1 to 100 mm/s, each for 0.6 s or more.\n"
       "Exit code 8: too few constant speeds.");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { with_log_of_failure(arguments->json, "axis-friction/1", [&] { run(*arguments); }); });
 }
 
 }  // namespace axistool

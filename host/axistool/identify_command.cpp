@@ -4,18 +4,19 @@
 #include <memory>
 
 #include "host/axistool/commands.hpp"
+#include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/axistool/load_records.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
+#include "host/record/read_record.hpp"
 
 namespace axistool {
 
 namespace {
 
 struct IdentifyArguments {
-  std::vector<std::string> records;
+  std::vector<std::string> records, accepted;
   std::string output, drive, method, json;
   host::MotionOptions options;
 };
@@ -93,13 +94,19 @@ void print_table(const host::Identification& found, const std::string& output) {
 void run(const IdentifyArguments& arguments) {
   std::vector<std::string> warnings;
   const sim::DriveDescription drive = drive_for(arguments, warnings);
-  const std::vector<host::Record> records = load_records(arguments.records, drive.data);
+  const host::Measurements measured = host::MeasurementGate(drive, {arguments.accepted}).read(arguments.records);
   host::Identification found =
-      host::identify_drive(records, drive, method_for(arguments.method, records), arguments.options);
+      host::identify_drive(measured, drive, method_for(arguments.method, measured.training()), arguments.options);
   found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
-  if (!arguments.json.empty()) write_json(host::identification_json(found), arguments.json);
-  if (arguments.json != "-") print_table(found, arguments.output);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::identification_json(found);
+    document["log"] = host::log_faults_json(measured.log());
+    write_json(document, arguments.json);
+  }
+  if (arguments.json == "-") return;
+  print_log(measured.log());
+  print_table(found, arguments.output);
 }
 
 }  // namespace
@@ -127,6 +134,7 @@ void add_identify(CLI::App& app) {
       ->add_option("--decimation", arguments->options.decimation,
                    "use every n-th filtered sample. Default: sampling rate / cut-off where every sample counts, else 1")
       ->check(CLI::PositiveNumber);
+  add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
@@ -136,7 +144,8 @@ void add_identify(CLI::App& app) {
       "durations.\n"
       "Intervals hold for coloured residuals (block sums with Student's t). Exit code 8: the axis did not move "
       "enough.");
-  command->callback([arguments] { run(*arguments); });
+  command->callback(
+      [arguments] { with_log_of_failure(arguments->json, "axis-identification/1", [&] { run(*arguments); }); });
 }
 
 }  // namespace axistool

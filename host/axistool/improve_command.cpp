@@ -16,6 +16,7 @@ namespace axistool {
 namespace {
 
 void print(const host::Improvement& improvement, const std::string& output) {
+  print_log(improvement.first.log);
   fmt::print("{}", host::terminal_bars(host::ladder_chart(improvement), host::terminal_of(stdout)));
   fmt::print("Stopped because {}.\n", improvement.stopped_because);
   fmt::print("Last verdict: {}. {}\n", host::status_name(improvement.verdict.status), improvement.verdict.explanation);
@@ -27,8 +28,7 @@ void run_improve(const InsightArguments& arguments) {
   host::Improvement improvement;
   {
     SearchProgress progress("improve");
-    improvement = host::improve(records.model, InsightRecords::pointers(records.train),
-                                InsightRecords::pointers(records.validate), progress.callback());
+    improvement = host::improve(records.model, records.measurements, progress.callback());
   }
   host::write_model(improvement.model, arguments.output);
   if (!arguments.report.empty()) host::write_improvement_report(improvement, arguments.model, arguments.report);
@@ -38,8 +38,7 @@ void run_improve(const InsightArguments& arguments) {
 
 void run_add(const InsightArguments& arguments, const std::string& kind) {
   const InsightRecords records(arguments);
-  const host::Addition addition = host::add_effect(records.model, kind, InsightRecords::pointers(records.train),
-                                                   InsightRecords::pointers(records.validate));
+  const host::Addition addition = host::add_effect(records.model, kind, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;
   host::write_model(judged.model, arguments.output);
   if (!arguments.json.empty()) {
@@ -59,10 +58,12 @@ void run_add(const InsightArguments& arguments, const std::string& kind) {
                 {"confidence", judged.confidence},
                 {"held_back", addition.held_back},
                 {"parameters", estimates},
+                {"log", host::log_faults_json(records.measurements.log())},
                 {"model", arguments.output}},
                arguments.json);
   }
   if (arguments.json == "-") return;
+  print_log(records.measurements.log());
   fmt::print("{}: error over floor on validation data {:.3f} -> {:.3f} ({:.1f} % confidence)\n\n", kind, judged.before,
              judged.after, 100.0 * judged.confidence);
   fmt::print("  {:<32} {:>12} {:>12}\n", "parameter", "value", "+- (95 %)");
@@ -85,7 +86,8 @@ void add_improve(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "the improved model")->required();
   command->add_option("--report", arguments->report, "write a self-contained HTML report to this file");
   command->footer("Example:\n  axistool improve x.toml --train steps.csv jog.csv --validate other.csv -o better.toml");
-  command->callback([arguments] { run_improve(*arguments); });
+  command->callback(
+      [arguments] { with_log_of_failure(arguments->json, "axis-improvement/1", [&] { run_improve(*arguments); }); });
 }
 
 void add_add(CLI::App& app) {
@@ -97,9 +99,12 @@ void add_add(CLI::App& app) {
   command->add_option("--train", arguments->train, "records that the fit may see")->required();
   command->add_option("--validate", arguments->validate, "records that judge");
   command->add_option("-o,--output", arguments->output, "the new model")->required();
+  add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");
-  command->callback([arguments, kind] { run_add(*arguments, *kind); });
+  command->callback([arguments, kind] {
+    with_log_of_failure(arguments->json, "axis-addition/1", [&] { run_add(*arguments, *kind); });
+  });
 }
 
 }  // namespace axistool

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/axistool/load_records.hpp"
 #include "host/diagnose/diagnosis.hpp"
 #include "host/model/model_file.hpp"
 #include "host/report/progress.hpp"
@@ -15,32 +15,26 @@ namespace axistool {
 
 struct InsightArguments {
   std::string model, output, json, report;
-  std::vector<std::string> train, validate;
+  std::vector<std::string> train, validate, accepted;
 
   void add_to(CLI::App& command) {
     command.add_option("model", model, "model file (axis-model/1)")->required();
     command.add_option("--train", train, "records that the fit may see")->required();
     command.add_option("--validate", validate,
                        "records that judge; without them blocks of the training data are kept back");
+    add_accept_option(command, accepted);
     add_json_option(command, json);
   }
 };
 
-/// The records of a command, read and checked; pointers into it stay valid.
+/// A model and the records that passed the gate with it.
 struct InsightRecords {
   sim::DriveDescription model;
-  std::vector<host::Record> train, validate;
+  host::Measurements measurements;
 
   explicit InsightRecords(const InsightArguments& arguments)
       : model(host::read_model(arguments.model)),
-        train(load_records(arguments.train, model.data)),
-        validate(load_records(arguments.validate, model.data)) {}
-
-  static std::vector<const host::Record*> pointers(const std::vector<host::Record>& records) {
-    std::vector<const host::Record*> result;
-    for (const host::Record& record : records) result.push_back(&record);
-    return result;
-  }
+        measurements(host::MeasurementGate(model, {arguments.accepted}).read(arguments.train, arguments.validate)) {}
 };
 
 /// Progress of a search on the terminal, in thousandths.

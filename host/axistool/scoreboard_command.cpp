@@ -121,8 +121,7 @@ Score score(const fs::path& folder, const std::string& name) {
   host::Diagnosis diagnosis;
   {
     SearchProgress progress(name);
-    diagnosis = host::diagnose(records.model, InsightRecords::pointers(records.train),
-                               InsightRecords::pointers(records.validate), progress.callback());
+    diagnosis = host::diagnose(records.model, records.measurements, progress.callback());
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   Score result{name,

@@ -132,8 +132,9 @@ sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, 
   return complete;
 }
 
-ModelComparison compare_model(const sim::DriveDescription& model, const std::vector<Record>& records,
-                              const RecordSet& set, double window_s) {
+ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set,
+                              double window_s) {
+  const std::vector<Record>& records = measured.training();
   ModelComparison comparison;
   comparison.window_s = window_s;
   const sim::Drive drive(model);
@@ -146,9 +147,8 @@ ModelComparison compare_model(const sim::DriveDescription& model, const std::vec
     add_record(set.records[r], prediction, set.stride, all);
     comparison.records.push_back(
         {records[r].path, own.channels(model.data.kind), own.combined(), inverse_error(model, {records[r]})});
-    const std::vector<LogFault> faults = log_faults(records[r], model);
-    comparison.log_faults.insert(comparison.log_faults.end(), faults.begin(), faults.end());
   }
+  comparison.log_faults = measured.log();
   comparison.channels = all.channels(model.data.kind);
   comparison.combined = all.combined();
   comparison.relative_error = inverse_error(model, records);
@@ -201,6 +201,7 @@ nlohmann::json comparison_json(const ModelComparison& comparison) {
           {"combined", comparison.combined},
           {"where", error_regions_json(comparison.where)},
           {"where_in_words", where_it_fails(comparison.where)},
+          {"log", log_faults_json(comparison.log_faults)},
           {"log_faults", log_faults_json(comparison.log_faults)},
           {"records", std::move(records)}};
 }

@@ -9,6 +9,7 @@
 #include "host/compare/comparison.hpp"
 #include "host/compare/error_regions.hpp"
 #include "host/evidence/log_faults.hpp"
+#include "host/record/measurements.hpp"
 
 namespace host {
 
@@ -40,9 +41,9 @@ struct ModelComparison {
 /// Completes a data sheet by what the records show: an encoder's step, a tachometer's noise.
 sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const std::vector<Record>& records);
 
-/// Compares on a set made of `records` with `compare_on`; `model` has its sensors (with_measured_sensors).
-ModelComparison compare_model(const sim::DriveDescription& model, const std::vector<Record>& records,
-                              const RecordSet& set, double window_s);
+/// Compares on a set made of the training records with `compare_on`; `model` has its sensors (with_measured_sensors).
+ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set,
+                              double window_s);
 
 /// Prediction of every row: the rows after the last whole window by a shorter one, row 0 as the restart state reads.
 Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord prepared);

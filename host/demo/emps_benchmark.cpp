@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "host/demo/model_plot.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
@@ -41,7 +42,8 @@ DemoPart show_emps(const std::string& folder, Report& report) {
   drive.data.sample_period_s = seen.record.sample_period_s;
   adapt_to(seen.record, drive.data);
   adapt_to(unseen.record, drive.data);
-  const Identification found = identify_drive({seen.record}, drive, IdentificationMethod::unbiased_ls);
+  const Identification found =
+      identify_drive(MeasurementGate(drive).admit({seen.record}), drive, IdentificationMethod::unbiased_ls);
   const double forward = found.estimate.positive->value, backward = found.estimate.negative->value;
 
   // Published: Janot, Gautier, Brunot 2019, inverse model with offset; the ranges leave room for another filter.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/demo/model_plot.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/hil/simulated_experiment.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
@@ -28,7 +29,8 @@ void add_step_methods(const Record& steps, const sim::DriveDescription& machine,
   table.headings = {"method", "J, kg m²", "B, Nm s/rad", "Coulomb +, Nm", "Coulomb -, Nm", "torque error, %"};
   for (const auto method :
        {IdentificationMethod::simple_ls, IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
-    const Identification found = identify_drive({steps}, data_sheet_of(machine), method);
+    const Identification found =
+        identify_drive(MeasurementGate(data_sheet_of(machine)).admit({steps}), data_sheet_of(machine), method);
     const RigidEstimate& e = found.estimate;
     table.rows.push_back({std::string(method_name(method)), fmt::format("{:.5f}", e.inertia.value),
                           fmt::format("{:.4f}", e.viscous.value),
@@ -119,7 +121,8 @@ void add_tachometer_figures(const sim::DriveDescription& machine, const sim::Dri
   sim::DriveDescription misread = machine;
   misread.effects.push_back({.kind = "tach_gain", .parameters = {{"gain", kTachometerError}}, .ci95 = {}, .from = {}});
   const Record jogs = record_jogs(misread, design, paper_jogs(), kJogSeed);
-  const FrictionIdentification found = identify_friction({jogs}, believed, FrictionMethod::joint);
+  const FrictionIdentification found =
+      identify_friction(MeasurementGate(believed).admit({jogs}), believed, FrictionMethod::joint);
   const double gain = found.tachometer ? found.tachometer->gain.value : std::nan("");
   figures.push_back({axis + " tachometer gain, made 1 % wrong", gain, kTachometerError - 0.002,
                      kTachometerError + 0.002, "1.01 ± 0.2 %"});
@@ -134,11 +137,14 @@ PaperAxisOutcome show_paper_axis(std::string_view axis, Report& report) {
   const std::string name(axis);
   const Record steps =
       record_open_loop(machine, doublet_series(kStepScaling * kStepUnit_V, machine.data.sample_period_s), kStepSeed);
-  const Identification unbiased = identify_drive({steps}, data_sheet_of(machine), IdentificationMethod::unbiased_ls);
-  const Identification sliding = identify_drive({steps}, data_sheet_of(machine), IdentificationMethod::sliding_ls);
+  const Identification unbiased = identify_drive(MeasurementGate(data_sheet_of(machine)).admit({steps}),
+                                                 data_sheet_of(machine), IdentificationMethod::unbiased_ls);
+  const Identification sliding = identify_drive(MeasurementGate(data_sheet_of(machine)).admit({steps}),
+                                                data_sheet_of(machine), IdentificationMethod::sliding_ls);
   const AxisDesign design = design_axis(sliding.model, {});
   const Record jogs = record_jogs(machine, design, paper_jogs(), kJogSeed);
-  FrictionIdentification friction = identify_friction({jogs}, sliding.model, FrictionMethod::joint);
+  FrictionIdentification friction =
+      identify_friction(MeasurementGate(sliding.model).admit({jogs}), sliding.model, FrictionMethod::joint);
 
   PaperAxisOutcome outcome;
   const FrictionLaw truth = friction_law(machine);

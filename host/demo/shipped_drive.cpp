@@ -8,6 +8,7 @@
 
 #include "host/compare/prediction.hpp"
 #include "host/demo/model_plot.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
@@ -57,7 +58,8 @@ DemoPart show_shipped_drive(const std::string& folder, Report& report) {
   const Truth truth = read_truth(folder + "/truth.json");
   const Record steps = read_for(folder + "/train-steps.csv", given.data);
   const Record unseen = read_for(folder + "/validate.csv", given.data);
-  const Identification found = identify_drive({steps}, given, IdentificationMethod::sliding_ls);
+  const Identification found =
+      identify_drive(MeasurementGate(given).admit({steps}), given, IdentificationMethod::sliding_ls);
   const double unseen_error = relative_error(found.model, unseen);
 
   const RigidEstimate& estimate = found.estimate;

@@ -94,10 +94,13 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
 
 }  // namespace
 
-Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const ShareDone& progress, const Diagnosis* before) {
+Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
+                   const Diagnosis* before) {
+  const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const auto over = [&](double window_s, Measure measure) {
-    return diagnose_over(window_s, measure, model, training, validation, progress);
+    Diagnosis result = diagnose_over(window_s, measure, model, training, validation, progress);
+    result.log = measured.log();
+    return result;
   };
   std::optional<Diagnosis> over_long_windows;
   if (before == nullptr || !before->rough) {

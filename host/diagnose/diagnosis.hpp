@@ -9,6 +9,7 @@
 #include "host/compare/error_regions.hpp"
 #include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/prepared_sets.hpp"
+#include "host/record/measurements.hpp"
 
 namespace host {
 
@@ -49,6 +50,7 @@ struct Diagnosis : PreparedSets {
   Diagnosis() = default;
   explicit Diagnosis(PreparedSets sets) : PreparedSets(std::move(sets)), best(base) {}
 
+  std::vector<LogFault> log;  ///< what is doubtful about the records
   bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
   std::vector<ChannelError> channels;
   double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
@@ -81,8 +83,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
 /// missing shows before it adds up to a drift; and where that says nothing, by the motion over short windows. `before`:
 /// an earlier diagnosis of the same records, whose way of judging is taken over, so that their errors can be compared.
 /// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
-Diagnosis diagnose(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                   const std::vector<const Record*>& validation, const ShareDone& progress = {},
+Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
                    const Diagnosis* before = nullptr);
 
 }  // namespace host

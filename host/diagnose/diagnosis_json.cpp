@@ -1,6 +1,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 
 #include "host/diagnose/verdict.hpp"
+#include "host/evidence/log_faults.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -63,6 +64,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
              {{"given", {{"train", diagnosis.given_train}, {"validate", diagnosis.given_validate}}},
               {"before", {{"train", diagnosis.before_train}, {"validate", diagnosis.before_validate}}},
               {"after", {{"train", diagnosis.after_train}, {"validate", diagnosis.after_validate}}}}}}},
+          {"log", log_faults_json(diagnosis.log)},
           {"where", error_regions_json(diagnosis.where)},
           {"candidates", candidates},
           {"verdict", verdict_json(diagnosis.verdict)}};
@@ -84,6 +86,7 @@ nlohmann::json to_json(const Improvement& improvement, const std::string& model_
           {"ladder", ladder},
           {"channels", channels},
           {"stopped_because", improvement.stopped_because},
+          {"log", log_faults_json(improvement.first.log)},
           {"verdict", verdict_json(improvement.verdict)},
           {"model", model_path}};
 }

@@ -38,15 +38,14 @@ std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const 
   return estimate_intervals(model, training);
 }
 
-Improvement improve(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                    const std::vector<const Record*>& validation, const ShareDone& progress) {
+Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress) {
   Improvement result;
   sim::DriveDescription current = model;
   for (int step = 0; step < kMostRungs; ++step) {
     const auto part = [&](double share) {
       if (progress) progress((step + share) / (step + 2.0));
     };
-    Diagnosis diagnosis = diagnose(current, training, validation, part, step == 0 ? nullptr : &result.first);
+    Diagnosis diagnosis = diagnose(current, measured, part, step == 0 ? nullptr : &result.first);
     if (step == 0) result.ladder.push_back(rung_of(diagnosis, false, {}));
     result.verdict = diagnosis.verdict;
     result.model = diagnosis.best;
@@ -76,8 +75,8 @@ Improvement improve(const sim::DriveDescription& model, const std::vector<const 
   return result;
 }
 
-Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
-                    const std::vector<const Record*>& training, const std::vector<const Record*>& validation) {
+Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
+  const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr)
     throw Failure(ExitCode::usage, fmt::format("{}: no such effect; axistool effects lists them", kind));

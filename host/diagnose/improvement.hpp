@@ -25,8 +25,7 @@ struct Improvement {
 };
 
 /// Never adds what does not replicate on validation data. Throws as diagnose() does.
-Improvement improve(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                    const std::vector<const Record*>& validation, const ShareDone& progress = {});
+Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {});
 
 /// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.
@@ -35,8 +34,7 @@ struct Addition {
   std::vector<ParameterEstimate> estimates;
   bool held_back = false;
 };
-Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
-                    const std::vector<const Record*>& training, const std::vector<const Record*>& validation);
+Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
 
 /// Writes intervals and origin into a fitted model; returns what the data say of each parameter.
 std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const RecordSet& training);

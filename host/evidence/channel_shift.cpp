@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/identify/motion.hpp"
+#include "host/exit_codes.hpp"
 #include "host/identify/zero_phase_filter.hpp"
 #include "sim/drive.hpp"
 
@@ -37,6 +37,15 @@ double squares_left(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& ta
 
 }  // namespace
 
+std::optional<Motion> motion_if_long_enough(const Record& record, const sim::DataSheet& data,
+                                            const MotionOptions& options) {
+  try {
+    return prepare_motion(record, data, options);
+  } catch (const Failure&) {
+    return std::nullopt;
+  }
+}
+
 std::optional<double> tachometer_shift(const Record& record, const sim::DataSheet& data) {
   const auto n = static_cast<Eigen::Index>(record.size());
   const Eigen::Index inner = n - 2 * kMostSamples;
@@ -62,13 +71,17 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
   const auto better = [&](double other) { return 0.5 * independent * std::log(other / squares[index]); };
   if (better(squares[kMostSamples]) < kLogLikelihood) return {};
   if (*shift > 0.0) {
-    const double keep = std::exp(-1.0 / *shift);
-    double lagged = speed.front();
-    for (Eigen::Index k = 0; k < n; ++k) {
-      lagged = keep * lagged + (1.0 - keep) * speed[static_cast<std::size_t>(k)];
-      if (k >= kMostSamples && k < kMostSamples + inner) regressors(k - kMostSamples, 0) = lagged;
+    // A lag that begins within a sample delays by up to half of one more than its time constant.
+    for (double lag = *shift - 0.75; lag < *shift + 0.8; lag += 0.25) {
+      if (lag <= 0.0) continue;
+      const double keep = std::exp(-1.0 / lag);
+      double lagged = speed.front();
+      for (Eigen::Index k = 0; k < n; ++k) {
+        lagged = keep * lagged + (1.0 - keep) * speed[static_cast<std::size_t>(k)];
+        if (k >= kMostSamples && k < kMostSamples + inner) regressors(k - kMostSamples, 0) = lagged;
+      }
+      if (better(squares_left(regressors, measured)) < kLogLikelihood) return {};
     }
-    if (better(squares_left(regressors, measured)) < kLogLikelihood) return {};
   }
   return std::round(*shift);
 }
@@ -77,10 +90,12 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
   constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
   constexpr double kGain = 0.5;              // the squares must fall to this part
-  constexpr double kExplained = 0.002;       // of the effort's square: else friction decides where the optimum lies
+  constexpr double kExplained = 0.02;        // of the effort's square: else friction decides where the optimum lies
   MotionOptions options;
   options.decimation = 1;
-  const Motion motion = prepare_motion(record, model.data, options);
+  const std::optional<Motion> prepared = motion_if_long_enough(record, model.data, options);
+  if (!prepared) return {};
+  const Motion& motion = *prepared;
   const std::size_t n = motion.speed.size();
   std::vector<std::size_t> rows;
   for (std::size_t k = kMostSamples; k + kMostSamples < n; ++k)

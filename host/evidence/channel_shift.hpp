@@ -3,10 +3,15 @@
 
 #include <optional>
 
+#include "host/identify/motion.hpp"
 #include "host/record/record.hpp"
 #include "sim/drive_description.hpp"
 
 namespace host {
+
+/// prepare_motion(); empty where the record is too short for the filter, or its command is not known as an effort.
+std::optional<Motion> motion_if_long_enough(const Record& record, const sim::DataSheet& data,
+                                            const MotionOptions& options);
 
 /// Whole samples by which the tachometer runs behind (> 0) or ahead of (< 0) the encoder. Empty where there is no
 /// shift, where it is not a whole number of samples, or where a first-order lag fits as well: that is physics.

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "host/evidence/channel_relations.hpp"
 #include "host/evidence/channel_shift.hpp"
+#include "host/evidence/clipped_command.hpp"
 #include "host/evidence/position_jumps.hpp"
-#include "host/exit_codes.hpp"
-#include "host/identify/encoder_step.hpp"
 #include "host/identify/rigid_estimate.hpp"
 #include "host/record/columns.hpp"
 #include "sim/drive.hpp"
@@ -24,11 +24,11 @@ std::string file_name(const Record& record) { return std::filesystem::path(recor
 class FaultList {
  public:
   explicit FaultList(const Record& record) : record_(record) {}
-  void add(LogFaultKind kind, std::vector<double> Record::*channel, double t_s, double size,
-           const std::string& message) {
+  void add(LogFaultKind kind, std::vector<double> Record::*channel, double t_s, double size, const std::string& message,
+           bool fatal = true) {
     const std::string column(name_in_file(record_, channel));
-    faults_.push_back(
-        {kind, column, record_.path, t_s, size, fmt::format("{}, column {}: {}", file_name(record_), column, message)});
+    faults_.push_back({kind, column, record_.path, t_s, size,
+                       fmt::format("{}, column {}: {}", file_name(record_), column, message), fatal});
   }
   std::vector<LogFault> take() { return std::move(faults_); }
 
@@ -59,26 +59,44 @@ void report_jumps(const Record& record, const PositionJumps& jumps, FaultList& f
                            jumps.dropped, jumps.first_drop.t_s));
 }
 
-void find_derived_speed(const Record& record, const sim::DataSheet& data, FaultList& faults) {
-  if (!record.has_position() || !record.has_speed() || record.size() < 4) return;
-  constexpr double kSame = 1e-3;  // of one encoder step a sample: a tachometer's noise is no multiple of the step
-  const double unit = encoder_step(record, data) / (data.lead * record.sample_period_s);
-  if (!(unit > 0.0)) return;
-  const auto departs = [&](std::size_t back, std::size_t ahead) {
-    const double span_s = static_cast<double>(back + ahead) * record.sample_period_s;
-    double travel = 0.0;
-    for (std::size_t k = back; k + ahead < record.size(); ++k) {
-      const double difference = (record.x[k + ahead] - record.x[k - back]) / (data.lead * span_s);
-      travel = std::max(travel, std::abs(difference));
-      if (std::abs(record.w[k] - difference) > kSame * unit) return true;
-    }
-    return travel == 0.0;
-  };
-  if (!departs(1, 0) || !departs(0, 1) || !departs(1, 1))
+void find_copies(const Record& record, const sim::DataSheet& data, FaultList& faults) {
+  if (speed_is_differenced(record, data))
     faults.add(
         LogFaultKind::derived_channel, &Record::w, record.t_s.front(), 0.0,
         "is the difference of the position, not a measurement of its own: it tells nothing new; leave the column "
-        "out, or log the tachometer");
+        "out, or log the tachometer",
+        false);
+  if (const std::optional<ScaledCopy> copy = scaled_copy(record))
+    faults.add(LogFaultKind::scaled_copy, copy->channel, record.t_s.front(), copy->factor,
+               fmt::format("is {} times {:.6g} (plus a constant) in every row, not a measurement of its own; log the "
+                           "channel itself, or leave the column out",
+                           name_in_file(record, copy->original), copy->factor),
+               !copy->harmless);
+}
+
+void find_clipping(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
+  if (const std::optional<ClippedCommand> clipped = clipped_command(record, model))
+    faults.add(
+        LogFaultKind::clipped, &Record::u_V, clipped->t_s, clipped->level_V,
+        fmt::format("stands at {:.4g} V in {:.0f} % of the rows while the axis does what takes {:.0f} % more: the "
+                    "log cuts the command off; log its whole range (the converter gives {:g} V)",
+                    clipped->level_V, 100.0 * clipped->share, 100.0 * clipped->excess, model.data.dac_limit_V));
+}
+
+/// Inertia and friction as this record alone shows them; empty where it is too short to say.
+std::optional<RigidEstimate> rigid_estimate(const Record& record, const sim::DataSheet& data) {
+  const std::optional<Motion> motion = motion_if_long_enough(record, data, {});
+  constexpr std::ptrdiff_t kFewestRows = 50;
+  if (!motion || std::ranges::count(motion->counts, true) < kFewestRows) return std::nullopt;
+  RigidEstimate found = inverse_least_squares({*motion}, Coulomb::estimated);
+  if (!found.positive || !found.negative) return std::nullopt;
+  return found;
+}
+
+/// Known within a fifth, by half of its 95 % interval.
+bool sure(const Estimate& estimate) {
+  constexpr double kSure = 0.2;
+  return std::isfinite(estimate.value) && estimate.half_width() < kSure * std::abs(estimate.value);
 }
 
 /// Factors between what this record says of the base parameters and what the model says; empty where the record
@@ -87,16 +105,10 @@ struct BaseFactors {
   double inertia, viscous, forward, backward;
 };
 
-std::optional<BaseFactors> base_factors(const Record& record, const sim::DriveDescription& model) {
+std::optional<BaseFactors> base_factors(const RigidEstimate& found, const sim::DriveDescription& model) {
   const sim::Drive drive(model);
   if (!(drive.inertia > 0.0) || !(drive.friction[0].coulomb > 0.0) || !(drive.friction[1].coulomb > 0.0)) return {};
-  const RigidEstimate found = inverse_least_squares({prepare_motion(record, model.data, {})}, Coulomb::estimated);
-  constexpr double kSure = 0.2;  // half of the 95 % interval over the value
-  const auto sure = [](const Estimate& estimate) {
-    return std::isfinite(estimate.value) && estimate.half_width() < kSure * std::abs(estimate.value);
-  };
-  if (!sure(found.inertia) || !found.positive || !sure(*found.positive) || !found.negative || !sure(*found.negative))
-    return {};
+  if (!sure(found.inertia) || !sure(*found.positive) || !sure(*found.negative)) return {};
   const double viscous = drive.friction[0].viscous;
   return BaseFactors{found.inertia.value / drive.inertia, viscous > 0.0 ? found.viscous.value / viscous : 0.0,
                      found.positive->value / drive.friction[0].coulomb,
@@ -108,17 +120,54 @@ bool alike(double a, double b) {
   return a * b > 0.0 && a < kAlike * b && b < kAlike * a;
 }
 
+/// Where no model tells what the command should do: an axis that slides at a few thousandths of the converter's range,
+/// or under commands that are beyond it most of the time.
+void find_odd_command(const Record& record, const sim::DataSheet& data, FaultList& faults) {
+  constexpr double kTiny = 0.003;  // 30 mV of 10 V: below any drive's friction
+  constexpr double kBeyond = 1.05, kMostBeyond = 0.3;
+  if (record.u_V.empty() || !(data.dac_limit_V > 0.0)) return;
+  double largest = 0.0;
+  for (const double u_V : record.u_V) largest = std::max(largest, std::abs(u_V));
+  const auto beyond =
+      std::ranges::count_if(record.u_V, [&](double u_V) { return std::abs(u_V) > kBeyond * data.dac_limit_V; });
+  if (static_cast<double>(beyond) > kMostBeyond * static_cast<double>(record.size()))
+    faults.add(
+        LogFaultKind::command_scale, &Record::u_V, record.t_s.front(), largest / data.dac_limit_V,
+        fmt::format("goes up to {:.3g} V and is beyond what the converter gives ({:g} V) in {:.0f} % of the rows: "
+                    "the column is not in volts, or the data sheet's limit is not right",
+                    largest, data.dac_limit_V,
+                    100.0 * static_cast<double>(beyond) / static_cast<double>(record.size())));
+  if (largest > kTiny * data.dac_limit_V || !(largest > 0.0)) return;
+  const std::optional<Motion> motion = motion_if_long_enough(record, data, {});
+  if (!motion || std::ranges::find(motion->counts, true) == motion->counts.end()) return;
+  faults.add(
+      LogFaultKind::command_scale, &Record::u_V, record.t_s.front(), largest / data.dac_limit_V,
+      fmt::format("the axis slides though the command never exceeds {:.3g} V, {:.2g} of what the converter gives: "
+                  "the column is not in volts; scale it",
+                  largest, largest / data.dac_limit_V));
+}
+
 void find_wrong_scales(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
-  const std::optional<BaseFactors> factors = base_factors(record, model);
-  if (!factors) return;
+  sim::DataSheet unlimited = model.data;  // numbers in a wrong unit are not cut off by the converter
+  unlimited.dac_limit_V = HUGE_VAL;
+  const std::optional<RigidEstimate> found = rigid_estimate(record, unlimited);
+  if (!found) return;
   const auto command = record.u_V.empty() ? &Record::i_A : &Record::u_V;
-  const auto [inertia, viscous, forward, backward] = *factors;
-  if (inertia < 0.0 && forward < 0.0 && backward < 0.0) {
+  const bool pushes =
+      sure(*found->positive) && sure(*found->negative) && found->positive->value < 0.0 && found->negative->value > 0.0;
+  const bool against = sure(found->inertia) && found->inertia.value < 0.0;
+  if ((against || !sure(found->inertia)) && (pushes || (against && found->positive->value < found->negative->value))) {
     faults.add(LogFaultKind::command_sign, command, record.t_s.front(), -1.0,
                "the axis accelerates against its command, and friction pushes it: turn the sign of the command or of "
                "position and speed");
     return;
   }
+  const std::optional<BaseFactors> factors = base_factors(*found, model);
+  if (!factors) {
+    find_odd_command(record, model.data, faults);
+    return;
+  }
+  const auto [inertia, viscous, forward, backward] = *factors;
   constexpr double kUnit = 4.0;  // no drive's inertia and friction are both off by so much
   const auto off = [](double factor) { return factor > kUnit || (factor > 0.0 && factor < 1.0 / kUnit); };
   const double level = std::sqrt(std::abs(forward * backward));
@@ -143,7 +192,8 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
     const double shift_s = *samples * record.sample_period_s;
     faults.add(LogFaultKind::time_shift, &Record::w, record.t_s.front(), shift_s,
                fmt::format("runs {:g} ms ({} samples) {} the position: shift it back before comparing",
-                           1e3 * std::abs(shift_s), std::abs(*samples), shift_s > 0.0 ? "behind" : "ahead of"));
+                           1e3 * std::abs(shift_s), std::abs(*samples), shift_s > 0.0 ? "behind" : "ahead of"),
+               false);
   }
   if (const std::optional<double> samples = command_shift(record, model)) {
     const double shift_s = *samples * record.sample_period_s;
@@ -156,20 +206,15 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
 
 }  // namespace
 
-std::string log_fault_name(LogFaultKind kind) {
-  constexpr const char* kNames[] = {"integer_wrap", "new_zero",      "dropped_samples", "derived_channel",
-                                    "command_sign", "command_scale", "position_scale",  "time_shift"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
 std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescription& model) {
   FaultList faults(record);
-  find_derived_speed(record, model.data, faults);
+  find_copies(record, model.data, faults);
   const PositionJumps jumps = position_jumps(record, model);
   report_jumps(record, jumps, faults);
   // A record that jumps tells nothing about scales and shifts.
   if (jumps.none()) {
     find_wrong_scales(record, model, faults);
+    find_clipping(record, model, faults);
     find_time_shifts(record, model, faults);
   }
   return faults.take();
@@ -178,12 +223,16 @@ std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescripti
 nlohmann::json log_faults_json(const std::vector<LogFault>& faults) {
   nlohmann::json rows = nlohmann::json::array();
   for (const LogFault& fault : faults)
-    rows.push_back({{"kind", log_fault_name(fault.kind)},
+    rows.push_back({{"fault", log_fault_family(fault.kind)},
+                    {"kind", log_fault_name(fault.kind)},
                     {"channel", fault.channel},
                     {"record", fault.record},
                     {"t_s", fault.t_s},
                     {"size", fault.size},
-                    {"message", fault.message}});
+                    {"message", fault.message},
+                    {"remedy", log_fault_remedy(fault.kind)},
+                    {"fatal", fault.fatal},
+                    {"accepted", fault.accepted}});
   return rows;
 }
 

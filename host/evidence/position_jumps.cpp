@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "host/identify/encoder_step.hpp"
 #include "sim/drive.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kEffortMargin = 5.0;  ///< full effort taken so many times: what no error of the model excuses
 constexpr double kStepMargin = 3.0;    ///< encoder steps that quantisation and interpolation may add
+constexpr double kJitter = 3.0;        ///< samples' travel that an unsteady clock may add or take
 constexpr int kFewestBits = 8;
 
 /// The power of two that a number of encoder steps is, or 0.
@@ -19,6 +21,17 @@ int wrap_bits(double steps) {
   const int bits = static_cast<int>(std::lround(std::log2(steps)));
   constexpr double kTolerance = 2.0;  // steps
   return bits >= kFewestBits && std::abs(steps - std::exp2(bits)) <= kTolerance ? bits : 0;
+}
+
+/// What one step differs from the next by in all but a hundredth of the rows: where no inertia is known, what the drive
+/// does at most is about as much.
+double usual_change(const std::vector<double>& x) {
+  constexpr double kUsual = 0.99;
+  std::vector<double> changes;
+  for (std::size_t k = 2; k < x.size(); ++k) changes.push_back(std::abs(x[k] - 2.0 * x[k - 1] + x[k - 2]));
+  const auto rank = changes.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(changes.size() - 1));
+  std::ranges::nth_element(changes, rank);
+  return *rank;
 }
 
 void note(std::size_t& count, PositionJump& first, std::size_t more, double t_s, double size) {
@@ -32,13 +45,15 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
   PositionJumps jumps;
   const sim::Drive drive(model);
   const double resolution = encoder_step(record, model.data);
-  if (!record.has_position() || record.size() < 5 || !(drive.inertia > 0.0) || !(resolution > 0.0)) return jumps;
+  if (!record.has_position() || record.size() < 5 || !(resolution > 0.0)) return jumps;
   const double period_s = record.sample_period_s;
   double largest_V = model.data.dac_limit_V;
   for (const double u_V : record.u_V) largest_V = std::max(largest_V, std::abs(u_V));
-  const double per_sample = drive.effort_per_volt * largest_V / drive.inertia * period_s * period_s * drive.lead;
-  const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
   const auto step = [&](std::size_t k) { return record.x[k] - record.x[k - 1]; };
+  const double per_sample = drive.inertia > 0.0
+                                ? drive.effort_per_volt * largest_V / drive.inertia * period_s * period_s * drive.lead
+                                : usual_change(record.x);
+  const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
   // What a step exceeds the steps around it by.
   const auto excess = [&](std::size_t k) { return step(k) - 0.5 * (step(k - 1) + step(k + 1)); };
   for (std::size_t k = 3; k + 2 < record.size(); ++k) {
@@ -64,7 +79,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
       jumps.wrap_bits = bits;
     } else if (whole) {
       note(jumps.dropped, jumps.first_drop, static_cast<std::size_t>(std::lround(samples)), record.t_s[k], jump);
-    } else {
+    } else if (std::abs(jump) > kJitter * std::max(std::abs(before), std::abs(after))) {
       note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
     }
     ++k;  // the steps around a jump are no evidence of another

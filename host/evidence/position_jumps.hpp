@@ -25,8 +25,8 @@ struct PositionJumps {
   bool none() const { return wraps == 0 && new_zeros == 0 && dropped == 0; }
 };
 
-/// A jump is a step that would take several times the drive's full effort. Needs a position and a model with inertia;
-/// finds none without.
+/// A jump is a step that would take several times the drive's full effort; where the model has no inertia, several
+/// times what the record's steps otherwise change by. Needs a position.
 PositionJumps position_jumps(const Record& record, const sim::DriveDescription& model);
 
 }  // namespace host

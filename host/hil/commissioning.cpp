@@ -1,6 +1,7 @@
 #include "host/hil/commissioning.hpp"
 
 #include "hal/pc/simulated_axis.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/hil/simulated_experiment.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
@@ -16,11 +17,12 @@ sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint
   constexpr double kStepScaling = 15.0;  // Ku, p. 1499
   constexpr double kPitch_mm = 10.0;     // Table 1
   const Record steps = commissioning_steps(machine, kStepScaling, seed);
-  const Identification rigid = identify_drive({steps}, data_sheet_of(machine), IdentificationMethod::sliding_ls);
+  const Identification rigid = identify_drive(MeasurementGate(data_sheet_of(machine)).admit({steps}),
+                                              data_sheet_of(machine), IdentificationMethod::sliding_ls);
   const AxisDesign design = design_axis(rigid.model, {});
   const auto programme = jogging_programme({kPaperJogSpeeds_mm_s.begin(), kPaperJogSpeeds_mm_s.end()}, kPitch_mm);
   const Record jogs = record_jogs(machine, design, programme, seed + 1);
-  return identify_friction({jogs}, rigid.model, FrictionMethod::joint).model;
+  return identify_friction(MeasurementGate(rigid.model).admit({jogs}), rigid.model, FrictionMethod::joint).model;
 }
 
 firmware::AxisParameters<float> contouring_parameters(const sim::DriveDescription& model,

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "host/evidence/measurement_gate.hpp"
 #include "host/hil/commissioning.hpp"
 #include "host/hil/simulated_experiment.hpp"
 #include "host/identify/identification.hpp"
@@ -27,8 +28,9 @@ TimePlot prediction_plot(const Record& steps, const sim::DriveDescription& machi
     const bool is_simple = method == IdentificationMethod::simple_ls;
     const SeriesRole role = is_simple ? SeriesRole::before : SeriesRole::model;
     const char* name = is_simple ? "simple least squares" : "unbiased least squares";
-    const std::vector<double> predicted =
-        free_run_speed(identify_drive({steps}, data_sheet_of(machine), method).model, steps);
+    const std::vector<double> predicted = free_run_speed(
+        identify_drive(MeasurementGate(data_sheet_of(machine)).admit({steps}), data_sheet_of(machine), method).model,
+        steps);
     std::vector<double> off(predicted.size());
     for (std::size_t k = 0; k < off.size(); ++k) off[k] = steps.w[k] - predicted[k];
     speed.traces.push_back({name, role, predicted});
@@ -72,7 +74,9 @@ void add_identification_figures(const sim::DriveDescription& machine, std::strin
     const Record steps = commissioning_steps(machine, scaling, seed);
     for (const auto method : {IdentificationMethod::unbiased_ls, IdentificationMethod::simple_ls}) {
       const std::size_t place = method == IdentificationMethod::simple_ls ? 1 : 0;
-      const RigidEstimate found = identify_drive({steps}, data_sheet_of(machine), method).estimate;
+      const RigidEstimate found =
+          identify_drive(MeasurementGate(data_sheet_of(machine)).admit({steps}), data_sheet_of(machine), method)
+              .estimate;
       for (std::size_t i = 0; i < plots.size(); ++i) {
         if (place >= plots[i].series.size()) continue;
         const Estimate value = kEstimates[i].value(found);

@@ -147,8 +147,9 @@ void warn_of_other_effects(FrictionIdentification& result) {
 
 std::string_view method_name(FrictionMethod method) { return method == FrictionMethod::joint ? "joint" : "paper"; }
 
-FrictionIdentification identify_friction(const std::vector<Record>& records, const sim::DriveDescription& model,
+FrictionIdentification identify_friction(const Measurements& measured, const sim::DriveDescription& model,
                                          FrictionMethod method, const ConstantSpeedOptions& options) {
+  const std::vector<Record>& records = measured.training();
   FrictionIdentification result;
   result.method = method;
   const AxisDesign design = observer_for(records, model);

@@ -9,6 +9,7 @@
 #include "host/identify/friction_fit.hpp"
 #include "host/identify/friction_points.hpp"
 #include "host/identify/tachometer.hpp"
+#include "host/record/measurements.hpp"
 
 namespace host {
 
@@ -35,7 +36,7 @@ struct FrictionIdentification {
 /// gives inertia and viscous friction for the observer, which is designed with the default options; a model with one
 /// Coulomb level for both directions keeps that form. Records need a position for the Kalman disturbance.
 /// Throws Failure(refused) where there are too few constant speeds, Failure(bad_input) for an unusable model.
-FrictionIdentification identify_friction(const std::vector<Record>& records, const sim::DriveDescription& model,
+FrictionIdentification identify_friction(const Measurements& measured, const sim::DriveDescription& model,
                                          FrictionMethod method, const ConstantSpeedOptions& options = {});
 
 }  // namespace host

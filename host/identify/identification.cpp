@@ -121,8 +121,9 @@ IdentificationMethod default_method(const std::vector<Record>& records) {
   return tachometer ? IdentificationMethod::sliding_ls : IdentificationMethod::unbiased_ls;
 }
 
-Identification identify_drive(const std::vector<Record>& given, const sim::DriveDescription& drive,
+Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options) {
+  const std::vector<Record>& given = measured.training();
   require_same_rate(given);
   require_enough(given);
   Identification result;

@@ -7,6 +7,7 @@
 
 #include "host/identify/excitation_check.hpp"
 #include "host/identify/tachometer.hpp"
+#include "host/record/measurements.hpp"
 
 namespace host {
 
@@ -35,11 +36,11 @@ struct Identification {
   std::vector<std::string> warnings;
 };
 
-/// Identifies from one or several records of the same drive and sampling period. `drive` gives the data sheet; a base
-/// effect that it has in the one-level form keeps that form, other effects are not taken over (a warning says so).
-/// sliding_ls corrects the tachometer by the encoder first; the paper's methods take the records as they are.
+/// Identifies from one or several (training) records of the same drive and sampling period. `drive` gives the data
+/// sheet; a base effect that it has in the one-level form keeps that form, other effects are not taken over (a warning
+/// says so). sliding_ls corrects the tachometer by the encoder first; the paper's methods take the records as they are.
 /// Throws Failure(refused) for want of excitation, Failure(bad_input) for records that do not fit the drive.
-Identification identify_drive(const std::vector<Record>& records, const sim::DriveDescription& drive,
+Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});
 
 }  // namespace host

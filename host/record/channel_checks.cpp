@@ -8,6 +8,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/record/columns.hpp"
+#include "host/record/log_fault.hpp"
 
 namespace host {
 
@@ -30,6 +31,12 @@ constexpr double kUnitFactor = 1.5;
 
 std::string_view name_of(const Record& record, std::vector<double> Record::*channel) {
   return name_in_file(record, channel);
+}
+
+[[noreturn]] void fail(const Record& record, LogFaultKind kind, std::vector<double> Record::*channel,
+                       const std::string& what) {
+  const std::string message = fmt::format("{}: {}", record.path, what);
+  throw FaultyLog(message, {{kind, std::string(name_of(record, channel)), record.path, 0.0, 0.0, message}});
 }
 
 /// "line 4, column x_mm": where a reader finds the channel, or its value in a row.
@@ -125,9 +132,10 @@ double departure_from_line(const std::vector<double>& x, double slope) {
 }
 
 void fail_dead(const Record& record, std::vector<double> Record::*channel, const std::string& contradiction) {
-  fail(record, fmt::format("{}: dead channel: constant at {} in all {} rows while {}; check the wiring and the "
-                           "channel's assignment, or leave the column out",
-                           where(record, channel), (record.*channel)[0], record.size(), contradiction));
+  fail(record, LogFaultKind::dead_channel, channel,
+       fmt::format("{}: dead channel: constant at {} in all {} rows while {}; check the wiring and the "
+                   "channel's assignment, or leave the column out",
+                   where(record, channel), (record.*channel)[0], record.size(), contradiction));
 }
 
 void check_position_and_speed_alive(const Record& record) {
@@ -201,9 +209,10 @@ void check_range(const Record& record, std::vector<double> Record::*channel, dou
   const std::vector<double>& values = record.*channel;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (values[k] < low || values[k] > high)
-      fail(record, fmt::format("{} (t_s = {}): {} cannot be right (range {} … {}): {}; scale it with "
-                               "axistool import --map",
-                               where(record, channel, k + 1), record.t_s[k], values[k], low, high, suspicion));
+      fail(record, LogFaultKind::wrong_unit, channel,
+           fmt::format("{} (t_s = {}): {} cannot be right (range {} … {}): {}; scale it with "
+                       "axistool import --map",
+                       where(record, channel, k + 1), record.t_s[k], values[k], low, high, suspicion));
 }
 
 struct UnitMistake {
@@ -261,10 +270,12 @@ void check_speed_against_position(const Record& record, double lead) {
   if (factor > 1.0 / kUnitFactor && factor < kUnitFactor) return;
   const std::string pair = fmt::format("{}, and {}", where(record, &Record::w), name_of(record, &Record::x));
   if (factor < 0.0)
-    fail(record, fmt::format("{}: the speed runs against the position (factor {:.4g}); turn the sign of one of them",
-                             pair, factor));
-  fail(record, fmt::format("{}: a unit cannot be right: the speed is {:.4g} times what the position's change gives; {}",
-                           pair, factor, nearest_mistake(factor, record.kind)));
+    fail(record, LogFaultKind::speed_sign, &Record::w,
+         fmt::format("{}: the speed runs against the position (factor {:.4g}); turn the sign of one of them", pair,
+                     factor));
+  fail(record, LogFaultKind::wrong_unit, &Record::w,
+       fmt::format("{}: a unit cannot be right: the speed is {:.4g} times what the position's change gives; {}", pair,
+                   factor, nearest_mistake(factor, record.kind)));
 }
 
 void scale(std::vector<double>& values, sim::DriveKind from, sim::DriveKind to) {
@@ -313,15 +324,17 @@ void check_units(const Record& record, const sim::DataSheet& sheet) {
   if (!(sheet.encoder_resolution > 0.0) || !position_moves(record)) return;
   const std::string_view unit = sheet.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (largest_step(record.x) < 0.5 * sheet.encoder_resolution)
-    fail(record, fmt::format("{}: a unit cannot be right: the position changes by {:.3g} {} a row at most, less "
-                             "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
-                             where(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
+    fail(record, LogFaultKind::wrong_unit, &Record::x,
+         fmt::format("{}: a unit cannot be right: the position changes by {:.3g} {} a row at most, less "
+                     "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
+                     where(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
   constexpr double kCoarse = 200.0;  // encoder steps: a unit that is 1000 times too small, and a slow start besides
   if (smallest_step(record.x) > kCoarse * sheet.encoder_resolution)
-    fail(record, fmt::format("{}: a unit cannot be right: the position never changes by less than {:.3g} {}, "
-                             "{:.0f} steps of the model's encoder ({:.3g} {}); the numbers look like a smaller unit",
-                             where(record, &Record::x), smallest_step(record.x), unit,
-                             smallest_step(record.x) / sheet.encoder_resolution, sheet.encoder_resolution, unit));
+    fail(record, LogFaultKind::wrong_unit, &Record::x,
+         fmt::format("{}: a unit cannot be right: the position never changes by less than {:.3g} {}, "
+                     "{:.0f} steps of the model's encoder ({:.3g} {}); the numbers look like a smaller unit",
+                     where(record, &Record::x), smallest_step(record.x), unit,
+                     smallest_step(record.x) / sheet.encoder_resolution, sheet.encoder_resolution, unit));
 }
 
 void require_rate(const Record& record, double lowest_Hz, std::string_view purpose) {

@@ -10,6 +10,7 @@
 #include "host/read_file.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
+#include "host/record/log_fault.hpp"
 #include "host/record/number.hpp"
 #include "host/record/time_axis.hpp"
 
@@ -194,8 +195,10 @@ class Parser {
       else
         record_.extra.push_back(as_extra(column));
     }
-    if (const std::string fault = fault_of_copies(known); !fault.empty())
-      fail("line {}: {}", record_.names_line, fault);
+    if (const std::string fault = fault_of_copies(known); !fault.empty()) {
+      const std::string message = fmt::format("{}: line {}: {}", name_, record_.names_line, fault);
+      throw FaultyLog(message, {{LogFaultKind::copied_channel, {}, std::string(name_), 0.0, 0.0, message}});
+    }
     fill_channels(std::move(known), record_);
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/exit_codes.hpp"
+#include "host/record/log_fault.hpp"
 
 namespace host {
 
@@ -109,13 +110,17 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
   const std::string jitter =
       fmt::format("{:.3g} ms rms, {:.3g} ms at worst, with a period of {:.6g} ms", spacing.rms_jitter_s * 1e3,
                   spacing.worst_jitter_s * 1e3, spacing.period_s * 1e3);
-  if (spacing.gaps > 0)
-    fail(fmt::format(
-        "{}: dropped samples: {:.6g} s pass between two rows (first of {} gap(s), {} sample(s) missing; "
+  if (spacing.gaps > 0) {
+    const double from_s = axis.t_s[spacing.first_gap_row - 1];
+    const std::string message = fmt::format(
+        "{}: {}: dropped samples: {:.6g} s pass between two rows (first of {} gap(s), {} sample(s) missing; "
         "steps jitter by {}); record again, cut the record at the gaps, or fill them knowingly with "
         "axistool import --resample {:.6g}",
-        where(axis, spacing.first_gap_row), axis.t_s[spacing.first_gap_row] - axis.t_s[spacing.first_gap_row - 1],
-        spacing.gaps, spacing.dropped, jitter, round_period(spacing.period_s)));
+        path, where(axis, spacing.first_gap_row), axis.t_s[spacing.first_gap_row] - from_s, spacing.gaps,
+        spacing.dropped, jitter, round_period(spacing.period_s));
+    throw FaultyLog(
+        message, {{LogFaultKind::dropped_samples, "t_s", path, from_s, static_cast<double>(spacing.dropped), message}});
+  }
   if (!spacing.is_even)
     fail(
         fmt::format("{}: uneven sampling: steps jitter by {}; record with a steady clock, or make an evenly sampled "

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/evidence/measurement_gate.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/identify/rigid_estimate.hpp"
@@ -100,11 +101,15 @@ void unbiased_least_squares(benchmark::State& state) {
 }
 BENCHMARK(unbiased_least_squares)->Unit(benchmark::kMillisecond);
 
-/// All that the command does after reading the file: excitation check, calibration, filters, estimate, relative error.
+/// All that the command does after reading the file: faults of the log, excitation check, calibration, filters,
+/// estimate, relative error.
 void whole_identification(benchmark::State& state, host::IdentificationMethod method) {
   const std::vector<host::Record> records = {long_record()};
   const sim::DriveDescription drive = host::paper_drive("x").value();
-  measure(state, [&] { benchmark::DoNotOptimize(host::identify_drive(records, drive, method).relative_error); });
+  measure(state, [&] {
+    const host::Measurements measured = host::MeasurementGate(drive).admit(records);
+    benchmark::DoNotOptimize(host::identify_drive(measured, drive, method).relative_error);
+  });
 }
 BENCHMARK_CAPTURE(whole_identification, unbiased_ls, host::IdentificationMethod::unbiased_ls)
     ->Unit(benchmark::kMillisecond);

@@ -33,7 +33,9 @@ TEST(Diagnosis, AnAxisThatStandsTellsNothing) {
   std::ranges::fill(record.x, 12.0);
   std::ranges::fill(record.u_V, 0.1);
   for (std::size_t k = 0; k < record.size(); ++k) record.w[k] = 0.1 * std::sin(1.7 * static_cast<double>(k));
-  const host::Diagnosis diagnosis = host::diagnose(HandMade::model(), {&record}, {});
+  const sim::DriveDescription model = HandMade::model();
+  const host::Measurements measured = host::MeasurementGate(model).admit({record});
+  const host::Diagnosis diagnosis = host::diagnose(model, measured);
   EXPECT_EQ(diagnosis.verdict.status, host::Status::insufficient_data);
   EXPECT_TRUE(diagnosis.held_back);
   EXPECT_THAT(diagnosis.verdict.effects, IsEmpty());

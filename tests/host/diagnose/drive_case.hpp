@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/diagnose/diagnosis.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/model/model_file.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/read_record.hpp"
@@ -39,12 +41,12 @@ struct DriveCase {
     groups = truth.at("groups").get<std::vector<std::vector<std::string>>>();
   }
 
-  host::Diagnosis diagnose() const {
-    const auto pointers = [](const std::vector<host::Record>& records) {
-      std::vector<const host::Record*> result;
-      for (const host::Record& record : records) result.push_back(&record);
-      return result;
-    };
-    return host::diagnose(model, pointers(train), pointers(validate));
+  /// Refers to the records that the gate has let through, which live as long as this case.
+  host::Diagnosis diagnose() {
+    measured.emplace(host::MeasurementGate(model).admit(train, validate));
+    return host::diagnose(model, *measured);
   }
+
+ private:
+  std::optional<host::Measurements> measured;
 };

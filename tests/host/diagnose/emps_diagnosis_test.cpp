@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "host/diagnose/improvement.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/record/channel_checks.hpp"
@@ -40,8 +41,10 @@ TEST(EmpsDiagnosis, FindsTheViscousAsymmetryThenTheDelayAndTheLowSpeedShapeToget
   drive.data.encoder_resolution = 5e-8;         // m; the smallest step in the data
   drive.data.dac_limit_V = 10.0;
   const host::Record train = read("DATA_EMPS.mat", drive.data), validate = read("DATA_EMPS_PULSES.mat", drive.data);
-  const auto identified = host::identify_drive({train}, drive, host::IdentificationMethod::unbiased_ls);
-  const host::Improvement improvement = host::improve(identified.model, {&train}, {&validate});
+  const auto identified =
+      host::identify_drive(host::MeasurementGate(drive).admit({train}), drive, host::IdentificationMethod::unbiased_ls);
+  const host::Measurements measured = host::MeasurementGate(identified.model).admit({train}, {validate});
+  const host::Improvement improvement = host::improve(identified.model, measured);
 
   const host::Diagnosis& first = improvement.first;
   EXPECT_TRUE(first.rough);

@@ -13,7 +13,7 @@ class HiddenEffect : public testing::TestWithParam<std::string> {};
 
 TEST_P(HiddenEffect, IsFoundAndNothingElse) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  const DriveCase hidden(GetParam());
+  DriveCase hidden(GetParam());
   const host::Diagnosis diagnosis = hidden.diagnose();
   const host::DiagnosisVerdict& verdict = diagnosis.verdict;
   SCOPED_TRACE(verdict.explanation);

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "host/diagnose/improvement.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/hil/scenario_run.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
@@ -26,7 +27,8 @@ TEST(HiddenEffect, IsFoundInTheRecordsThatItSpoiltAndCompensated) {
   EXPECT_GT(worst_contour_um(before), 10.0);
   for (std::size_t i = 0; i < host::kMachineAxes; ++i) {
     const sim::DriveDescription nominal = *host::paper_drive(host::kAxisNames[i]);
-    const auto improved = host::improve(nominal, {&before.records[i]}, {&check.records[i]});
+    const auto improved =
+        host::improve(nominal, host::MeasurementGate(nominal).admit({before.records[i]}, {check.records[i]}));
     circle.axes[i].knowledge = host::Knowledge::model;
     circle.axes[i].believed = improved.model;
     EXPECT_NE(improved.model.find("cogging"), nullptr) << host::kAxisNames[i];

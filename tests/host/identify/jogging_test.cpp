@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/hil/simulated_experiment.hpp"
 #include "host/identify/friction_identification.hpp"
@@ -92,7 +93,8 @@ TEST_P(Jogging, FindsTheConstantSpeedsOfThePaperBothWays) {
 
 TEST_P(Jogging, JointFitRecoversTheFrictionCurveAndViscousFriction) {
   const PaperAxis& axis = GetParam();
-  const auto found = host::identify_friction({jog(axis)}, believed(axis), FrictionMethod::joint);
+  const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis)}), believed(axis),
+                                             FrictionMethod::joint);
   EXPECT_LT(worst_curve_error_Nm(axis, found.fit.law), axis.curve_tolerance_Nm);
   EXPECT_NEAR(found.fit.law.viscous, axis.B, 0.02 * axis.B);
   EXPECT_TRUE(found.fit.has_stribeck);
@@ -106,7 +108,8 @@ TEST_P(Jogging, JointFitRecoversTheFrictionCurveAndViscousFriction) {
 
 TEST_P(Jogging, TachometerGainErrorIsFoundAndNotAbsorbedInViscousFriction) {
   const PaperAxis& axis = GetParam();
-  const auto found = host::identify_friction({jog(axis, 1.01)}, believed(axis), FrictionMethod::joint);
+  const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis, 1.01)}),
+                                             believed(axis), FrictionMethod::joint);
   ASSERT_TRUE(found.tachometer);
   EXPECT_NEAR(found.tachometer->gain.value, 1.01, 0.002);
   EXPECT_NEAR(found.fit.law.viscous, axis.B, 0.03 * axis.B);
@@ -118,7 +121,8 @@ TEST_P(Jogging, TachometerGainErrorIsFoundAndNotAbsorbedInViscousFriction) {
 
 TEST_P(Jogging, ThePapersProcedureReachesWhatItsAuthorsReport) {
   const PaperAxis& axis = GetParam();
-  const auto found = host::identify_friction({jog(axis)}, believed(axis), FrictionMethod::paper);
+  const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis)}), believed(axis),
+                                             FrictionMethod::paper);
   // An independent implementation of (53)-(62) on such plants: B' within 1 % (x) and 4 % (y), Tcoul within 0.2 % and
   // 2.3 %, Tstat 2 % low. Its noise was another, hence half as much again.
   const bool x = std::string(axis.name) == "x";
@@ -141,7 +145,8 @@ TEST(JoggingForms, OneLevelForBothDirectionsStaysOneLevel) {
   machine.find("stribeck")->parameters = {{"static", 3.0}, {"omega1", 2.0}, {"omega2", 2.0}};
   const auto record = host::record_jogs(machine, host::design_axis(model, {}),
                                         host::jogging_programme({0.3, 1.0, 3.0, 10.0, 30.0, 90.0}, 10.0), 5);
-  const auto found = host::identify_friction({record}, model, FrictionMethod::joint);
+  const auto found =
+      host::identify_friction(host::MeasurementGate(model).admit({record}), model, FrictionMethod::joint);
   ASSERT_TRUE(found.model.find("coulomb")->has("level"));
   EXPECT_FALSE(found.model.find("coulomb")->has("positive"));
   EXPECT_NEAR(found.model.find("coulomb")->at("level"), 2.0, 0.02);
@@ -151,7 +156,8 @@ TEST(JoggingForms, OneLevelForBothDirectionsStaysOneLevel) {
 TEST(JoggingForms, OneLevelIsDoubtedWhereTheDirectionsDiffer) {
   sim::DriveDescription model = believed(kAxes[0]);
   model.find("coulomb")->parameters = {{"level", 2.0}};
-  const auto found = host::identify_friction({jog(kAxes[0])}, model, FrictionMethod::joint);
+  const auto found =
+      host::identify_friction(host::MeasurementGate(model).admit({jog(kAxes[0])}), model, FrictionMethod::joint);
   EXPECT_THAT(found.warnings, Contains(HasSubstr("the directions differ")));
 }
 
@@ -160,7 +166,8 @@ TEST(JoggingForms, PlainCoulombFrictionGetsNoStribeckEffect) {
   std::erase_if(machine.effects, [](const sim::EffectEntry& entry) { return entry.kind == "stribeck"; });
   const auto record = host::record_jogs(machine, host::design_axis(believed(kAxes[1]), {}),
                                         host::jogging_programme({0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 90.0}, 10.0), 5);
-  const auto found = host::identify_friction({record}, believed(kAxes[1]), FrictionMethod::joint);
+  const auto found = host::identify_friction(host::MeasurementGate(believed(kAxes[1])).admit({record}),
+                                             believed(kAxes[1]), FrictionMethod::joint);
   EXPECT_FALSE(found.fit.has_stribeck);
   EXPECT_EQ(found.model.find("stribeck"), nullptr);
   EXPECT_NEAR(found.fit.law.positive.coulomb, 3.058, 0.01);
@@ -172,7 +179,7 @@ TEST(JoggingForms, TooFewSpeedsAreRefusedWithWhatToJog) {
                                         host::jogging_programme({30.0}, 10.0), 5);
   for (const auto method : {FrictionMethod::joint, FrictionMethod::paper}) {
     try {
-      host::identify_friction({record}, believed(kAxes[0]), method);
+      host::identify_friction(host::MeasurementGate(believed(kAxes[0])).admit({record}), believed(kAxes[0]), method);
       FAIL() << "accepted one speed";
     } catch (const host::Failure& failure) {
       EXPECT_EQ(failure.code, host::ExitCode::refused);
@@ -189,14 +196,16 @@ TEST(JoggingForms, DriveWithoutTachometerIsServed) {
   const auto record =
       host::record_jogs(machine, host::design_axis(model, {}), host::jogging_programme(speeds, 10.0), 3);
   ASSERT_TRUE(record.w.empty());
-  const auto found = host::identify_friction({record}, model, FrictionMethod::joint);
+  const auto found =
+      host::identify_friction(host::MeasurementGate(model).admit({record}), model, FrictionMethod::joint);
   EXPECT_LT(worst_curve_error_Nm(kAxes[0], found.fit.law), 0.015);
   EXPECT_NEAR(found.fit.law.viscous, 0.0321, 0.02 * 0.0321);
   EXPECT_FALSE(found.tachometer);
 }
 
 TEST(JoggingForms, JsonHoldsPointsAndCurve) {
-  const auto found = host::identify_friction({jog(kAxes[0])}, believed(kAxes[0]), FrictionMethod::joint);
+  const auto found = host::identify_friction(host::MeasurementGate(believed(kAxes[0])).admit({jog(kAxes[0])}),
+                                             believed(kAxes[0]), FrictionMethod::joint);
   const nlohmann::json json = host::friction_json(found);
   EXPECT_EQ(json["format"], "axis-friction/1");
   ASSERT_EQ(json["points"].size(), 22u);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
@@ -48,7 +49,8 @@ class Emps : public testing::Test {
 TEST_F(Emps, InverseModelReproducesThePublishedIdentification) {
   // Janot, Gautier, Brunot (2019): M 95.1089 kg, Fv 203.5034, Fc 20.3935, offset -3.1648, force error 4.0834 %;
   // the same coefficients on the other experiment: 5.9824 %.
-  const auto found = host::identify_drive({read("DATA_EMPS.mat")}, drive, host::IdentificationMethod::unbiased_ls);
+  const auto found = host::identify_drive(host::MeasurementGate(drive).admit({read("DATA_EMPS.mat")}), drive,
+                                          host::IdentificationMethod::unbiased_ls);
   EXPECT_NEAR(found.estimate.inertia.value, 95.1, 0.1);
   EXPECT_NEAR(found.estimate.viscous.value, 203.3, 0.6);
   const double forward = found.estimate.positive->value, backward = found.estimate.negative->value;
@@ -62,7 +64,8 @@ TEST_F(Emps, InverseModelReproducesThePublishedIdentification) {
 }
 
 TEST_F(Emps, SimpleLeastSquaresIsFarWorse) {
-  const auto found = host::identify_drive({read("DATA_EMPS.mat")}, drive, host::IdentificationMethod::simple_ls);
+  const auto found = host::identify_drive(host::MeasurementGate(drive).admit({read("DATA_EMPS.mat")}), drive,
+                                          host::IdentificationMethod::simple_ls);
   EXPECT_GT(found.relative_error, 0.15);
   EXPECT_GT(found.estimate.viscous.value, 1.5 * 203.3);
 }
@@ -70,7 +73,8 @@ TEST_F(Emps, SimpleLeastSquaresIsFarWorse) {
 TEST_F(Emps, WithoutForceConstantTheErrorNamesIt) {
   drive.data.force_constant_N_per_V = 0.0;
   try {
-    host::identify_drive({read("DATA_EMPS.mat")}, drive, host::IdentificationMethod::unbiased_ls);
+    host::identify_drive(host::MeasurementGate(drive).admit({read("DATA_EMPS.mat")}), drive,
+                         host::IdentificationMethod::unbiased_ls);
     FAIL() << "accepted volts without a force constant";
   } catch (const host::Failure& failure) {
     EXPECT_EQ(failure.code, host::ExitCode::bad_input);
@@ -101,7 +105,8 @@ class IndependentDrive : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(IndependentDrive, IsIdentifiedFromStepsAlone) {
-  const auto found = host::identify_drive({read("train-steps.csv")}, model, host::IdentificationMethod::sliding_ls);
+  const auto found = host::identify_drive(host::MeasurementGate(model).admit({read("train-steps.csv")}), model,
+                                          host::IdentificationMethod::sliding_ls);
   EXPECT_NEAR(found.estimate.inertia.value, value("J"), 0.001 * value("J"));
   EXPECT_NEAR(found.estimate.viscous.value, value("B"), 0.01 * value("B"));
   EXPECT_NEAR(found.estimate.positive->value, coulomb(0), 0.01 * coulomb(0));
@@ -109,8 +114,9 @@ TEST_P(IndependentDrive, IsIdentifiedFromStepsAlone) {
 }
 
 TEST_P(IndependentDrive, IsIdentifiedFromOpenAndClosedLoopStacked) {
-  const auto found = host::identify_drive({read("train-steps.csv"), read("train-jog.csv"), read("train-sweep.csv")},
-                                          model, host::IdentificationMethod::sliding_ls);
+  const auto found = host::identify_drive(
+      host::MeasurementGate(model).admit({read("train-steps.csv"), read("train-jog.csv"), read("train-sweep.csv")}),
+      model, host::IdentificationMethod::sliding_ls);
   EXPECT_NEAR(found.estimate.inertia.value, value("J"), 0.001 * value("J"));
   EXPECT_NEAR(found.estimate.viscous.value, value("B"), 0.01 * value("B"));
   EXPECT_LT(found.relative_error, 0.01);
@@ -124,13 +130,15 @@ TEST_P(IndependentDrive, IsIdentifiedFromItsEncoderAlone) {
   steps.w.clear();
   sim::DriveDescription blind = model;
   blind.data.tach_noise_variance.reset();
-  const auto found = host::identify_drive({steps}, blind, host::default_method({steps}));
+  const auto found =
+      host::identify_drive(host::MeasurementGate(blind).admit({steps}), blind, host::default_method({steps}));
   EXPECT_NEAR(found.estimate.inertia.value, value("J"), 0.001 * value("J"));
   EXPECT_NEAR(found.estimate.viscous.value, value("B"), 0.01 * value("B"));
 }
 
 TEST_P(IndependentDrive, FrictionCurveComesFromItsJogs) {
-  const auto found = host::identify_friction({read("train-jog.csv")}, model, host::FrictionMethod::joint);
+  const auto found = host::identify_friction(host::MeasurementGate(model).admit({read("train-jog.csv")}), model,
+                                             host::FrictionMethod::joint);
   ASSERT_EQ(found.points.size(), 24u);   // twelve speeds both ways
   EXPECT_FALSE(found.fit.has_stribeck);  // the truth has none
   EXPECT_NEAR(found.fit.law.viscous, value("B"), 0.01 * value("B"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/hil/simulated_experiment.hpp"
 #include "host/identify/excitation.hpp"
@@ -36,7 +37,8 @@ TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
     for (const auto method :
          {IdentificationMethod::simple_ls, IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
       try {
-        host::identify_drive({steps(GetParam().axis, Ku)}, data_sheet_of(GetParam().axis), method);
+        host::identify_drive(host::MeasurementGate(data_sheet_of(GetParam().axis)).admit({steps(GetParam().axis, Ku)}),
+                             data_sheet_of(GetParam().axis), method);
         FAIL() << "accepted Ku = " << Ku;
       } catch (const host::Failure& failure) {
         EXPECT_EQ(failure.code, host::ExitCode::refused);
@@ -51,7 +53,8 @@ TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
 TEST_P(StepIdentification, ARecordTooSlowOrTooShortIsBadInput) {
   const auto message_of = [](const host::Record& record) {
     try {
-      host::identify_drive({record}, data_sheet_of(GetParam().axis), IdentificationMethod::sliding_ls);
+      host::identify_drive(host::MeasurementGate(data_sheet_of(GetParam().axis)).admit({record}),
+                           data_sheet_of(GetParam().axis), IdentificationMethod::sliding_ls);
     } catch (const host::Failure& failure) {
       EXPECT_EQ(failure.code, host::ExitCode::bad_input);
       return std::string(failure.what());
@@ -67,7 +70,9 @@ TEST_P(StepIdentification, ARecordTooSlowOrTooShortIsBadInput) {
 
 TEST_P(StepIdentification, WarnsWhereStaticFrictionDominates) {
   for (const auto method : {IdentificationMethod::unbiased_ls, IdentificationMethod::sliding_ls}) {
-    const auto found = host::identify_drive({steps(GetParam().axis, 5.0)}, data_sheet_of(GetParam().axis), method);
+    const auto found =
+        host::identify_drive(host::MeasurementGate(data_sheet_of(GetParam().axis)).admit({steps(GetParam().axis, 5.0)}),
+                             data_sheet_of(GetParam().axis), method);
     EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("static friction dominates")));
   }
 }
@@ -77,14 +82,16 @@ TEST_P(StepIdentification, UnbiasedEstimateHoldsFromKu10AndSimpleOneIsWorse) {
   for (const double Ku : {10.0, 12.5, 15.0}) {
     SCOPED_TRACE(Ku);
     const host::Record record = steps(truth.axis, Ku);
-    const auto unbiased = host::identify_drive({record}, data_sheet_of(truth.axis), IdentificationMethod::unbiased_ls);
+    const auto unbiased = host::identify_drive(host::MeasurementGate(data_sheet_of(truth.axis)).admit({record}),
+                                               data_sheet_of(truth.axis), IdentificationMethod::unbiased_ls);
     EXPECT_THAT(unbiased.warnings, testing::Not(testing::Contains(HasSubstr("static friction"))));
     EXPECT_NEAR(unbiased.estimate.inertia.value, truth.J, 0.02 * truth.J);
     EXPECT_NEAR(unbiased.estimate.viscous.value, truth.B, 0.20 * truth.B);
     EXPECT_NEAR(unbiased.estimate.positive->value, truth.coulomb[0], 0.12 * truth.coulomb[0]);
     EXPECT_NEAR(unbiased.estimate.negative->value, truth.coulomb[1], -0.12 * truth.coulomb[1]);
 
-    const auto simple = host::identify_drive({record}, data_sheet_of(truth.axis), IdentificationMethod::simple_ls);
+    const auto simple = host::identify_drive(host::MeasurementGate(data_sheet_of(truth.axis)).admit({record}),
+                                             data_sheet_of(truth.axis), IdentificationMethod::simple_ls);
     // The paper, (41) against (42): friction that is left out makes J and B look larger, B several times.
     EXPECT_GT(simple.estimate.inertia.value, 1.01 * unbiased.estimate.inertia.value);
     EXPECT_GT(simple.estimate.viscous.value, 1.5 * unbiased.estimate.viscous.value);
@@ -94,8 +101,10 @@ TEST_P(StepIdentification, UnbiasedEstimateHoldsFromKu10AndSimpleOneIsWorse) {
 
 TEST_P(StepIdentification, SlidingEstimateIsFreeOfTheTachometersBias) {
   const Truth& truth = GetParam();
-  const auto found = host::identify_drive({steps(truth.axis, 10.0), steps(truth.axis, 12.5), steps(truth.axis, 15.0)},
-                                          data_sheet_of(truth.axis), IdentificationMethod::sliding_ls);
+  const auto found =
+      host::identify_drive(host::MeasurementGate(data_sheet_of(truth.axis))
+                               .admit({steps(truth.axis, 10.0), steps(truth.axis, 12.5), steps(truth.axis, 15.0)}),
+                           data_sheet_of(truth.axis), IdentificationMethod::sliding_ls);
   EXPECT_NEAR(found.estimate.inertia.value, truth.J, 0.005 * truth.J);
   EXPECT_NEAR(found.estimate.viscous.value, truth.B, 0.05 * truth.B);
   EXPECT_NEAR(found.estimate.positive->value, truth.coulomb[0], 0.05 * truth.coulomb[0]);

@@ -1,0 +1,44 @@
+// What every command that reads records has in common: they pass the gate, and what it finds is said first.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "host/axistool/json_output.hpp"
+#include "host/evidence/log_faults.hpp"
+#include "host/evidence/measurement_gate.hpp"
+
+namespace axistool {
+
+/// The option --accept.
+inline void add_accept_option(CLI::App& command, std::vector<std::string>& accepted) {
+  command
+      .add_option(
+          "--accept", accepted,
+          "go on in spite of a fault of the log, by its name (sign, unit, swapped, clipped, jump, …); repeatable")
+      ->expected(1)
+      ->take_all();
+}
+
+/// Runs `work`; where a fault of the log ends it, the JSON document still says which.
+template <typename Work>
+void with_log_of_failure(const std::string& json, const std::string& format, Work work) {
+  try {
+    work();
+  } catch (const host::FaultyLog& refused) {
+    if (!json.empty()) write_json({{"format", format}, {"log", host::log_faults_json(refused.faults)}}, json);
+    throw;
+  }
+}
+
+/// On top of what a command prints: what is doubtful about the records, and what was accepted.
+inline void print_log(const std::vector<host::LogFault>& log) {
+  for (const host::LogFault& fault : log)
+    fmt::print("{} of the log ({}): {}\n", fault.accepted ? "Accepted fault" : "Doubt",
+               host::log_fault_family(fault.kind), fault.message);
+  if (!log.empty()) fmt::print("\n");
+}
+
+}  // namespace axistool

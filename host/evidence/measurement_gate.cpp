@@ -1,0 +1,188 @@
+#include "host/evidence/measurement_gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "host/evidence/channel_relations.hpp"
+#include "host/evidence/log_faults.hpp"
+#include "host/evidence/record_agreement.hpp"
+#include "host/evidence/record_overlap.hpp"
+#include "host/record/channel_checks.hpp"
+#include "host/record/columns.hpp"
+#include "host/record/read_record.hpp"
+
+namespace host {
+
+namespace {
+
+/// Rows that judge and train at once, in parts of the record that judges, beyond which the judgement means nothing.
+constexpr double kMostInCommon = 0.1;
+
+std::string file_name(const Record& record) { return std::filesystem::path(record.path).filename().string(); }
+
+void require_known(const std::vector<std::string>& accepted) {
+  constexpr auto kLast = static_cast<int>(LogFaultKind::records_disagree);
+  for (const std::string& name : accepted) {
+    bool known = false;
+    std::string families;
+    for (int kind = 0; kind <= kLast; ++kind) {
+      const std::string_view family = log_fault_family(static_cast<LogFaultKind>(kind));
+      known = known || name == family || name == log_fault_name(static_cast<LogFaultKind>(kind));
+      if (families.find(family) == std::string::npos) families += fmt::format("{}{}", kind == 0 ? "" : ", ", family);
+    }
+    if (!known)
+      throw Failure(ExitCode::usage, fmt::format("--accept {}: no fault has that name; there is {}", name, families));
+  }
+}
+
+/// Whole samples: the channel ran late (> 0) or early; rows without a partner are left out.
+void shift_back(Record& record, std::vector<double> Record::*channel, int late) {
+  const auto cut = static_cast<std::size_t>(std::abs(late));
+  if (record.size() <= cut) return;
+  const auto drop = [cut](auto& values, bool at_front) {
+    if (values.size() <= cut) return;
+    const auto count = static_cast<std::ptrdiff_t>(cut);
+    if (at_front)
+      values.erase(values.begin(), values.begin() + count);
+    else
+      values.erase(values.end() - count, values.end());
+  };
+  for (const auto other : kChannelsInFileOrder) drop(record.*other, (other == channel) == (late > 0));
+  for (ExtraChannel& extra : record.extra) {
+    drop(extra.values, late < 0);
+    drop(extra.text, late < 0);
+  }
+}
+
+}  // namespace
+
+MeasurementGate::MeasurementGate(const sim::DriveDescription& drive, GateOptions options)
+    : drive_(drive), options_(std::move(options)) {
+  require_known(options_.accepted);
+}
+
+bool MeasurementGate::is_accepted(const LogFault& fault) const {
+  return std::ranges::any_of(options_.accepted, [&](const std::string& name) {
+    return name == log_fault_family(fault.kind) || name == log_fault_name(fault.kind);
+  });
+}
+
+std::vector<LogFault> MeasurementGate::check(Record& record) const {
+  adapt_to(record, drive_.data);
+  if (position_and_speed_swapped(record)) {
+    const std::string column(name_in_file(record, &Record::w));
+    return {{LogFaultKind::swapped, column, record.path, record.t_s.front(), 0.0,
+             fmt::format("{}: the change of {} follows {}, as a position follows its speed: the two columns are "
+                         "exchanged; exchange their names",
+                         file_name(record), column, name_in_file(record, &Record::x))}};
+  }
+  std::vector<LogFault> faults;
+  try {
+    check_units(record, drive_.data);
+  } catch (const FaultyLog& refused) {
+    faults = refused.faults;
+    if (!std::ranges::all_of(faults, [&](const LogFault& fault) { return is_accepted(fault); })) return faults;
+  }
+  std::ranges::copy(log_faults(record, drive_), std::back_inserter(faults));
+  if (options_.as_logged) return faults;
+  for (LogFault& fault : faults) {
+    if (fault.kind == LogFaultKind::derived_channel) {
+      record.w.clear();
+      fault.message += "; left out here";
+    }
+    if (fault.kind == LogFaultKind::time_shift && !fault.fatal && record.has_speed()) {
+      shift_back(record, &Record::w, static_cast<int>(std::lround(fault.size / record.sample_period_s)));
+      fault.message += "; shifted back here";
+    }
+  }
+  return faults;
+}
+
+void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<Record>& validation,
+                                    std::vector<LogFault>& faults) const {
+  const auto note = [&](const Record& first, const Record& second, const RecordOverlap& overlap, bool judges) {
+    const double common_s = static_cast<double>(overlap.rows) * second.sample_period_s;
+    const double share = static_cast<double>(overlap.rows) / static_cast<double>(second.size());
+    std::string message = fmt::format(
+        "{}: {} as {}: ", file_name(second),
+        overlap.whole ? std::string("the same rows")
+                      : fmt::format("{:.3g} s, from {:.4g} s on, are the same rows", common_s, overlap.begin_s),
+        file_name(first));
+    message += judges                                 ? "what trained cannot judge; give a record of another motion"
+               : overlap.whole && !options_.as_logged ? "it counts once"
+                                                      : "they count twice";
+    faults.push_back({LogFaultKind::same_record,
+                      {},
+                      second.path,
+                      overlap.begin_s,
+                      common_s,
+                      message,
+                      judges && (overlap.whole || share > kMostInCommon)});
+  };
+  for (auto* role : {&training, &validation}) {
+    for (std::size_t second = 1; second < role->size();) {
+      RecordOverlap overlap;
+      for (std::size_t first = 0; first < second && overlap.rows == 0; ++first) {
+        overlap = record_overlap((*role)[first], (*role)[second]);
+        if (overlap.rows > 0) note((*role)[first], (*role)[second], overlap, false);
+      }
+      if (overlap.whole && !options_.as_logged)
+        role->erase(role->begin() + static_cast<std::ptrdiff_t>(second));
+      else
+        ++second;
+    }
+  }
+  for (const Record& judge : validation) {
+    for (const Record& trainer : training) {
+      const RecordOverlap overlap = record_overlap(trainer, judge);
+      if (overlap.rows > 0) note(trainer, judge, overlap, true);
+    }
+  }
+  if (std::ranges::any_of(faults, [&](const LogFault& fault) { return fault.fatal && !is_accepted(fault); })) return;
+  std::vector<const Record*> by, judged;
+  for (const Record& record : training) by.push_back(&record);
+  for (const Record& record : validation) judged.push_back(&record);
+  const auto disagreement = record_disagreement(by, judged.empty() ? by : judged, drive_.data);
+  if (!disagreement) return;
+  const Record& odd = judged.empty() ? training[disagreement->record] : validation[disagreement->record];
+  const std::string column(name_in_file(odd, disagreement->channel));
+  const char* what = disagreement->channel == &Record::w ? "the tachometer's gain comes"
+                     : disagreement->friction_too        ? "inertia and friction both come"
+                                                         : "the inertia comes";
+  const char* why = disagreement->channel == &Record::w || disagreement->friction_too
+                        ? "a scale changed between the records"
+                        : "another load, or another scale";
+  faults.push_back({LogFaultKind::records_disagree, column, odd.path, odd.t_s.front(), disagreement->factor,
+                    fmt::format("{}, column {}: {} out {:.4g} times what the other records say: {}; record again under "
+                                "one setting, or leave the record out",
+                                file_name(odd), column, what, disagreement->factor, why)});
+}
+
+Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Record> validation) const {
+  std::vector<LogFault> faults;
+  for (auto* role : {&training, &validation})
+    for (Record& record : *role) std::ranges::move(check(record), std::back_inserter(faults));
+  compare_roles(training, validation, faults);
+  std::string fatal;
+  for (LogFault& fault : faults) {
+    fault.accepted = fault.fatal && is_accepted(fault);
+    if (!fault.fatal || fault.accepted) continue;
+    fatal += fmt::format("{}{}\n  fault of the log: {}; --accept {} goes on all the same", fatal.empty() ? "" : "\n",
+                         fault.message, log_fault_family(fault.kind), log_fault_family(fault.kind));
+  }
+  if (!fatal.empty()) throw FaultyLog(fatal, faults);
+  return {std::move(training), std::move(validation), std::move(faults)};
+}
+
+Measurements MeasurementGate::read(const std::vector<std::string>& training,
+                                   const std::vector<std::string>& validation) const {
+  std::vector<Record> train, judge;
+  for (const std::string& path : training) train.push_back(read_record(path));
+  for (const std::string& path : validation) judge.push_back(read_record(path));
+  return admit(std::move(train), std::move(judge));
+}
+
+}  // namespace host

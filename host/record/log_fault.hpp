@@ -1,0 +1,58 @@
+// What can be wrong with a log that no physics explains, and the end of a command that meets it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+enum class LogFaultKind {
+  integer_wrap,      ///< a counter of n bits ran over
+  new_zero,          ///< the position jumps by what no axis can move
+  dropped_samples,   ///< samples are missing, by their time stamps or by a jump of whole samples' travel
+  derived_channel,   ///< the speed is the difference of the position, not a measurement
+  command_sign,      ///< the axis accelerates against its command
+  command_scale,     ///< the command is not in volts, by far
+  position_scale,    ///< the position is not in its unit, by far
+  time_shift,        ///< a channel is logged samples early or late
+  speed_sign,        ///< the speed runs against the position
+  wrong_unit,        ///< values that their unit cannot mean
+  dead_channel,      ///< constant where another channel shows motion
+  copied_channel,    ///< one channel logged twice
+  swapped,           ///< position and speed stand in each other's column
+  clipped,           ///< the log cuts the command off where the amplifier did not
+  scaled_copy,       ///< one channel is another times a constant
+  same_record,       ///< rows that judge are rows that train, or rows that count twice
+  records_disagree,  ///< the records are not of one machine, or a channel's scale changed between them
+};
+
+/// The kind's own name, "integer_wrap", and the name of the family that programs and `--accept` know, "jump".
+std::string_view log_fault_name(LogFaultKind kind);
+std::string_view log_fault_family(LogFaultKind kind);
+
+/// How to mend a fault of this kind, as a clause.
+std::string_view log_fault_remedy(LogFaultKind kind);
+
+struct LogFault {
+  LogFaultKind kind;
+  std::string channel;    ///< column in the file
+  std::string record;     ///< path
+  double t_s = 0.0;       ///< where it shows first
+  double size = 0.0;      ///< of the jump, mm or m; times too large; s too late; number of samples; s in common
+  std::string message;    ///< what, where, and what mends it
+  bool fatal = true;      ///< with it any answer would be meaningless
+  bool accepted = false;  ///< fatal, but the user knows better
+};
+
+/// A log that no answer can be drawn from: exit code 9.
+class FaultyLog : public Failure {
+ public:
+  FaultyLog(const std::string& message, std::vector<LogFault> found)
+      : Failure(ExitCode::bad_input, message), faults(std::move(found)) {}
+  std::vector<LogFault> faults;
+};
+
+}  // namespace host

@@ -1,0 +1,43 @@
+// Records that have passed the gate: what every analysis starts from.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "host/record/log_fault.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+/// Records adapted to one drive, with their roles and what is doubtful about them. Only the gate
+/// (host/evidence/measurement_gate.hpp) makes them. Pointers to the records stay valid when it is moved.
+class Measurements {
+ public:
+  Measurements(Measurements&&) = default;
+  Measurements& operator=(Measurements&&) = default;
+
+  const std::vector<Record>& training() const { return training_; }
+  /// May be empty: then part of the training data has to judge.
+  const std::vector<Record>& validation() const { return validation_; }
+  std::vector<const Record*> training_records() const { return pointers(training_); }
+  std::vector<const Record*> validation_records() const { return pointers(validation_); }
+
+  /// Faults that are doubtful only, and fatal ones that the user accepted.
+  const std::vector<LogFault>& log() const { return log_; }
+
+ private:
+  friend class MeasurementGate;
+  Measurements(std::vector<Record> training, std::vector<Record> validation, std::vector<LogFault> log)
+      : training_(std::move(training)), validation_(std::move(validation)), log_(std::move(log)) {}
+
+  static std::vector<const Record*> pointers(const std::vector<Record>& records) {
+    std::vector<const Record*> result;
+    for (const Record& record : records) result.push_back(&record);
+    return result;
+  }
+
+  std::vector<Record> training_, validation_;
+  std::vector<LogFault> log_;
+};
+
+}  // namespace host
