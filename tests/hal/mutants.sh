@@ -1,7 +1,7 @@
 #!/bin/sh
-# mutants.sh ROOT PARTS_LIBRARY CXX all|few: seeds the mistakes of mutants.txt into the drivers, one at a time, and fails
+# mutants.sh ROOT PARTS_LIBRARY CXX all|few|DRIVER: seeds the mistakes of mutants.txt into the drivers, one at a time, and fails
 # unless each makes its driver's test fail. A mistake whose text is not found exactly once, or that does not compile, is
-# a fault of the list. `few` tries the first one of each driver.
+# a fault of the list. `few` tries the first one of each driver, DRIVER those of one.
 set -eu
 root=$1 library=$2 cxx=$3 which=$4
 jobs=$(nproc)
@@ -21,7 +21,7 @@ awk -v root="$root" -v work="$work" -v which="$which" '
   /^@/ { driver = substr($0, 3); mistakes = 0; next }
   {
     if (split($0, part, "|") != 4) { print "mutants.txt:" NR ": not four parts: " $0; exit 1 }
-    if (which == "few" && mistakes++ > 0) next
+    if (which == "few" ? mistakes++ > 0 : which != "all" && which != driver) next
     source = trimmed(part[2]); text = meant(part[3]); other = meant(part[4])
     whole = ""
     while ((getline line < (root "/" source)) > 0) whole = whole line "\n"

@@ -91,6 +91,14 @@ TEST_F(Tachometers, AnOverrunIsCountedAndTheNextPeriodIsWholeAgain) {
   EXPECT_NEAR(y_reading.code, -4 * 0.65 / 3.3 * 4096, 4.0);
 }
 
+/// RM0090, 10.3.17: a stream that starts over the flags of its last transfer may not start at all.
+TEST_F(Tachometers, StartAnewOverTheFlagsOfAnEarlierTransfer) {
+  start(1000);
+  chip.handlers.erase(kDma2Stream0Interrupt);
+  chip.pass_ms(2.5);
+  scan.start();
+}
+
 TEST_F(Tachometers, AnOverrunWithinAScanDoesNotExchangeTheAxes) {
   start(20'000);
   x_V = 2.0;

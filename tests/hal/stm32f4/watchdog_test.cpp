@@ -65,6 +65,11 @@ TEST_F(WindowWatchdog, LetsEveryControlRateLive) {
   EXPECT_TRUE(chip.window_watchdog.is_running());
 }
 
+TEST_F(WindowWatchdog, EndsAProgramWhoseControlInterruptNeverStarts) {
+  watchdog.start();
+  EXPECT_THROW(chip.pass_ms(31.0), ChipReset);
+}
+
 TEST_F(WindowWatchdog, EndsAProgramWhoseControlInterruptStops) {
   watchdog.start();
   run_at(1000, 100.0);
