@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "hal/axis_count.hpp"
 #include "hal/axis_hal.hpp"
 #include "hal/clock.hpp"
 #include "hal/emergency_stop.hpp"
@@ -18,12 +19,14 @@ namespace hal {
 /// Contract: while an object of type ControlShutOut lives, the control interrupt does not run; they nest, and live for
 /// microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells the
 /// watchdog that the processor is about to stand still for as long as the erase of a sector may last; `end_stall`
-/// makes it quick again. `restart` starts the program anew, and may return before it does.
+/// makes it quick again. `restart` starts the program anew, and may return before it does. `axis(index)` is there for
+/// every index below `kAxes`.
 template <typename T>
 concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
   typename T::AxisType;
   typename T::ControlShutOut;
   requires AxisHal<typename T::AxisType>;
+  requires T::kAxes >= 1 && T::kAxes <= kMostAxes;
   { board.axis(index) } -> std::same_as<typename T::AxisType&>;
   requires LimitInputs<std::remove_reference_t<decltype(board.axis(index).limits())>>;
   requires EmergencyStop<std::remove_reference_t<decltype(board.emergency_stop())>>;

@@ -22,12 +22,14 @@ template <typename Scalar, hal::Board Board>
 class BoardApplication {
  public:
   using Number = Scalar;
-  using Axes = AxisGroup<Scalar, typename Board::AxisType>;
+  using Axes = AxisGroup<Scalar, typename Board::AxisType, Board::kAxes>;
   using Store = ParameterStore<std::remove_reference_t<decltype(std::declval<Board&>().parameter_flash())>>;
-  static_assert(Axes::kAxes == kAxisCount);
+  static constexpr std::size_t kAxes = Board::kAxes;
 
   explicit BoardApplication(Board& board)
-      : board_(board), store_(board.parameter_flash()), axes_(board.axis(0), board.axis(1)) {}
+      : board_(board),
+        store_(board.parameter_flash()),
+        axes_([&board](std::size_t index) -> typename Board::AxisType& { return board.axis(index); }) {}
 
   /// Before the control interrupt runs: takes the parameters out of the store and hands them to the axes.
   void start() {
@@ -52,7 +54,7 @@ class BoardApplication {
   /// Takes the staged set over, as a whole or not at all.
   Status commit(ProblemPayload& problem) {
     const std::size_t changed = change_that_needs_standstill();
-    if (changed < kParameterCount && any_enabled()) {
+    if (changed < active_.size() && any_enabled()) {
       problem = {key_at(changed).code, 0, 0, std::bit_cast<std::uint32_t>(staged_.at(changed))};
       return Status::drive_enabled;
     }
@@ -65,7 +67,7 @@ class BoardApplication {
     }
     if (staged_ == active_) return Status::ok;
     active_ = staged_;
-    if (changed == kParameterCount && set_fits_) {
+    if (changed == active_.size() && set_fits_) {
       const BoardLimits limits = limits_of_board();  // all that may change while an axis moves
       const typename Board::ControlShutOut guard;
       axes_.board().configure(limits);
@@ -119,7 +121,7 @@ class BoardApplication {
 
   void stop() {
     const typename Board::ControlShutOut guard;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) axes_[axis].stop();
+    for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].stop();
   }
 
   /// Velocity in mm/s (m/s).
@@ -148,7 +150,7 @@ class BoardApplication {
 
   void clear_faults() {
     const typename Board::ControlShutOut guard;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) axes_[axis].clear_fault();
+    for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].clear_fault();
   }
 
   // Whose motion it is. Everybody may look, stop and disable.
@@ -211,7 +213,7 @@ class BoardApplication {
 
   /// Or about to be.
   bool any_enabled() const {
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (axes_[axis].is_or_will_be_on()) return true;
     return false;
   }
@@ -234,7 +236,7 @@ class BoardApplication {
 
   bool is_in_motion() {
     const typename Board::ControlShutOut guard;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (axes_[axis].is_or_will_be_on() && !axes_[axis].is_at_rest()) return true;
     return false;
   }
@@ -253,18 +255,18 @@ class BoardApplication {
     axes_.board().configure(limits_of_board());
     axes_.board().excuse_pause();
     if (!store_is_usable()) return;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
   }
 
-  /// kParameterCount when there is none.
+  /// The number of values when there is none.
   std::size_t change_that_needs_standstill() const {
-    for (std::size_t place = 0; place < kParameterCount; ++place) {
+    for (std::size_t place = 0; place < active_.size(); ++place) {
       const bool changed =
           std::bit_cast<std::uint32_t>(active_.at(place)) != std::bit_cast<std::uint32_t>(staged_.at(place));
       if (changed && rule_at(place).change == ParameterChange::while_disabled) return place;
     }
-    return kParameterCount;
+    return active_.size();
   }
 
   Status refusal(std::size_t axis) const {
@@ -313,9 +315,9 @@ class BoardApplication {
   Axes axes_;
   CaptureStream capture_;
   MotionOwner owner_;
-  ParameterValues active_;
-  ParameterValues staged_;
-  ParameterValues saved_;
+  ParameterValues active_{kAxes};
+  ParameterValues staged_{kAxes};
+  ParameterValues saved_{kAxes};
   bool set_fits_ = true;
   TimingPayload timing_{};
   std::uint32_t last_period_us_ = 0;

@@ -36,7 +36,7 @@ class CaptureStream {
   std::size_t words_per_row() const { return words_; }
   CaptureReply counts() const { return {rows_taken_, dropped_}; }
 
-  /// Once a control period, after the axes' steps. `axes[i]` is a SupervisedAxis.
+  /// Once a control period, after the axes' steps. An AxisGroup, which has all the axes that were asked for.
   template <typename Axes>
   void take(const Axes& axes) {
     if (!is_running_ || --until_next_ > 0) return;
@@ -51,7 +51,7 @@ class CaptureStream {
     Row& row = rows_[written % kRows];
     row.number = number;
     std::size_t used = 0;
-    for (std::size_t axis = 0; axis < channels_.size(); ++axis)
+    for (std::size_t axis = 0; axis < Axes::kAxes; ++axis)
       for (std::uint32_t left = channels_[axis]; left != 0; left &= left - 1)
         row.word[used++] = word_of(axes[axis], static_cast<Channel>(std::countr_zero(left)));
     written_.store(written + 1, std::memory_order_release);
@@ -126,7 +126,7 @@ class CaptureStream {
   std::array<Row, kRows> rows_{};
   std::atomic<std::uint32_t> written_ = 0;
   std::atomic<std::uint32_t> read_ = 0;
-  std::array<std::uint16_t, 2> channels_{};
+  std::array<std::uint16_t, hal::kMostAxes> channels_{};
   std::size_t words_ = 0;
   std::int32_t every_ = 1;
   std::int32_t until_next_ = 1;

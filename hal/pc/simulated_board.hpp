@@ -1,8 +1,9 @@
-// The axis board with two simulated drives plugged in: the board's side of all connectors.
+// A board with simulated drives plugged in: the board's side of all connectors.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "hal/board.hpp"
 #include "hal/pc/simulated_axis.hpp"
@@ -13,21 +14,27 @@
 namespace hal::pc {
 
 /// Time passes in advance() alone, which calls nothing of the board's program.
-class SimulatedBoard {
+template <std::size_t axes>
+class SimulatedBoardOf {
  public:
+  static constexpr std::size_t kAxes = axes;
   using AxisType = SimulatedAxis;
+  using Drives = std::array<sim::DriveDescription, axes>;
+  using Wiring = std::array<AxisWiring, axes>;
   struct ControlShutOut {
     // Program and control period take turns in one thread.
     ControlShutOut() {}  // NOLINT(modernize-use-equals-default): a guard that does nothing would be an unused variable
   };
 
   /// As many reports as TinyUSB's port queues, and the F405's two sectors; of these only as much as a set can need.
-  SimulatedBoard(const sim::DriveDescription& x, const sim::DriveDescription& y, std::uint64_t seed)
-      : plants_{sim::Plant(x, seed), sim::Plant(y, seed + 1)}, x_(plants_[0]), y_(plants_[1]) {}
-  SimulatedBoard(const SimulatedBoard&) = delete;
-  SimulatedBoard& operator=(const SimulatedBoard&) = delete;
+  /// Axis n has the noise of seed + n.
+  SimulatedBoardOf(const Drives& drives, std::uint64_t seed, const Wiring& wiring = {})
+      : plants_(make_plants(drives, seed, std::make_index_sequence<axes>())),
+        axes_(make_axes(wiring, std::make_index_sequence<axes>())) {}
+  SimulatedBoardOf(const SimulatedBoardOf&) = delete;
+  SimulatedBoardOf& operator=(const SimulatedBoardOf&) = delete;
 
-  SimulatedAxis& axis(std::size_t index) { return index == 0 ? x_ : y_; }
+  SimulatedAxis& axis(std::size_t index) { return axes_[index]; }
   SimulatedEmergencyStop& emergency_stop() { return stop_; }
   SimulatedSupply& supply() { return supply_; }
   SimulatedClock& clock() { return clock_; }
@@ -51,8 +58,18 @@ class SimulatedBoard {
   }
 
  private:
-  std::array<sim::Plant, 2> plants_;
-  SimulatedAxis x_, y_;
+  template <std::size_t... index>
+  static std::array<sim::Plant, axes> make_plants(const Drives& drives, std::uint64_t seed,
+                                                  std::index_sequence<index...>) {
+    return {sim::Plant(drives[index], seed + index)...};
+  }
+  template <std::size_t... index>
+  std::array<SimulatedAxis, axes> make_axes(const Wiring& wiring, std::index_sequence<index...>) {
+    return {SimulatedAxis(plants_[index], wiring[index])...};
+  }
+
+  std::array<sim::Plant, axes> plants_;
+  std::array<SimulatedAxis, axes> axes_;
   SimulatedEmergencyStop stop_;
   SimulatedSupply supply_;
   SimulatedClock clock_;
@@ -61,6 +78,8 @@ class SimulatedBoard {
   std::uint32_t control_period_us_ = 1000;
   bool wants_restart_ = false;
 };
+
+using SimulatedBoard = SimulatedBoardOf<kAxisCount>;
 static_assert(Board<SimulatedBoard>);
 
 }  // namespace hal::pc

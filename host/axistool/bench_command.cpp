@@ -45,7 +45,7 @@ void run(const BenchArguments& arguments) {
   if (!talks(arguments)) return;
   fmt::print("connect and identify        {:8.2f} ms, {:.2f} of them to find and open it\n", bench.connect_ms,
              bench.open_ms);
-  fmt::print("read {} parameters         {:8.2f} ms\n", firmware::kParameterCount, bench.read_all_ms);
+  fmt::print("read {} parameters         {:8.2f} ms\n", bench.parameters, bench.read_all_ms);
   fmt::print("set, read back, verify      {:8.2f} ms\n", bench.set_all_ms);
   fmt::print("one exchange, median        {:8.3f} ms, worst {:.3f} ms\n", bench.exchange_median_ms,
              bench.exchange_worst_ms);

@@ -41,7 +41,7 @@ host::JogStep parse_jog(const std::string& text) {
 
 host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmware::ParameterValues& values) {
   host::CaptureSettings settings;
-  settings.axis = axis_index(arguments.axis);
+  settings.axis = axis_index(arguments.axis, values.axes());
   settings.kind = arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
   for (const std::string& name : arguments.channels)
     settings.channels.push_back(host::channel_named(name, settings.kind));

@@ -1,6 +1,7 @@
 #include "host/axistool/device_arguments.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -52,15 +53,17 @@ void require_consent(const DeviceArguments& arguments, const std::string& questi
   throw host::Failure(host::ExitCode::refused, question + " Not done: answer y, or give --yes");
 }
 
-std::uint8_t axis_index(const std::string& name) {
-  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis)
+std::uint8_t axis_index(const std::string& name, std::size_t axes) {
+  for (std::size_t axis = 0; axis < axes; ++axis)
     if (firmware::kAxisNames[axis] == name) return static_cast<std::uint8_t>(axis);
-  throw host::Failure(host::ExitCode::usage, fmt::format("the board has no axis '{}'; it has x and y", name));
+  throw host::Failure(host::ExitCode::usage,
+                      fmt::format("the board has no axis '{}'; it has {}", name,
+                                  fmt::join(firmware::kAxisNames.begin(), firmware::kAxisNames.begin() + axes, ", ")));
 }
 
-std::uint8_t axis_mask(const std::vector<std::string>& names) {
-  unsigned mask = names.empty() ? (1u << firmware::kAxisCount) - 1 : 0;
-  for (const std::string& name : names) mask |= 1u << axis_index(name);
+std::uint8_t axis_mask(const std::vector<std::string>& names, std::size_t axes) {
+  unsigned mask = names.empty() ? (1u << axes) - 1 : 0;
+  for (const std::string& name : names) mask |= 1u << axis_index(name, axes);
   return static_cast<std::uint8_t>(mask);
 }
 

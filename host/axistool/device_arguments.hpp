@@ -30,8 +30,8 @@ bool talks(const DeviceArguments& arguments);
 void require_consent(const DeviceArguments& arguments, const std::string& question);
 
 /// "x" -> 0. Throws Failure(usage).
-std::uint8_t axis_index(const std::string& name);
+std::uint8_t axis_index(const std::string& name, std::size_t axes);
 /// Of several; all when empty.
-std::uint8_t axis_mask(const std::vector<std::string>& names);
+std::uint8_t axis_mask(const std::vector<std::string>& names, std::size_t axes);
 
 }  // namespace axistool

@@ -22,9 +22,9 @@ struct FaultArguments : DeviceArguments {
   bool linear = false;
 };
 
-nlohmann::json faults_json(const firmware::StatusPayload& status) {
+nlohmann::json faults_json(const host::BoardState& status) {
   nlohmann::json axes = nlohmann::json::array();
-  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+  for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const auto& fault = firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].fault));
     axes.push_back({{"axis", firmware::kAxisNames[axis]},
                     {"state", host::state_text(status.axis[axis])},
@@ -39,14 +39,14 @@ nlohmann::json faults_json(const firmware::StatusPayload& status) {
           {"reset_cause", host::reset_text(status.reset_cause)}};
 }
 
-bool has_fault(const firmware::StatusPayload& status) {
+bool has_fault(const host::BoardState& status) {
   bool any = host::store_problem(status).has_value();
   for (const firmware::AxisStatus& axis : status.axis) any = any || axis.fault != 0;
   return any;
 }
 
-void print_faults(const firmware::StatusPayload& status) {
-  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+void print_faults(const host::BoardState& status) {
+  for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const auto& fault = firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].fault));
     fmt::print(
         "{}: {}, {}\n", firmware::kAxisNames[axis], host::state_text(status.axis[axis]),
@@ -57,7 +57,7 @@ void print_faults(const firmware::StatusPayload& status) {
   fmt::print("last reset: {}\n", host::reset_text(status.reset_cause));
 }
 
-void tell(const FaultArguments& arguments, const firmware::StatusPayload& status) {
+void tell(const FaultArguments& arguments, const host::BoardState& status) {
   if (has_fault(status)) end_with(host::ExitCode::device_fault);
   if (!arguments.json.empty()) write_json(faults_json(status), arguments.json);
   if (talks(arguments)) print_faults(status);
@@ -65,12 +65,12 @@ void tell(const FaultArguments& arguments, const firmware::StatusPayload& status
 
 void faults(const FaultArguments& arguments) {
   host::BoardClient board = open_board(arguments);
-  const firmware::StatusPayload status = board.status();
+  const host::BoardState status = board.status();
   tell(arguments, status);
   if (arguments.record.empty()) return;
   board.require_same_table();
   const sim::DriveKind kind = arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
-  for (std::uint8_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+  for (std::uint8_t axis = 0; axis < status.axis.size(); ++axis) {
     if (status.axis[axis].fault == 0) continue;
     const auto record = host::read_fault_record(board, axis, kind);
     if (!record) continue;

@@ -31,7 +31,7 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
                         fmt::format("{}: cannot make this folder: {}", folder, fault.message()));
   }
   const auto stem = std::filesystem::path(folder) / std::filesystem::path(scenario.path).stem();
-  for (std::size_t i = 0; i < host::kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     host::write_record(run.records[i], fmt::format("{}-{}.csv", stem.string(), host::kAxisNames[i]));
     host::write_model(run.believed[i], fmt::format("{}-{}.toml", stem.string(), host::kAxisNames[i]));
   }

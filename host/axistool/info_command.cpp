@@ -44,7 +44,7 @@ void describe_image(const InfoArguments& arguments) {
 void describe_board(const InfoArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   const firmware::IdentityPayload identity = board.identify();
-  const firmware::StatusPayload status = board.status();
+  const host::BoardState status = board.status();
   if (!arguments.json.empty()) write_json(host::board_json(board.name(), identity, status), arguments.json);
   if (talks(arguments)) fmt::print("{}", host::board_text(board.name(), identity, status));
 }

@@ -45,8 +45,8 @@ void report(const MotionArguments& arguments, const char* what, nlohmann::json d
 }
 
 void enable(const MotionArguments& arguments) {
-  const std::uint8_t mask = axis_mask(arguments.axes);
   host::BoardClient board = open_board(arguments);
+  const std::uint8_t mask = axis_mask(arguments.axes, board.axis_count());
   if (!arguments.dry_run) {
     require_consent(arguments, "Close the control loop? The axis may move.");
     if (arguments.take_over) board.take_over();
@@ -57,16 +57,16 @@ void enable(const MotionArguments& arguments) {
 }
 
 void disable(const MotionArguments& arguments) {
-  const std::uint8_t mask = axis_mask(arguments.axes);
   host::BoardClient board = open_board(arguments);
+  const std::uint8_t mask = axis_mask(arguments.axes, board.axis_count());
   if (!arguments.dry_run) host::disable_and_wait(board, mask);
   report(arguments, "disable", {{"axes", arguments.axes}});
   if (talks(arguments)) fmt::print("{}\n", arguments.dry_run ? "would disable" : "disabled");
 }
 
 void jog(const MotionArguments& arguments) {
-  const std::uint8_t axis = axis_index(arguments.axis);
   host::BoardClient board = open_board(arguments);
+  const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
   const double before = position_of(board, axis, values);
@@ -84,8 +84,8 @@ void jog(const MotionArguments& arguments) {
 }
 
 void move(const MotionArguments& arguments) {
-  const std::uint8_t axis = axis_index(arguments.axis);
   host::BoardClient board = open_board(arguments);
+  const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
   const double before = position_of(board, axis, values);
@@ -112,7 +112,7 @@ void add_take_over(CLI::App& command, MotionArguments& arguments) {
 void add_enable(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("enable", "Close the control loop of axes");
-  command->add_option("AXIS", arguments->axes, "x, y, or both; default: both");
+  command->add_option("AXIS", arguments->axes, "x, y, …; default: all that the board has");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);
@@ -123,7 +123,7 @@ void add_enable(CLI::App& app) {
 void add_disable(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("disable", "Slow axes down and open their control loop");
-  command->add_option("AXIS", arguments->axes, "x, y, or both; default: both");
+  command->add_option("AXIS", arguments->axes, "x, y, …; default: all that the board has");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer("Example:\n  axistool disable");
@@ -133,7 +133,7 @@ void add_disable(CLI::App& app) {
 void add_jog(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("jog", "Move an enabled axis at a speed, for a time");
-  command->add_option("AXIS", arguments->axis, "x or y")->required();
+  command->add_option("AXIS", arguments->axis, "x, y, …")->required();
   command->add_option("SPEED", arguments->value, "mm/s (linear drive: m/s), negative the other way")->required();
   command->add_option("--for", arguments->duration_s, "seconds, then it slows down")
       ->capture_default_str()
@@ -148,7 +148,7 @@ void add_jog(CLI::App& app) {
 void add_move(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("move", "Move an enabled axis to a position and wait for it");
-  command->add_option("AXIS", arguments->axis, "x or y")->required();
+  command->add_option("AXIS", arguments->axis, "x, y, …")->required();
   command->add_option("POSITION", arguments->value, "mm (linear drive: m)")->required();
   command->add_flag("--relative", arguments->relative, "from where the axis is");
   add_device_options(*command, *arguments);

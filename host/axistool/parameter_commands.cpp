@@ -24,21 +24,26 @@ struct ParameterArguments : DeviceArguments {
 };
 
 void get_params(const ParameterArguments& arguments) {
-  std::vector<std::size_t> places;
-  for (const std::string& name : arguments.names) {
-    const std::size_t before = places.size();
-    for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
-      const std::string full = host::full_name(place);
-      if (full == name || full.starts_with(name + ".")) places.push_back(place);
-    }
-    if (places.size() == before) host::require_place(name);
-  }
-  if (arguments.names.empty())
-    for (std::size_t place = 0; place < firmware::kParameterCount; ++place) places.push_back(place);
-
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
   const ParameterValues values = board.read_values();
+  std::vector<std::size_t> places;
+  for (const std::string& name : arguments.names) {
+    const std::size_t before = places.size();
+    for (std::size_t place = 0; place < values.size(); ++place) {
+      const std::string full = host::full_name(place);
+      if (full == name || full.starts_with(name + ".")) places.push_back(place);
+    }
+    if (places.size() == before)
+      throw host::Failure(host::ExitCode::bad_input,
+                          host::place_named(name) ? fmt::format("{}: the board has no such axis", name)
+                                                  : fmt::format("no parameter of the board is called {}; `axistool "
+                                                                "get-params` lists them",
+                                                                name));
+  }
+  if (arguments.names.empty())
+    for (std::size_t place = 0; place < values.size(); ++place) places.push_back(place);
+
   if (!arguments.json.empty()) {
     nlohmann::json list = nlohmann::json::object();
     for (const std::size_t place : places) list[host::full_name(place)] = value_json(place, values.at(place));
@@ -90,7 +95,7 @@ void reset_params(const ParameterArguments& arguments) {
   const ParameterValues before = board.read_values();
   if (!arguments.dry_run)
     require_consent(arguments, "Set all parameters of the board to their initial values? No axis is fitted then.");
-  change(board, arguments, before, ParameterValues{}, arguments.save);
+  change(board, arguments, before, ParameterValues(before.axes()), arguments.save);
 }
 
 void diff_params(const ParameterArguments& arguments) {
@@ -100,7 +105,7 @@ void diff_params(const ParameterArguments& arguments) {
   board.require_same_table();
   const ParameterValues values = board.read_values();
   const ParameterValues other =
-      arguments.defaults ? ParameterValues{} : with_changes(values, arguments.sources, arguments.axis);
+      arguments.defaults ? ParameterValues(values.axes()) : with_changes(values, arguments.sources, arguments.axis);
   const std::vector<Difference> list = differences(other, values);
   if (!list.empty()) end_with(host::ExitCode::answer_is_no);
   if (!arguments.json.empty())
@@ -113,13 +118,12 @@ void diff_params(const ParameterArguments& arguments) {
 }  // namespace
 
 ParameterValues with_changes(ParameterValues values, const std::vector<std::string>& sources, const std::string& axis) {
-  if (!axis.empty()) axis_index(axis);
+  if (!axis.empty()) axis_index(axis, values.axes());
   for (const std::string& source : sources) {
     if (source.find('=') != std::string::npos && !source.ends_with(".toml")) {
-      const host::Assignment one = host::parse_assignment(source);
-      values.set(one.place, one.value);
+      host::put(values, host::parse_assignment(source));
     } else {
-      for (const host::Assignment& one : host::read_parameter_file(source, axis)) values.set(one.place, one.value);
+      for (const host::Assignment& one : host::read_parameter_file(source, axis)) host::put(values, one);
     }
   }
   return values;
@@ -163,7 +167,7 @@ void add_set_params(CLI::App& app) {
   CLI::App* command = app.add_subcommand("set-params", "Give a board parameters: all of them, or none if one is wrong");
   command->add_option("FILE|NAME=VALUE", arguments->sources, "files (axis-params/1) and single values, in this order")
       ->required();
-  command->add_option("--axis", arguments->axis, "axis of the board that a file's one axis is meant for: x or y");
+  command->add_option("--axis", arguments->axis, "axis of the board that a file's one axis is meant for: x, y …");
   command->add_flag("--save", arguments->save, "save them too, as `axistool save` does");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
@@ -181,7 +185,7 @@ void add_diff_params(CLI::App& app) {
   CLI::App* command = app.add_subcommand("diff-params", "Where a board's parameters differ from a file, bit by bit");
   command->add_option("FILE", arguments->sources, "file of parameters; what it does not name is not compared");
   command->add_flag("--defaults", arguments->defaults, "compare with the initial values");
-  command->add_option("--axis", arguments->axis, "axis of the board that the file's one axis is meant for: x or y");
+  command->add_option("--axis", arguments->axis, "axis of the board that the file's one axis is meant for: x, y …");
   add_device_options(*command, *arguments);
   command->footer("Example:\n  axistool diff-params x-params.toml\nExit code 1: there are differences.");
   command->callback([arguments] { diff_params(*arguments); });

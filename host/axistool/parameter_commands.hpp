@@ -18,7 +18,7 @@ struct Difference {
 inline std::vector<Difference> differences(const firmware::ParameterValues& before,
                                            const firmware::ParameterValues& after) {
   std::vector<Difference> list;
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < before.size(); ++place) {
     const float a = before.at(place), b = after.at(place);
     if (std::bit_cast<std::uint32_t>(a) != std::bit_cast<std::uint32_t>(b)) list.push_back({place, a, b});
   }

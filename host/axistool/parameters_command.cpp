@@ -25,7 +25,7 @@ void run(const ParametersArguments& arguments) {
     return;
   }
   bool found = false;
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     const std::string name = host::full_name(place);
     if (name.find(arguments.filter) == std::string::npos) continue;
     found = true;

@@ -1,12 +1,14 @@
 // axistool sim: a simulated board, to try everything without one.
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 
+#include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/device/socket_board.hpp"
 #include "host/device/usb_board.hpp"
@@ -18,7 +20,9 @@ namespace axistool {
 namespace {
 
 struct SimArguments {
-  std::string socket, flash, x, y;
+  std::string socket, flash;
+  std::array<std::string, hal::kMostAxes> models;
+  std::size_t axes = hal::kAxisCount;
   std::string serial_number = "SIMULATED";
   std::uint64_t seed = 1;
   bool forget = false, usb = false;
@@ -33,8 +37,9 @@ std::string default_flash_file() {
   return std::string(home != nullptr ? home : "/tmp") + "/.local/state/axis/simulated-flash.bin";
 }
 
-sim::DriveDescription drive(const std::string& file, const char* axis) {
-  return file.empty() ? host::paper_drive(axis).value() : host::read_model(file);
+/// Where no model is given the paper's two axes take turns.
+host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
+  return {file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_model(file)};
 }
 
 void tell(const std::string& place, const std::string& flash_file, const std::string& device) {
@@ -45,7 +50,10 @@ void tell(const std::string& place, const std::string& flash_file, const std::st
 
 void run(SimArguments arguments) {
   if (arguments.socket.empty()) arguments.socket = host::default_socket_path();
-  host::SimulatedDeviceOptions options{drive(arguments.x, "x"), drive(arguments.y, "y"), {}, arguments.seed};
+  host::SimulatedDeviceOptions options;
+  options.seed = arguments.seed;
+  for (std::size_t axis = 0; axis < arguments.axes; ++axis)
+    options.drives.push_back(drive(arguments.models[axis], axis));
   if (!arguments.forget) {
     options.flash_file = arguments.flash.empty() ? default_flash_file() : arguments.flash;
     if (const auto folder = std::filesystem::path(options.flash_file).parent_path(); !folder.empty())
@@ -80,8 +88,13 @@ void add_sim(CLI::App& app) {
   command->add_option("--serial", arguments->serial_number, "its serial number on USB")
       ->capture_default_str()
       ->needs(usb);
-  command->add_option("--x", arguments->x, "model of the drive on axis x (axis-model/1); default: the paper's x axis");
-  command->add_option("--y", arguments->y, "likewise y");
+  command->add_option("--axes", arguments->axes, "how many axes it has")
+      ->check(CLI::Range(std::size_t{1}, hal::kMostAxes))
+      ->capture_default_str();
+  for (std::size_t axis = 0; axis < hal::kMostAxes; ++axis)
+    command->add_option(fmt::format("--{}", firmware::kAxisNames[axis]), arguments->models[axis],
+                        axis == 0 ? "model of the drive on axis x (axis-model/1); default: the paper's x axis"
+                                  : "likewise of the next axis, if there is one");
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();

@@ -22,7 +22,7 @@ struct StoreArguments : DeviceArguments {
 void save(const StoreArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   if (!arguments.dry_run) board.save();
-  const firmware::StatusPayload status = board.status();
+  const host::BoardState status = board.status();
   if (!arguments.json.empty())
     write_json({{"format", "axis-save/1"},
                 {"saved", !arguments.dry_run},
@@ -40,35 +40,37 @@ void save(const StoreArguments& arguments) {
 void backup(const StoreArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
+  const firmware::ParameterValues values = board.read_values();
   std::vector<firmware::StoredEntry> foreign;
   for (const firmware::StoredEntry& entry : board.read_stored()) {
-    const auto place = firmware::place_of({entry.key});
+    const auto place = values.place_of({entry.key});
     const bool fits =
         place && firmware::check_value(firmware::rule_at(*place), std::bit_cast<float>(entry.value_bits)) ==
                      firmware::ValueProblem::none;
     if (!fits) foreign.push_back(entry);
   }
-  host::write_file_atomically(arguments.file, host::format_parameter_file(board.read_values(), foreign));
+  host::write_file_atomically(arguments.file, host::format_parameter_file(values, foreign));
   if (!arguments.json.empty())
     write_json({{"format", "axis-backup/1"},
                 {"file", arguments.file},
-                {"parameters", firmware::kParameterCount},
+                {"parameters", values.size()},
                 {"not_in_table", foreign.size()}},
                arguments.json);
   if (!talks(arguments)) return;
-  fmt::print("{} parameters written to {}\n", firmware::kParameterCount, arguments.file);
+  fmt::print("{} parameters written to {}\n", values.size(), arguments.file);
   if (!foreign.empty())
     fmt::print("{} stored values fit this firmware's table no more; the file keeps them as comments\n", foreign.size());
 }
 
 void restore(const StoreArguments& arguments) {
   const std::vector<host::Assignment> list = host::read_parameter_file(arguments.file);
-  firmware::ParameterValues after;
-  for (const host::Assignment& one : list) after.set(one.place, one.value);
-  host::require_fitting_set(after);
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
-  const std::vector<Difference> changes = differences(board.read_values(), after);
+  const firmware::ParameterValues before = board.read_values();
+  firmware::ParameterValues after(before.axes());
+  for (const host::Assignment& one : list) host::put(after, one);
+  host::require_fitting_set(after);
+  const std::vector<Difference> changes = differences(before, after);
   if (!arguments.dry_run) {
     require_consent(arguments, fmt::format("Replace {} of the board's parameters and save?", changes.size()));
     board.write_values(after);

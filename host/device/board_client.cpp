@@ -184,8 +184,34 @@ firmware::IdentityPayload BoardClient::identify() {
   return payload_of<firmware::IdentityPayload>(request(MessageType::identify));
 }
 
-firmware::StatusPayload BoardClient::status() {
-  return payload_of<firmware::StatusPayload>(request(MessageType::status));
+BoardState BoardClient::status() {
+  BoardState state;
+  do {
+    const firmware::StatusRequest from{static_cast<std::uint8_t>(state.axis.size())};
+    const Message reply = request(MessageType::status, from);
+    firmware::StatusPayload part;
+    const std::size_t of_axes = reply.length - std::min<std::size_t>(reply.length, sizeof part.board);
+    const std::size_t axes = of_axes / sizeof part.axis[0];
+    if (axes == 0 || of_axes % sizeof part.axis[0] != 0)
+      fail(ExitCode::protocol, "the board's answer has the wrong length");
+    std::memcpy(&part, reply.payload.data(), reply.length);
+    if (part.board.axis_count == 0 || part.board.axis_count > hal::kMostAxes ||
+        (!state.axis.empty() && part.board.axis_count != state.axis_count))
+      fail(ExitCode::protocol, fmt::format("the board says that it has {} axes", part.board.axis_count));
+    static_cast<firmware::BoardStatus&>(state) = part.board;
+    state.axis.insert(state.axis.end(), part.axis.begin(), part.axis.begin() + static_cast<std::ptrdiff_t>(axes));
+  } while (state.axis.size() < state.axis_count);
+  state.axis.resize(state.axis_count);
+  return state;
+}
+
+std::size_t BoardClient::axis_count() {
+  if (axis_count_ != 0) return axis_count_;
+  const std::size_t axes = identify().axis_count;
+  if (axes == 0 || axes > hal::kMostAxes)
+    fail(ExitCode::protocol,
+         fmt::format("the board says that it has {} axes, and 1 to {} can be", axes, hal::kMostAxes));
+  return axis_count_ = axes;
 }
 
 firmware::TimingPayload BoardClient::timing(bool begin_anew) {
@@ -195,22 +221,25 @@ firmware::TimingPayload BoardClient::timing(bool begin_anew) {
 
 void BoardClient::require_same_table() {
   const firmware::IdentityPayload identity = identify();
-  if (identity.schema_hash == firmware::kSchemaHash) return;
+  if (identity.schema_hash == firmware::kSchemaHash &&
+      identity.parameter_count == firmware::parameter_count(axis_count()))
+    return;
   fail(ExitCode::protocol,
        fmt::format("the board's table of parameters ({:#010x}, {} values) is not this program's ({:#010x}, {} values): "
                    "use the axistool that was built with its firmware, or flash the firmware of this one",
-                   identity.schema_hash, identity.parameter_count, firmware::kSchemaHash, firmware::kParameterCount));
+                   identity.schema_hash, identity.parameter_count, firmware::kSchemaHash,
+                   firmware::parameter_count(axis_count())));
 }
 
 firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
-  firmware::ParameterValues values;
+  firmware::ParameterValues values(axis_count());
   std::size_t place = 0;
-  while (place < firmware::kParameterCount) {
+  while (place < values.size()) {
     const firmware::ReadRequest wanted{static_cast<std::uint16_t>(place), set, 0};
     const auto part = payload_of<firmware::ValuesPayload>(request(MessageType::read_values, wanted));
     if (part.first != place || part.count == 0 || part.count > firmware::kValuesPerReport)
       fail(ExitCode::protocol, "the board's answer holds other parameters than were asked for");
-    for (std::size_t i = 0; i < part.count && place < firmware::kParameterCount; ++i, ++place) {
+    for (std::size_t i = 0; i < part.count && place < values.size(); ++i, ++place) {
       if (part.key[i] != firmware::key_at(place).code)
         fail(ExitCode::protocol, "the board's parameters stand in another order: its firmware is another version");
       values.set(place, std::bit_cast<float>(part.bits[i]));
@@ -221,13 +250,16 @@ firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
 
 void BoardClient::write_values(const firmware::ParameterValues& values, bool everything) {
   const firmware::ParameterValues before = read_values();
+  if (values.size() != before.size())
+    fail(ExitCode::bad_input,
+         fmt::format("parameters of {} axes for a board that has {}", values.axes(), before.axes()));
   request(MessageType::begin_staging, firmware::BeginRequest{firmware::ValueSet::active});
   firmware::ValuesPayload part;
   const auto flush = [&] {
     if (part.count != 0) request(MessageType::stage, part);
     part = {};
   };
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < values.size(); ++place) {
     const auto bits = std::bit_cast<std::uint32_t>(values.at(place));
     if (!everything && bits == std::bit_cast<std::uint32_t>(before.at(place))) continue;
     part.key[part.count] = firmware::key_at(place).code;

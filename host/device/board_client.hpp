@@ -16,6 +16,11 @@
 
 namespace host {
 
+/// What a board says of itself and of each of its axes.
+struct BoardState : firmware::BoardStatus {
+  std::vector<firmware::AxisStatus> axis;
+};
+
 /// Functions throw Failure: no_such_device (board gone), time_out (no answer), protocol (damaged or senseless answer),
 /// refused (not in this state), device_fault, bad_input (a value that the board does not take).
 class BoardClient {
@@ -26,11 +31,14 @@ class BoardClient {
   explicit BoardClient(std::unique_ptr<ReportLink> link, std::chrono::milliseconds patience = kPatience);
 
   firmware::IdentityPayload identify();
-  firmware::StatusPayload status();
+  BoardState status();
   firmware::TimingPayload timing(bool begin_anew);
 
   /// Throws Failure(protocol) when the board has another table of parameters than this program.
   void require_same_table();
+
+  /// Says its identity: asked once.
+  std::size_t axis_count();
 
   firmware::ParameterValues read_values(firmware::ValueSet set = firmware::ValueSet::active);
   /// Stages what differs from the active set (or everything), commits, reads back and compares by bits.
@@ -80,6 +88,7 @@ class BoardClient {
   std::chrono::milliseconds patience_;
   std::uint16_t client_;  ///< this program among those that talk to the board; never 0
   std::uint16_t sequence_ = 0;
+  std::size_t axis_count_ = 0;  ///< 0: not asked yet
   std::deque<Samples> samples_;
 };
 

@@ -41,7 +41,7 @@ std::string reset_text(std::uint8_t reset_cause) {
   return nth(kNames, reset_cause);
 }
 
-std::optional<std::string> store_problem(const firmware::StatusPayload& status) {
+std::optional<std::string> store_problem(const BoardState& status) {
   switch (static_cast<firmware::StoreState>(status.store_state)) {
     case firmware::StoreState::damaged:
       return "the saved parameters are damaged, the drives stay disabled: `axistool restore BACKUP`, or set-params and "
@@ -60,9 +60,9 @@ std::optional<std::string> store_problem(const firmware::StatusPayload& status) 
 }
 
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
-                          const firmware::StatusPayload& status) {
+                          const BoardState& status) {
   nlohmann::json axes = nlohmann::json::array();
-  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+  for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
     axes.push_back({{"axis", firmware::kAxisNames[axis]},
                     {"state", state_text(now)},
@@ -91,8 +91,7 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
           {"axes", axes}};
 }
 
-std::string board_text(const std::string& device, const firmware::IdentityPayload& identity,
-                       const firmware::StatusPayload& status) {
+std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status) {
   std::string text =
       fmt::format("device       {}\nboard        {}{}, version {} {}\nnumbers      {}\nparameters   table {:#010x}{}\n",
                   device, text_of(identity.board),
@@ -103,7 +102,7 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
                       (status.flags & firmware::kBoardUnsaved) != 0 ? ", unsaved changes" : "", status.store_erases);
   text += fmt::format("last reset   {}; {} since power on\n", reset_text(status.reset_cause), status.resets);
   if ((status.flags & firmware::kBoardStopPressed) != 0) text += "emergency stop is pressed\n";
-  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+  for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
     text += fmt::format(
         "axis {}       {}, {} counts{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "firmware/app/protocol/messages.hpp"
+#include "host/device/board_client.hpp"
 
 namespace host {
 
@@ -14,13 +14,12 @@ std::string store_text(std::uint8_t store_state);
 std::string reset_text(std::uint8_t reset_cause);
 
 /// Why the store keeps the drives disabled, with the remedy; empty while it does not.
-std::optional<std::string> store_problem(const firmware::StatusPayload& status);
+std::optional<std::string> store_problem(const BoardState& status);
 
 /// Name, version, table, store, axes: format "axis-board/1".
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
-                          const firmware::StatusPayload& status);
+                          const BoardState& status);
 /// The same for people.
-std::string board_text(const std::string& device, const firmware::IdentityPayload& identity,
-                       const firmware::StatusPayload& status);
+std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status);
 
 }  // namespace host

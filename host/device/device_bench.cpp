@@ -23,8 +23,10 @@ double time_ms(Work work) {
 
 /// As many channels as a report holds, so that each control period is one report.
 void run_capture(BoardClient& board, DeviceBench& bench, const std::function<void(double)>& progress) {
-  constexpr std::uint16_t kAllOfX = (1u << firmware::kChannels) - 1, kFirstOfY = 1;
-  board.start_capture({{kAllOfX, kFirstOfY}, 1, 0});
+  constexpr std::uint16_t kAllOfX = (1u << firmware::kChannels) - 1;
+  firmware::CaptureRequest request{{kAllOfX}, 1, 0};
+  if (board.axis_count() > 1) request.channels[1] = 1;
+  board.start_capture(request);
   const auto begin = Clock::now();
   std::uint32_t next_row = 0;
   const auto take = [&](const BoardClient::Samples& samples) {
@@ -55,8 +57,9 @@ DeviceBench bench_device(const std::function<std::unique_ptr<ReportLink>()>& ope
   board.require_same_table();
   board.status();
   bench.connect_ms = ms_since(begin);
-  firmware::ParameterValues values;
+  firmware::ParameterValues values(board.axis_count());
   bench.read_all_ms = time_ms([&] { values = board.read_values(); });
+  bench.parameters = values.size();
   bench.set_all_ms = time_ms([&] { board.write_values(values, true); });
   std::vector<double> exchanges;
   for (int i = 0; i < kExchanges; ++i) exchanges.push_back(time_ms([&] { board.heartbeat(); }));

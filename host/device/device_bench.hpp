@@ -12,6 +12,7 @@ namespace host {
 struct DeviceBench {
   double connect_ms = 0;  ///< open, identify, status
   double open_ms = 0;  ///< of these, to find and open: over hidraw Linux 6.1 waits 50 ms (usbhid_open), over libusb not
+  std::size_t parameters = 0;
   double read_all_ms = 0;  ///< all parameters
   double set_all_ms = 0;   ///< all parameters staged, committed, read back and compared
   double exchange_median_ms = 0;

@@ -23,7 +23,7 @@ class Examination {
     board_.timing(true);
     const firmware::IdentityPayload identity = board_.identify();
     table(identity);
-    const firmware::StatusPayload status = board_.status();
+    const BoardState status = board_.status();
     store(status);
     reset(status);
     faults(status);
@@ -46,7 +46,7 @@ class Examination {
         "use the axistool that was built with the firmware, or flash this one's: `axistool flash`");
   }
 
-  void store(const firmware::StatusPayload& status) {
+  void store(const BoardState& status) {
     const auto problem = store_problem(status);
     add(!problem, CheckResult::bad, "saved parameters", store_text(status.store_state), problem.value_or(""));
     add((status.flags & firmware::kBoardUnsaved) == 0, CheckResult::attention, "unsaved changes",
@@ -58,7 +58,7 @@ class Examination {
         "save less often: no program should save by itself");
   }
 
-  void reset(const firmware::StatusPayload& status) {
+  void reset(const BoardState& status) {
     const std::string cause = reset_text(status.reset_cause);
     const bool is_bad = cause == "watchdog" || cause == "fault" || cause == "brown-out";
     add(!is_bad, CheckResult::attention, "last reset", fmt::format("{}, {} since power on", cause, status.resets),
@@ -66,8 +66,8 @@ class Examination {
                              : "the service port (115200 baud) tells registers and place of the fault: report them");
   }
 
-  void faults(const firmware::StatusPayload& status) {
-    for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis) {
+  void faults(const BoardState& status) {
+    for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
       const auto& fault = firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].fault));
       add(status.axis[axis].fault == 0, CheckResult::bad, fmt::format("axis {}", firmware::kAxisNames[axis]),
           status.axis[axis].fault == 0 ? state_text(status.axis[axis]) : fmt::format("fault: {}", fault.cause),
@@ -94,7 +94,7 @@ class Examination {
 
   void stream() {
     constexpr std::uint16_t kFour = 0xF;
-    board_.start_capture({{kFour, 0}, 1, 0});
+    board_.start_capture({{kFour}, 1, 0});
     const auto begin = Clock::now();
     std::uint32_t next_row = 0, lost = 0;
     const auto take = [&](const BoardClient::Samples& samples) {

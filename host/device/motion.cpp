@@ -18,7 +18,7 @@ using std::chrono::steady_clock;
 
 constexpr milliseconds kRound{20};  // a fifth of the silence that a board suffers while it moves
 
-SupervisorState state_of(const firmware::StatusPayload& status, std::size_t axis) {
+SupervisorState state_of(const BoardState& status, std::size_t axis) {
   return static_cast<SupervisorState>(status.axis.at(axis).state);
 }
 
@@ -35,18 +35,18 @@ bool ask_until(BoardClient& board, std::chrono::duration<double> patience, Done 
 
 template <typename Each>
 bool for_all(std::uint8_t mask, Each each) {
-  for (std::uint8_t axis = 0; axis < firmware::kAxisCount; ++axis)
+  for (std::uint8_t axis = 0; mask >> axis != 0; ++axis)
     if ((mask >> axis & 1) != 0 && !each(axis)) return false;
   return true;
 }
 
 /// Throws once the motion is another program's: it is no longer this one's to end.
-void require_own_motion(const firmware::StatusPayload& status) {
+void require_own_motion(const BoardState& status) {
   if ((status.flags & firmware::kBoardOthers) != 0)
     throw Failure(ExitCode::refused, "another program has taken the motion over");
 }
 
-bool rests(const firmware::StatusPayload& status, std::uint8_t axis) {
+bool rests(const BoardState& status, std::uint8_t axis) {
   require_no_fault(status, axis);
   require_own_motion(status);
   return (status.axis.at(axis).flags & firmware::kAxisAtRest) != 0;
@@ -60,7 +60,7 @@ void stop_and_wait(BoardClient& board, std::uint8_t axis) {
 
 }  // namespace
 
-void require_no_fault(const firmware::StatusPayload& status, std::uint8_t axis) {
+void require_no_fault(const BoardState& status, std::uint8_t axis) {
   const std::uint8_t number = status.axis.at(axis).fault;
   if (number == 0) return;
   const firmware::FaultInfo& fault = firmware::fault_info(static_cast<firmware::AxisFault>(number));

@@ -26,6 +26,6 @@ void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t target_co
                    const std::function<bool()>& stop);
 
 /// Throws Failure(device_fault) with the fault's name, cause and remedy.
-void require_no_fault(const firmware::StatusPayload& status, std::uint8_t axis);
+void require_no_fault(const BoardState& status, std::uint8_t axis);
 
 }  // namespace host

@@ -43,7 +43,7 @@ class SocketBoard {
   }
 
  private:
-  hal::pc::SimulatedUsb& usb() { return device_.board().usb(); }
+  hal::pc::SimulatedUsb& usb() { return device_.usb(); }
 
   /// Waits for the hosts, at most until the next control period is due, and answers them at once.
   void serve_until(steady_clock::time_point due) {

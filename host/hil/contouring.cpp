@@ -30,8 +30,8 @@ class ContourDriver {
   }
 
   void move_to(double x_mm, double y_mm) {
-    const std::array<double, kMachineAxes> target_mm{x_mm, y_mm};
-    for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    const std::array<double, hal::kAxisCount> target_mm{x_mm, y_mm};
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const auto counts = std::llround(target_mm[i] / machine_.plant(i).data().encoder_resolution);
       machine_.axes()[i].start(machine_.axes()[i].plan_move_to(firmware::CountPosition::at(counts)).plan);
     }
@@ -41,7 +41,7 @@ class ContourDriver {
     } while (!machine_.axes()[0].is_at_rest() || !machine_.axes()[1].is_at_rest());
   }
 
-  void follow(const std::array<firmware::Increment, kMachineAxes>& increments) {
+  void follow(const std::array<firmware::Increment, hal::kAxisCount>& increments) {
     machine_.step_with(increments);
     check();
     recorder_.take();
@@ -51,7 +51,7 @@ class ContourDriver {
 
  private:
   void check() const {
-    for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const auto fault = machine_.axes()[i].fault();
       if (fault == firmware::AxisFault::none) continue;
       const auto& info = firmware::fault_info(fault);
@@ -82,8 +82,8 @@ double ContouringRun::standing_after_um() const {
                   worst_between(t_s, tracking_um[1], settled_s, t_s.back()));
 }
 
-ContouringRun run_contour(const std::array<MachineAxis, kMachineAxes>& axes, const Path& path, const PathLimits& limits,
-                          std::uint64_t seed, double approach_mm) {
+ContouringRun run_contour(const std::array<MachineAxis, hal::kAxisCount>& axes, const Path& path,
+                          const PathLimits& limits, std::uint64_t seed, double approach_mm) {
   Machine machine(axes, seed);
   machine.enable();
   ContourDriver driver(machine);
@@ -101,7 +101,7 @@ ContouringRun run_contour(const std::array<MachineAxis, kMachineAxes>& axes, con
 
   const Recorder& recorder = driver.recorder();
   run.t_s = recorder.record(0).t_s;
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     run.records[i] = recorder.record(i);
     run.tracking_um[i] = recorder.tracking_error_um(i);
   }

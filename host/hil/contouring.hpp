@@ -13,8 +13,8 @@ namespace host {
 
 struct ContouringRun {
   std::vector<double> t_s;
-  std::array<Record, kMachineAxes> records;
-  std::array<std::vector<double>, kMachineAxes> tracking_um;  ///< reference less encoder
+  std::array<Record, hal::kAxisCount> records;
+  std::array<std::vector<double>, hal::kAxisCount> tracking_um;  ///< reference less encoder
   std::vector<double> contour_um;  ///< distance of the encoders' point from the path, >= 0; 0 before and after the path
   double begin_s = 0.0;            ///< of the motion along the path
   double end_s = 0.0;
@@ -27,7 +27,7 @@ struct ContouringRun {
 
 /// Enables the machine, moves both axes by `approach_mm` away and back as a machine does that has been used, rests for
 /// 0.4 s, follows the path, rests again. Throws Failure(device_fault) naming the fault where an axis stops.
-ContouringRun run_contour(const std::array<MachineAxis, kMachineAxes>& axes, const Path& path, const PathLimits& limits,
-                          std::uint64_t seed, double approach_mm = 2.0);
+ContouringRun run_contour(const std::array<MachineAxis, hal::kAxisCount>& axes, const Path& path,
+                          const PathLimits& limits, std::uint64_t seed, double approach_mm = 2.0);
 
 }  // namespace host

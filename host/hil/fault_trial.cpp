@@ -17,11 +17,11 @@ namespace {
 using firmware::AxisFault;
 using firmware::SupervisorState;
 
-using MachineAxes = std::array<MachineAxis, kMachineAxes>;
+using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 
 MachineAxes design_paper_axes(bool tachometer) {
   MachineAxes made;
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     made[i].drive = *paper_drive(kAxisNames[i]);
     if (!tachometer) made[i].drive.data.tach_noise_variance.reset();
     made[i].parameters = contouring_parameters(made[i].drive, {.friction = true, .cancellation = false});
@@ -45,7 +45,7 @@ class Trial {
     for (int k = 0; k < trial_.sample; ++k) step();
     apply(trial_.first);
     injected_at_ = machine_.samples();
-    for (std::size_t i = 0; i < kMachineAxes; ++i) injected_at_mm_[i] = machine_.plant(i).truth().x;
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) injected_at_mm_[i] = machine_.plant(i).truth().x;
     if (trial_.motion == TrialMotion::stopping) machine_.axes()[trial_.first.axis].disable();
     const int longest = 4000 + 3 * stretch();
     for (int k = 0; k < longest && !is_over(); ++k) {
@@ -76,7 +76,7 @@ class Trial {
         jog(1.0);
         break;
       case TrialMotion::move:
-        for (std::size_t i = 0; i < kMachineAxes; ++i)
+        for (std::size_t i = 0; i < hal::kAxisCount; ++i)
           axes()[i].start(
               axes()[i].plan_move_to(firmware::CountPosition::at(trial_.speed_mm_s > 0 ? 40'000 : -40'000)).plan);
         break;
@@ -90,10 +90,10 @@ class Trial {
   }
 
   void enable() {
-    for (std::size_t i = 0; i < kMachineAxes; ++i) axes()[i].enable();
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) axes()[i].enable();
   }
   void jog(double sense) {
-    for (std::size_t i = 0; i < kMachineAxes; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       axes()[i].jog(static_cast<float>((i == 0 ? sense : -sense) * trial_.speed_mm_s));
   }
 
@@ -113,16 +113,16 @@ class Trial {
   }
 
   void step() {
-    for (std::size_t i = 0; i < kMachineAxes; ++i) was_on_[i] = firmware::outputs_are_on(axes()[i].state());
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) was_on_[i] = firmware::outputs_are_on(axes()[i].state());
     if (place_ < path_.size())
       machine_.step_with(path_[place_++]);
     else
       machine_.step();
-    for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       if (!injected_at_ || fault_seen_ || axes()[i].fault() == AxisFault::none) continue;
       fault_seen_ = machine_.samples();
       fault_ = axes()[i].fault();
-      for (std::size_t j = 0; j < kMachineAxes; ++j) {
+      for (std::size_t j = 0; j < hal::kAxisCount; ++j) {
         const sim::DriveState& truth = machine_.plant(j).truth();
         begin_mm_[j] = truth.x;
         must_latch_[j] = j == i || was_on_[j];
@@ -130,14 +130,14 @@ class Trial {
       }
     }
     if (!fault_seen_) return;
-    for (std::size_t i = 0; i < kMachineAxes; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       whole_way_mm_ = std::max(whole_way_mm_, std::abs(machine_.plant(i).truth().x - injected_at_mm_[i]));
-    for (std::size_t i = 0; i < kMachineAxes; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       distance_mm_ = std::max(distance_mm_, std::abs(machine_.plant(i).truth().x - begin_mm_[i]));
   }
 
   bool is_safe() {
-    for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       constexpr double kStanding_rad_s = 0.01;
       if (machine_.wires(i).drive_enable().is_on() || machine_.wires(i).dac().commanded() != 0 ||
           std::abs(machine_.plant(i).truth().w) > kStanding_rad_s)
@@ -157,7 +157,7 @@ class Trial {
     result.is_named = names(trial_.first) || (second_counts_ && names(trial_.second));
     result.is_safe = is_safe();
     result.is_latched = fault_seen_.has_value();
-    for (std::size_t i = 0; i < kMachineAxes; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       result.is_latched = result.is_latched && (!must_latch_[i] || axes()[i].state() == SupervisorState::fault);
     if (!fault_seen_) return result;
     const double period_s = machine_.sample_period_s();
@@ -172,11 +172,11 @@ class Trial {
   FaultTrial trial_;
   MachineAxes axes_;
   Machine machine_;
-  std::vector<std::array<firmware::Increment, kMachineAxes>> path_;
+  std::vector<std::array<firmware::Increment, hal::kAxisCount>> path_;
   std::size_t place_ = 0;
   std::optional<std::uint64_t> injected_at_, fault_seen_;
-  std::array<double, kMachineAxes> begin_mm_{}, injected_at_mm_{};
-  std::array<bool, kMachineAxes> was_on_{}, must_latch_{};
+  std::array<double, hal::kAxisCount> begin_mm_{}, injected_at_mm_{};
+  std::array<bool, hal::kAxisCount> was_on_{}, must_latch_{};
   AxisFault fault_ = AxisFault::none;
   bool second_counts_ = false;  ///< the second fault came before the first had been found
   double distance_mm_ = 0.0, whole_way_mm_ = 0.0, speed_mm_s_ = 0.0;

@@ -15,17 +15,25 @@ std::unique_ptr<sim::Plant> make_plant(const MachineAxis& axis, std::uint64_t se
   return std::make_unique<sim::Plant>(axis.drive, seed);
 }
 
+template <typename Make>
+auto for_each_axis(Make make) {
+  std::array<decltype(make(0)), hal::kAxisCount> made;
+  for (std::size_t i = 0; i < made.size(); ++i) made[i] = make(i);
+  return made;
+}
+
 }  // namespace
 
-Machine::Machine(const std::array<MachineAxis, kMachineAxes>& axes, std::uint64_t seed)
+Machine::Machine(const std::array<MachineAxis, hal::kAxisCount>& axes, std::uint64_t seed)
     : period_s_(axes[0].drive.data.sample_period_s),
-      plants_{make_plant(axes[0], 2 * seed), make_plant(axes[1], 2 * seed + 1)},
-      wires_{std::make_unique<hal::pc::FaultyAxis>(*plants_[0], axes[0].wiring, 2 * seed),
-             std::make_unique<hal::pc::FaultyAxis>(*plants_[1], axes[1].wiring, 2 * seed + 1)},
-      axes_(*wires_[0], *wires_[1]) {
+      plants_(for_each_axis([&](std::size_t i) { return make_plant(axes[i], hal::kAxisCount * seed + i); })),
+      wires_(for_each_axis([&](std::size_t i) {
+        return std::make_unique<hal::pc::FaultyAxis>(*plants_[i], axes[i].wiring, hal::kAxisCount * seed + i);
+      })),
+      axes_([this](std::size_t i) -> hal::pc::FaultyAxis& { return *wires_[i]; }) {
   axes_.board().configure(firmware::BoardWatch::default_limits(static_cast<float>(period_s_)));
   axes_.board().host_commands(true);
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     const auto error = axes_[i].configure(axes[i].parameters);
     if (error != firmware::ParameterError::none) {
       throw Failure(ExitCode::bad_input, fmt::format("axis {} rejects its parameters (parameter error {})",
@@ -46,9 +54,9 @@ void Machine::run_plants() {
   ++samples_;
 }
 
-std::array<firmware::Increment, kMachineAxes> Machine::runaway() {
-  std::array<firmware::Increment, kMachineAxes> added{};
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+std::array<firmware::Increment, hal::kAxisCount> Machine::runaway() {
+  std::array<firmware::Increment, hal::kAxisCount> added{};
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     if (defects.runaway_mm_s2[i] == 0.0) continue;
     runaway_mm_s_[i] += defects.runaway_mm_s2[i] * period_s_;
     const double counts = runaway_mm_s_[i] * period_s_ / plants_[i]->data().encoder_resolution;
@@ -66,9 +74,9 @@ void Machine::step() {
   run_plants();
 }
 
-void Machine::step_with(const std::array<firmware::Increment, kMachineAxes>& increments) {
+void Machine::step_with(const std::array<firmware::Increment, hal::kAxisCount>& increments) {
   auto sum = runaway();
-  for (std::size_t i = 0; i < kMachineAxes; ++i) sum[i] += increments[i];
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) sum[i] += increments[i];
   axes_.step_with(sum, inputs());
   run_plants();
 }
@@ -79,9 +87,9 @@ void Machine::lose_periods(int periods) {
 
 void Machine::enable() {
   for (int k = 0; k <= firmware::kSelfTestSamples; ++k) step();
-  for (std::size_t i = 0; i < kMachineAxes; ++i) axes_[i].enable();
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) axes_[i].enable();
   step();
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     if (axes_[i].state() == firmware::SupervisorState::enabled) continue;
     throw Failure(ExitCode::device_fault, fmt::format("axis {} cannot be enabled: {}", kAxisNames[i],
                                                       firmware::fault_info(axes_[i].fault()).cause));

@@ -1,21 +1,23 @@
 // Two simulated drives behind the simulated board, and the firmware's axes closing their loops, sample by sample.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "firmware/app/parameters/parameter_values.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
+#include "hal/axis_count.hpp"
 #include "hal/pc/faulty_axis.hpp"
 #include "hal/pc/simulated_panel.hpp"
 #include "sim/plant.hpp"
 
 namespace host {
 
-inline constexpr std::size_t kMachineAxes = 2;
-using MachineGroup = firmware::AxisGroup<float, hal::pc::FaultyAxis>;
+using MachineGroup = firmware::AxisGroup<float, hal::pc::FaultyAxis, hal::kAxisCount>;
 
 /// One axis of a machine: the drive as it is, and what its controller is told.
 struct MachineAxis {
@@ -31,20 +33,20 @@ struct BoardDefects {
   bool store_damaged = false;
   bool host_silent = false;  ///< no heart-beat any more
   /// The interpolator adds this acceleration to its path, on and on; mm/s^2.
-  std::array<double, kMachineAxes> runaway_mm_s2{};
+  std::array<double, hal::kAxisCount> runaway_mm_s2{};
 };
 
 /// Deterministic: equal arguments and calls give equal bits. Not copyable, because the axes refer to their hardware.
 class Machine {
  public:
   /// `seed` fixes the noise of all sensors. Throws Failure(bad_input) naming the axis whose parameters are refused.
-  Machine(const std::array<MachineAxis, kMachineAxes>& axes, std::uint64_t seed);
+  Machine(const std::array<MachineAxis, hal::kAxisCount>& axes, std::uint64_t seed);
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
 
   /// One control period, then the machine runs until the next.
   void step();
-  void step_with(const std::array<firmware::Increment, kMachineAxes>& increments);
+  void step_with(const std::array<firmware::Increment, hal::kAxisCount>& increments);
 
   /// The control interrupt fails to come for as many periods; the machine runs on with the last words.
   void lose_periods(int periods);
@@ -65,19 +67,23 @@ class Machine {
 
  private:
   firmware::BoardInputs inputs();
-  std::array<firmware::Increment, kMachineAxes> runaway();
+  std::array<firmware::Increment, hal::kAxisCount> runaway();
   void run_plants();
 
   double period_s_;
-  std::array<std::unique_ptr<sim::Plant>, kMachineAxes> plants_;
-  std::array<std::unique_ptr<hal::pc::FaultyAxis>, kMachineAxes> wires_;
+  std::array<std::unique_ptr<sim::Plant>, hal::kAxisCount> plants_;
+  std::array<std::unique_ptr<hal::pc::FaultyAxis>, hal::kAxisCount> wires_;
   MachineGroup axes_;
   hal::pc::SimulatedClock clock_;
-  std::array<double, kMachineAxes> runaway_mm_s_{};
+  std::array<double, hal::kAxisCount> runaway_mm_s_{};
   std::uint64_t samples_ = 0;
 };
 
 /// "x" and "y": how messages, records and scenario files call the axes.
-inline constexpr std::array<std::string_view, kMachineAxes> kAxisNames{"x", "y"};
+inline constexpr auto kAxisNames = [] {
+  std::array<std::string_view, hal::kAxisCount> names;
+  std::copy_n(firmware::kAxisNames.begin(), names.size(), names.begin());
+  return names;
+}();
 
 }  // namespace host

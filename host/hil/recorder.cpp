@@ -5,7 +5,7 @@
 namespace host {
 
 Recorder::Recorder(const Machine& machine) : machine_(machine) {
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     Record& record = records_[i];
     record.drive = kAxisNames[i];
     record.kind = machine.plant(i).data().kind;
@@ -15,7 +15,7 @@ Recorder::Recorder(const Machine& machine) : machine_(machine) {
 }
 
 void Recorder::take() {
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     Record& record = records_[i];
     const auto& axis = machine_.axes()[i];
     const auto& seen = axis.telemetry();

@@ -23,7 +23,7 @@ class Recorder {
 
  private:
   const Machine& machine_;
-  std::array<Record, kMachineAxes> records_;
+  std::array<Record, hal::kAxisCount> records_;
 };
 
 }  // namespace host

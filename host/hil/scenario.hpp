@@ -78,7 +78,7 @@ struct Scenario {
   std::string about;
   std::uint64_t seed = 1;
   double duration_s = 1.0;
-  std::array<ScenarioAxis, kMachineAxes> axes;
+  std::array<ScenarioAxis, hal::kAxisCount> axes;
   std::vector<ScenarioMove> moves;
   std::vector<ScenarioFault> faults;
   std::vector<Expectation> expectations;

@@ -42,7 +42,7 @@ class ScenarioReader {
     scenario_.duration_s = top.positive("duration_s", 1.0);
     if (scenario_.duration_s > kLongest_s)
       top.fail("duration_s", fmt::format("at most {:g} s are simulated; split the scenario", kLongest_s));
-    for (std::size_t i = 0; i < kMachineAxes; ++i) read_axis(top, i);
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) read_axis(top, i);
     if (scenario_.axes[0].drive.data.sample_period_s != scenario_.axes[1].drive.data.sample_period_s)
       top.fail("y", "both axes of a board have one sample period; give their drives the same");
     for (const toml::table* table : top.tables("move")) read_move(*table);

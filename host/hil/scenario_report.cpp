@@ -53,7 +53,7 @@ TimePlot error_plot(const ScenarioRun& run) {
   plot.title = run.contour_um.empty() ? "Tracking errors" : "Tracking and contour errors (as Fig. 11)";
   plot.caption = "Reference less encoder.";
   plot.t_s = run.records[0].t_s;
-  for (std::size_t i = 0; i < kMachineAxes; ++i)
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i)
     plot.panels.push_back(
         {fmt::format("axis {}", kAxisNames[i]), "µm", {{"tracking error", SeriesRole::residual, run.tracking_um[i]}}});
   if (!run.contour_um.empty())
@@ -169,7 +169,7 @@ Report scenario_report(const Scenario& scenario, const ScenarioRun& run) {
   report.add(error_plot(run));
   if (!run.contour_um.empty()) report.add(plane_plot(run));
   report.section("Each axis");
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     report.add(motion_plot(run, i));
     if (scenario.axes[i].knowledge != Knowledge::identified) continue;
     add_identification_figures(scenario.axes[i].drive, kAxisNames[i], commissioning_seed(scenario, i), report);
@@ -183,7 +183,7 @@ nlohmann::json scenario_json(const Scenario& scenario, const ScenarioRun& run) {
       {"format", "axis-hil/1"}, {"scenario", scenario.path},      {"name", scenario.name},
       {"seed", scenario.seed},  {"simulated_s", run.simulated_s}, {"times_real_time", run.times_real_time()},
       {"holds", run.holds()}};
-  for (std::size_t i = 0; i < kMachineAxes; ++i)
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i)
     document["axes"][std::string(kAxisNames[i])] = {{"tracking_um", largest(run.tracking_um[i])},
                                                     {"following_high_water_um", run.high_water_um[i]}};
   if (!run.contour_um.empty()) document["contour_um"] = largest(run.contour_um);

@@ -39,7 +39,7 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
 
 class ScenarioDriver {
  public:
-  ScenarioDriver(const Scenario& scenario, const std::array<MachineAxis, kMachineAxes>& axes)
+  ScenarioDriver(const Scenario& scenario, const std::array<MachineAxis, hal::kAxisCount>& axes)
       : scenario_(scenario), machine_(axes, scenario.seed), recorder_(machine_), period_s_(machine_.sample_period_s()) {
     machine_.enable();
   }
@@ -56,7 +56,7 @@ class ScenarioDriver {
 
   ScenarioRun result() const {
     ScenarioRun run;
-    for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       run.records[i] = recorder_.record(i);
       run.tracking_um[i] = recorder_.tracking_error_um(i);
       run.high_water_um[i] = 1e3 * static_cast<double>(machine_.axes()[i].monitors().high_water());
@@ -134,7 +134,7 @@ class ScenarioDriver {
         follow_path(*path_, move.path_limits, period_s_,
                     {scenario_.axes[0].drive.data.encoder_resolution, scenario_.axes[1].drive.data.encoder_resolution});
     path_place_ = 0;
-    for (std::size_t i = 0; i < kMachineAxes; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       path_origin_mm_[i] = firmware::counts_from<double>(0, machine_.axes()[i].telemetry().reference) *
                            scenario_.axes[i].drive.data.encoder_resolution;
   }
@@ -142,7 +142,7 @@ class ScenarioDriver {
   bool is_on_path() const { return path_place_ < path_increments_.size(); }
 
   void step() {
-    for (std::size_t i = 0; i < kMachineAxes; ++i) table_mm_[i] = machine_.plant(i).table_travel();
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) table_mm_[i] = machine_.plant(i).table_travel();
     if (is_on_path())
       machine_.step_with(path_increments_[path_place_++]);
     else
@@ -151,7 +151,7 @@ class ScenarioDriver {
 
   void observe(std::uint64_t k) {
     recorder_.take();
-    for (std::size_t i = 0; i < kMachineAxes; ++i) {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const auto& axis = machine_.axes()[i];
       const double wanted_mm =
           firmware::counts_from<double>(0, axis.table_reference()) * scenario_.axes[i].drive.data.encoder_resolution;
@@ -169,8 +169,8 @@ class ScenarioDriver {
   }
 
   double contour_error_um() const {
-    std::array<double, kMachineAxes> mm{};
-    for (std::size_t i = 0; i < kMachineAxes; ++i)
+    std::array<double, hal::kAxisCount> mm{};
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       mm[i] = recorder_.record(i).x.back() + scenario_.axes[i].drive.data.encoder_resolution / 2.0 - path_origin_mm_[i];
     return 1e3 * path_->distance_to({mm[0], mm[1]});
   }
@@ -202,17 +202,17 @@ class ScenarioDriver {
   Recorder recorder_;
   double period_s_;
   const Path* path_ = nullptr;
-  std::vector<std::array<firmware::Increment, kMachineAxes>> path_increments_;
+  std::vector<std::array<firmware::Increment, hal::kAxisCount>> path_increments_;
   std::size_t path_place_ = 0;
-  std::array<double, kMachineAxes> path_origin_mm_{};
-  std::array<double, kMachineAxes> table_mm_{};  ///< when the control period began
-  std::array<std::vector<double>, kMachineAxes> table_um_;
-  std::array<std::vector<double>, kMachineAxes> disturbance_V_;
+  std::array<double, hal::kAxisCount> path_origin_mm_{};
+  std::array<double, hal::kAxisCount> table_mm_{};  ///< when the control period began
+  std::array<std::vector<double>, hal::kAxisCount> table_um_;
+  std::array<std::vector<double>, hal::kAxisCount> disturbance_V_;
   std::vector<double> contour_um_;
   std::optional<std::uint64_t> injected_at_;
-  std::array<firmware::AxisFault, kMachineAxes> last_fault_{};
-  std::array<std::optional<std::size_t>, kMachineAxes> stopping_;
-  std::array<double, kMachineAxes> stop_begin_mm_{};
+  std::array<firmware::AxisFault, hal::kAxisCount> last_fault_{};
+  std::array<std::optional<std::size_t>, hal::kAxisCount> stopping_;
+  std::array<double, hal::kAxisCount> stop_begin_mm_{};
   std::vector<StopEvent> stops_;
 };
 
@@ -223,9 +223,9 @@ std::uint64_t commissioning_seed(const Scenario& scenario, std::size_t axis) { r
 bool ScenarioRun::holds() const { return std::ranges::all_of(expectations, &CheckedExpectation::holds); }
 
 ScenarioRun run_scenario(const Scenario& scenario) {
-  std::array<sim::DriveDescription, kMachineAxes> believed;
-  std::array<MachineAxis, kMachineAxes> axes;
-  for (std::size_t i = 0; i < kMachineAxes; ++i) {
+  std::array<sim::DriveDescription, hal::kAxisCount> believed;
+  std::array<MachineAxis, hal::kAxisCount> axes;
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     believed[i] = believed_of(scenario.axes[i], commissioning_seed(scenario, i));
     axes[i] = machine_axis(scenario.axes[i], believed[i]);
   }

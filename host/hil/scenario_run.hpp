@@ -28,13 +28,13 @@ struct CheckedExpectation {
 };
 
 struct ScenarioRun {
-  std::array<Record, kMachineAxes> records;
-  std::array<std::vector<double>, kMachineAxes> tracking_um;
-  std::array<std::vector<double>, kMachineAxes> table_um;       ///< where the table is wanted less where it is
-  std::array<std::vector<double>, kMachineAxes> disturbance_V;  ///< the Kalman filter's
-  std::vector<double> contour_um;                               ///< empty without a path
-  std::array<sim::DriveDescription, kMachineAxes> believed;     ///< what the controllers were designed from
-  std::array<double, kMachineAxes> high_water_um{};
+  std::array<Record, hal::kAxisCount> records;
+  std::array<std::vector<double>, hal::kAxisCount> tracking_um;
+  std::array<std::vector<double>, hal::kAxisCount> table_um;       ///< where the table is wanted less where it is
+  std::array<std::vector<double>, hal::kAxisCount> disturbance_V;  ///< the Kalman filter's
+  std::vector<double> contour_um;                                  ///< empty without a path
+  std::array<sim::DriveDescription, hal::kAxisCount> believed;     ///< what the controllers were designed from
+  std::array<double, hal::kAxisCount> high_water_um{};
   std::vector<StopEvent> stops;
   std::vector<CheckedExpectation> expectations;
   double simulated_s = 0.0;

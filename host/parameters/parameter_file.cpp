@@ -140,6 +140,12 @@ Assignment parse_assignment(std::string_view text) {
   return {place, value};
 }
 
+void put(firmware::ParameterValues& values, const Assignment& one) {
+  if (one.place < values.size()) return values.set(one.place, one.value);
+  throw Failure(ExitCode::bad_input, fmt::format("{}: the board has {} ax{}s, not that one", full_name(one.place),
+                                                 values.axes(), values.axes() == 1 ? "i" : "e"));
+}
+
 void require_fitting_set(const firmware::ParameterValues& values) {
   const firmware::SetProblem problem = firmware::check<float>(values);
   if (problem.kind == firmware::SetProblemKind::none) return;
@@ -152,7 +158,7 @@ std::string format_parameter_file(const firmware::ParameterValues& values,
   std::string text =
       fmt::format("# Parameters of an axis board, table {:#010x}.\nformat = \"{}\"\n", firmware::kSchemaHash, kFormat);
   std::string table;
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < values.size(); ++place) {
     const std::string name = full_name(place);
     const std::size_t dot = name.rfind('.');
     if (name.substr(0, dot) != table) {

@@ -25,6 +25,9 @@ std::vector<Assignment> parse_parameter_text(std::string_view text, std::string_
 /// "x.kalman.k11=0.3". Throws Failure(usage).
 Assignment parse_assignment(std::string_view text);
 
+/// Throws Failure(bad_input) for an axis that the board does not have.
+void put(firmware::ParameterValues& values, const Assignment& one);
+
 /// Throws Failure(bad_input) naming what is wrong with the set as a whole, as far as the host can tell.
 void require_fitting_set(const firmware::ParameterValues& values);
 

@@ -22,7 +22,7 @@ std::string full_name(firmware::ParameterKey key) {
 }
 
 std::optional<std::size_t> place_named(std::string_view name) {
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place)
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kMostAxes); ++place)
     if (full_name(place) == name) return place;
   return std::nullopt;
 }
@@ -37,7 +37,8 @@ std::size_t require_place(std::string_view name, const std::string& where) {
 
 std::vector<std::string> all_parameter_names() {
   std::vector<std::string> names;
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) names.push_back(full_name(place));
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place)
+    names.push_back(full_name(place));
   return names;
 }
 

@@ -17,12 +17,13 @@ const firmware::ParameterInfo& info_at(std::size_t place);
 std::string full_name(std::size_t place);
 std::string full_name(firmware::ParameterKey key);  ///< "id N" for a key that the table does not have
 
-/// Empty for a name that the table does not have.
+/// Empty for a name that the table does not have. A board with fewer axes may not have its place.
 std::optional<std::size_t> place_named(std::string_view name);
 
 /// The same, but throws Failure(bad_input) with the nearest name; `where` begins the message ("file.toml:3: ").
 std::size_t require_place(std::string_view name, const std::string& where = "");
 
+/// Of a board with as many axes as the axis board.
 std::vector<std::string> all_parameter_names();
 
 /// "V/mm", or "V/mm; linear drive: V/m" where the unit depends on the kind of drive; "1" for a pure number.

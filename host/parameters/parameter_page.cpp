@@ -31,8 +31,9 @@ std::string parameter_page() {
   std::string page = fmt::format(
       "# Parameters\n\n"
       "Written by `axistool parameters --markdown` from `parameter_table.hpp`; schema hash {:#010x}.\n\n"
-      "A name begins with its axis (`x.`, `y.`) unless it belongs to the board. Units in parentheses are those of a "
-      "linear\ndrive. *Live*: may change while a drive is enabled.\n",
+      "A name begins with its axis (`x.`, `y.`, `z.`, `a.`, as many as there are) unless it belongs to the board. "
+      "Units in\n"
+      "parentheses are those of a linear drive. *Live*: may change while a drive is enabled.\n",
       firmware::kSchemaHash);
   std::string_view group;
   for (const firmware::ParameterInfo& info : firmware::kParameters) {
@@ -56,7 +57,7 @@ std::string parameter_page() {
 
 nlohmann::json parameter_table_json() {
   nlohmann::json rows = nlohmann::json::array();
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     const firmware::ParameterInfo& info = info_at(place);
     rows.push_back({{"name", full_name(place)},
                     {"key", firmware::key_at(place).code},

@@ -7,6 +7,7 @@
 
 #include "firmware/boards/pil/value_axis.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
+#include "hal/axis_count.hpp"
 #include "tests/firmware/paper_axes.hpp"
 
 namespace {
@@ -110,10 +111,10 @@ class Board : public testing::Test {
     EXPECT_EQ(io[i].dac().code, 0);
   }
 
-  std::array<ValueAxis, 2> io;
+  std::array<ValueAxis, hal::kAxisCount> io;
   std::array<Drive, 2> drives{Drive{firmware_test::kPaperX}, Drive{firmware_test::kPaperY}};
   std::array<int, 2> offset{};  ///< of the tachometers, codes
-  firmware::AxisGroup<float, ValueAxis> axes{io[0], io[1]};
+  firmware::AxisGroup<float, ValueAxis, hal::kAxisCount> axes{io};
   std::uint32_t now = 0;
 };
 
@@ -300,7 +301,7 @@ TEST_F(Board, ReadsBothEncodersBeforeItComputesEither) {
   };
   Log log;
   LoggedAxis x(log), y(log);
-  firmware::AxisGroup<float, LoggedAxis> group(x, y);
+  firmware::AxisGroup<float, LoggedAxis, 2> group([&](std::size_t index) -> LoggedAxis& { return index == 0 ? x : y; });
   for (std::size_t i = 0; i < 2; ++i) ASSERT_EQ(group[i].configure(parameters(i)), firmware::ParameterError::none);
   log.text.clear();
   group.step({});

@@ -31,7 +31,7 @@ void seal(hal::HidReport& report) {
 /// Each piece: a byte whose lowest bit asks for a right checksum, then a report. A control period follows each.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kMostReports = 64;
-  hal::pc::SimulatedBoard board(small_drive(), small_drive(), 1);
+  hal::pc::SimulatedBoard board({small_drive(), small_drive()}, 1);
   Application application(board);
   const firmware::ImageHeader image;
   firmware::ProtocolServer<Application> server(application, image, {});
@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     server.poll(board.usb());
     while (board.usb().host_receive(reply)) continue;
     if (firmware::check<float>(application.active()).kind != firmware::SetProblemKind::none) std::abort();
-    for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis)
+    for (std::size_t axis = 0; axis < hal::kAxisCount; ++axis)
       if (board.axis(axis).drive_enable().is_on() && !application.is_fitted(axis)) std::abort();
   }
   return 0;

@@ -116,11 +116,11 @@ constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis)
 /// values, but each must be in its range.
 template <typename Scalar>
 constexpr SetProblem check(const ParameterValues& values) {
-  for (std::size_t place = 0; place < kParameterCount; ++place) {
+  for (std::size_t place = 0; place < values.size(); ++place) {
     const ValueProblem problem = check_value(rule_at(place), values.at(place));
     if (problem != ValueProblem::none) return {static_cast<SetProblemKind>(problem), key_at(place)};
   }
-  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+  for (std::size_t axis = 0; axis < values.axes(); ++axis) {
     const SetProblem problem = parameter_check::check_axis<Scalar>(values, axis);
     if (problem.kind != SetProblemKind::none) return problem;
   }

@@ -10,11 +10,11 @@
 #include <type_traits>
 
 #include "firmware/app/parameters/parameter_table.hpp"
+#include "hal/axis_count.hpp"
 
 namespace firmware {
 
-inline constexpr std::array<std::string_view, 2> kAxisNames{"x", "y"};
-inline constexpr std::size_t kAxisCount = kAxisNames.size();
+inline constexpr std::array<std::string_view, hal::kMostAxes> kAxisNames{"x", "y", "z", "a"};
 
 /// A parameter of the board, or of one axis, as store and protocol write it: id in the low 12 bits, above them 0 for
 /// the board, 1 for the first axis, and so on.
@@ -79,7 +79,9 @@ constexpr auto typed(float value) {
 }  // namespace parameter_rows
 
 /// Places of all values, in the order of the table: the board's, then each axis'.
-inline constexpr std::size_t kParameterCount = parameter_rows::kBoardRows + kAxisCount * parameter_rows::kAxisRows;
+constexpr std::size_t parameter_count(std::size_t axes) {
+  return parameter_rows::kBoardRows + axes * parameter_rows::kAxisRows;
+}
 
 /// The row of the value at this place, as index into kParameters.
 constexpr std::size_t row_at(std::size_t place) {
@@ -95,11 +97,11 @@ constexpr ParameterKey key_at(std::size_t place) {
   return place < kBoardRows ? ParameterKey::of_board(id) : ParameterKey::of_axis((place - kBoardRows) / kAxisRows, id);
 }
 
-/// Empty for a key that this table does not have.
+/// Empty for a key that this table does not have. On a board with fewer axes a place may be beyond its values.
 constexpr std::optional<std::size_t> place_of(ParameterKey key) {
   using parameter_rows::kAxisRows, parameter_rows::kBoardRows, parameter_rows::kRules;
   const auto* const rule = std::ranges::lower_bound(kRules, key.id(), {}, &ParameterRule::id);
-  if (rule == kRules.end() || rule->id != key.id() || key.owner() > kAxisCount) return std::nullopt;
+  if (rule == kRules.end() || rule->id != key.id() || key.owner() > hal::kMostAxes) return std::nullopt;
   const auto row = static_cast<std::size_t>(rule - kRules.begin());
   if ((row < kBoardRows) != (key.owner() == 0)) return std::nullopt;
   return row < kBoardRows ? row : row + (key.owner() - 1) * kAxisRows;
@@ -124,9 +126,17 @@ class AxisValues {
 
 class ParameterValues {
  public:
-  /// Initial values.
-  constexpr ParameterValues() {
-    for (std::size_t place = 0; place < kParameterCount; ++place) values_[place] = rule_at(place).initial;
+  /// Initial values of a board with 1 to hal::kMostAxes axes.
+  constexpr explicit ParameterValues(std::size_t axes = hal::kAxisCount) : size_(parameter_count(axes)) {
+    for (std::size_t place = 0; place < size_; ++place) values_[place] = rule_at(place).initial;
+  }
+
+  constexpr std::size_t size() const { return size_; }
+  constexpr std::size_t axes() const { return (size_ - parameter_rows::kBoardRows) / parameter_rows::kAxisRows; }
+  /// Empty also for an axis that the board does not have.
+  constexpr std::optional<std::size_t> place_of(ParameterKey key) const {
+    const auto place = firmware::place_of(key);
+    return place && *place < size_ ? place : std::nullopt;
   }
 
   constexpr float at(std::size_t place) const { return values_[place]; }
@@ -145,13 +155,14 @@ class ParameterValues {
 
   /// By the bits: 0 and -0 differ.
   friend constexpr bool operator==(const ParameterValues& a, const ParameterValues& b) {
-    return std::ranges::equal(a.values_, b.values_, {}, as_bits, as_bits);
+    return a.size_ == b.size_ && std::ranges::equal(a.values_, b.values_, {}, as_bits, as_bits);
   }
 
  private:
   static constexpr std::uint32_t as_bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
-  std::array<float, kParameterCount> values_{};
+  std::size_t size_;
+  std::array<float, parameter_count(hal::kMostAxes)> values_{};
 };
 
 }  // namespace firmware

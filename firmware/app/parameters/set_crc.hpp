@@ -9,7 +9,7 @@ namespace firmware {
 /// CRC-32 over the values in the order of the table, four bytes each, little-endian.
 inline std::uint32_t set_crc(const ParameterValues& values) {
   Crc32 crc;
-  for (std::size_t place = 0; place < kParameterCount; ++place) {
+  for (std::size_t place = 0; place < values.size(); ++place) {
     const float value = values.at(place);
     crc.add(std::as_bytes(std::span(&value, 1)));
   }

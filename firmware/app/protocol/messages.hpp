@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "hal/axis_count.hpp"
+
 namespace firmware {
 
 inline constexpr std::size_t kPayloadSize = 52;
@@ -92,7 +94,8 @@ struct AxisStatus {
 };
 inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8;
 
-struct StatusPayload {
+/// Of the board as a whole, as the asking client sees it.
+struct BoardStatus {
   std::uint32_t control_periods = 0;
   std::uint32_t store_sequence = 0;
   std::uint32_t store_erases = 0;
@@ -100,9 +103,19 @@ struct StatusPayload {
   std::uint8_t store_state = 0;
   std::uint8_t reset_cause = 0;
   std::uint8_t flags = 0;  ///< kBoard…
-  std::uint8_t reserved = 0;
+  std::uint8_t axis_count = 0;
   std::uint16_t resets = 0;
-  std::array<AxisStatus, 2> axis{};
+};
+
+struct StatusRequest {
+  std::uint8_t first_axis = 0;
+};
+
+/// The board, and its axes from `first_axis` on, as many as fit; the payload ends with the last axis.
+inline constexpr std::size_t kAxesPerStatus = 2;
+struct StatusPayload {
+  BoardStatus board{};
+  std::array<AxisStatus, kAxesPerStatus> axis{};
 };
 static_assert(sizeof(StatusPayload) == kPayloadSize);
 inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8,
@@ -206,8 +219,8 @@ inline constexpr std::size_t kChannels = 11;
 inline constexpr std::size_t kWordsPerReport = 12;
 
 struct CaptureRequest {
-  std::array<std::uint16_t, 2> channels{};  ///< for each axis: bit n is channel n; up to kWordsPerReport in all
-  std::uint16_t every = 1;                  ///< control periods from one row to the next, at least 1
+  std::array<std::uint16_t, hal::kMostAxes> channels{};  ///< of each axis: bit n is channel n; kWordsPerReport in all
+  std::uint16_t every = 1;                               ///< control periods from one row to the next, at least 1
   std::uint16_t reserved = 0;
 
   /// Words of a row.

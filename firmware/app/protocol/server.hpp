@@ -1,6 +1,7 @@
 // The board's end of the protocol: one request, one reply; samples in between.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -75,6 +76,8 @@ class ProtocolServer {
   }
 
  private:
+  static constexpr std::size_t kAxes = Application::kAxes;
+
   template <typename Payload, typename Handler>
   static Status with(const Message& request, Handler handler) {
     Payload payload;
@@ -109,8 +112,9 @@ class ProtocolServer {
         reply.put(identity());
         return Status::ok;
       case MessageType::status:
-        reply.put(status(request.client));
-        return Status::ok;
+        if (request.length == 0) return tell_status({}, request.client, reply);
+        return with<StatusRequest>(request,
+                                   [&](const StatusRequest& r) { return tell_status(r, request.client, reply); });
       case MessageType::timing:
         return with<TimingRequest>(request, [&](const TimingRequest& r) { return tell_timing(r, reply); });
       case MessageType::read_values:
@@ -146,11 +150,11 @@ class ProtocolServer {
         return Status::ok;
       case MessageType::jog:
         return with<JogRequest>(request, [&](const JogRequest& r) {
-          return r.axis < kAxisCount ? app_.jog(r.axis, r.velocity) : Status::malformed;
+          return r.axis < kAxes ? app_.jog(r.axis, r.velocity) : Status::malformed;
         });
       case MessageType::move:
         return with<MoveRequest>(request, [&](const MoveRequest& r) {
-          return r.axis < kAxisCount ? app_.move(r.axis, r.counts()) : Status::malformed;
+          return r.axis < kAxes ? app_.move(r.axis, r.counts()) : Status::malformed;
         });
       case MessageType::clear_faults:
         app_.clear_faults();
@@ -171,8 +175,8 @@ class ProtocolServer {
   IdentityPayload identity() const {
     IdentityPayload payload;
     payload.schema_hash = kSchemaHash;
-    payload.parameter_count = static_cast<std::uint16_t>(kParameterCount);
-    payload.axis_count = static_cast<std::uint8_t>(kAxisCount);
+    payload.parameter_count = static_cast<std::uint16_t>(app_.active().size());
+    payload.axis_count = kAxes;
     payload.fixed_point = std::is_same_v<typename Application::Number, float> ? 0 : 1;
     payload.board = image_.board;
     payload.version = image_.version;
@@ -180,25 +184,35 @@ class ProtocolServer {
     return payload;
   }
 
-  StatusPayload status(ClientToken client) {
+  BoardStatus board_status(ClientToken client) {
     const StoreReport& store = app_.store().report();
+    BoardStatus board;
+    board.control_periods = app_.control_periods();
+    board.store_sequence = store.sequence;
+    board.store_erases = store.erases;
+    board.not_migrated = store.not_migrated;
+    board.store_state = static_cast<std::uint8_t>(store.state);
+    board.reset_cause = boot_.reset_cause;
+    board.axis_count = kAxes;
+    board.resets = boot_.resets;
+    unsigned flags = app_.has_unsaved_changes() ? kBoardUnsaved : 0;
+    if (app_.board().emergency_stop().is_pressed()) flags |= kBoardStopPressed;
+    if (app_.capture().is_running()) flags |= kBoardCapturing;
+    if (boot_.simulated) flags |= kBoardSimulated;
+    if (app_.any_enabled()) flags |= app_.is_owner(client) ? kBoardYours : kBoardOthers;
+    board.flags = static_cast<std::uint8_t>(flags);
+    return board;
+  }
+
+  Status tell_status(const StatusRequest& request, ClientToken client, Message& reply) {
+    if (request.first_axis >= kAxes) return Status::malformed;
     StatusPayload payload;
-    payload.control_periods = app_.control_periods();
-    payload.store_sequence = store.sequence;
-    payload.store_erases = store.erases;
-    payload.not_migrated = store.not_migrated;
-    payload.store_state = static_cast<std::uint8_t>(store.state);
-    payload.reset_cause = boot_.reset_cause;
-    payload.resets = boot_.resets;
-    payload.flags = static_cast<std::uint8_t>((app_.has_unsaved_changes() ? kBoardUnsaved : 0) |
-                                              (app_.board().emergency_stop().is_pressed() ? kBoardStopPressed : 0) |
-                                              (app_.capture().is_running() ? kBoardCapturing : 0) |
-                                              (boot_.simulated ? kBoardSimulated : 0) |
-                                              (!app_.any_enabled()     ? 0
-                                               : app_.is_owner(client) ? kBoardYours
-                                                                       : kBoardOthers));
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) payload.axis[axis] = app_.axis_status(axis);
-    return payload;
+    payload.board = board_status(client);
+    const std::size_t axes = std::min(kAxes - request.first_axis, kAxesPerStatus);
+    for (std::size_t i = 0; i < axes; ++i) payload.axis[i] = app_.axis_status(request.first_axis + i);
+    reply.put(payload);
+    reply.length = static_cast<std::uint8_t>(sizeof payload.board + axes * sizeof payload.axis[0]);
+    return Status::ok;
   }
 
   Status tell_timing(const TimingRequest& request, Message& reply) {
@@ -216,7 +230,7 @@ class ProtocolServer {
     if (request.set > ValueSet::initial) return Status::malformed;
     ValuesPayload payload;
     payload.first = request.first;
-    for (std::size_t place = request.first; place < kParameterCount && payload.count < kValuesPerReport; ++place) {
+    for (std::size_t place = request.first; place < app_.active().size() && payload.count < kValuesPerReport; ++place) {
       const float value = request.set == ValueSet::active   ? app_.active().at(place)
                           : request.set == ValueSet::staged ? app_.staged().at(place)
                                                             : rule_at(place).initial;
@@ -244,7 +258,7 @@ class ProtocolServer {
     if (request.from == ValueSet::active)
       app_.staged() = app_.active();
     else if (request.from == ValueSet::initial)
-      app_.staged() = ParameterValues{};
+      app_.staged() = ParameterValues{kAxes};
     else
       return Status::malformed;
     return Status::ok;
@@ -254,7 +268,7 @@ class ProtocolServer {
     if (request.count > kValuesPerReport) return Status::malformed;
     for (std::size_t i = 0; i < request.count; ++i) {
       const ParameterKey key{request.key[i]};
-      const auto place = place_of(key);
+      const auto place = app_.staged().place_of(key);
       const auto problem =
           place ? check_value(rule_at(*place), std::bit_cast<float>(request.bits[i])) : ValueProblem::none;
       if (!place || problem != ValueProblem::none) {
@@ -277,7 +291,7 @@ class ProtocolServer {
 
   Status enable(const AxesRequest& request) {
     if (!names_axes(request)) return Status::malformed;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
       if ((request.mask >> axis & 1) == 0) continue;
       const Status status = app_.enable(axis);
       if (status != Status::ok) return status;
@@ -287,15 +301,17 @@ class ProtocolServer {
 
   Status disable(const AxesRequest& request) {
     if (!names_axes(request)) return Status::malformed;
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
       if ((request.mask >> axis & 1) != 0) app_.disable(axis);
     return Status::ok;
   }
 
-  static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxisCount == 0; }
+  static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxes == 0; }
 
   Status start_capture(const CaptureRequest& request, ClientToken client) {
-    const bool has_unknown = ((request.channels[0] | request.channels[1]) >> kChannels) != 0;
+    bool has_unknown = false;
+    for (std::size_t axis = 0; axis < request.channels.size(); ++axis)
+      has_unknown = has_unknown || request.channels[axis] >> (axis < kAxes ? kChannels : 0) != 0;
     if (request.words() == 0 || request.words() > kWordsPerReport || has_unknown || request.every == 0)
       return Status::malformed;
     app_.start_capture(request);
@@ -304,7 +320,7 @@ class ProtocolServer {
   }
 
   Status fault_row(const FaultRowRequest& request, Message& reply) {
-    if (request.axis >= kAxisCount) return Status::malformed;
+    if (request.axis >= kAxes) return Status::malformed;
     FaultRowPayload payload;
     if (!app_.fault_row(request.axis, request.row, payload)) return Status::no_such_row;
     reply.put(payload);

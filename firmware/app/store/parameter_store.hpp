@@ -72,12 +72,16 @@ class ParameterStore {
   SaveResult save(const ParameterValues& values) {
     examine();
     const std::size_t target = newest_ ? 1 - *newest_ : 0;
-    StoredHeader header{
-        kStoreMagic, kSchemaHash, highest_sequence() + 1, kParameterCount * sizeof(StoredEntry), most_erases() + 1, 0};
+    StoredHeader header{kStoreMagic,
+                        kSchemaHash,
+                        highest_sequence() + 1,
+                        static_cast<std::uint32_t>(values.size() * sizeof(StoredEntry)),
+                        most_erases() + 1,
+                        0};
     if (flash_.erase(target) != hal::FlashResult::ok) return SaveResult::flash_failed;
     Crc32 crc;
     crc.add(bytes_of(header).first(offsetof(StoredHeader, crc)));
-    for (std::size_t place = 0; place < kParameterCount; ++place) {
+    for (std::size_t place = 0; place < values.size(); ++place) {
       const StoredEntry entry{key_at(place).code, 0, std::bit_cast<std::uint32_t>(values.at(place))};
       crc.add(bytes_of(entry));
       if (!program(target, kEntriesOffset + place * sizeof entry, entry)) return SaveResult::flash_failed;
@@ -171,7 +175,7 @@ class ParameterStore {
 
   bool read_back_differs(std::size_t slot, const StoredHeader& header, const ParameterValues& values) const {
     if (!std::ranges::equal(bytes_of(read_at<StoredHeader>(slot, 0)), bytes_of(header))) return true;
-    for (std::size_t place = 0; place < kParameterCount; ++place) {
+    for (std::size_t place = 0; place < values.size(); ++place) {
       const auto entry = read_at<StoredEntry>(slot, kEntriesOffset + place * sizeof(StoredEntry));
       if (entry.key != key_at(place).code || entry.value_bits != std::bit_cast<std::uint32_t>(values.at(place)))
         return true;
@@ -188,7 +192,7 @@ class ParameterStore {
   void take_over_entries(ParameterValues& values) {
     for (std::size_t i = 0; i < entry_count(); ++i) {
       const StoredEntry stored = *entry(i);
-      const auto place = place_of({stored.key});
+      const auto place = values.place_of({stored.key});
       const auto value = std::bit_cast<float>(stored.value_bits);
       if (place && check_value(rule_at(*place), value) == ValueProblem::none)
         values.set(*place, value);

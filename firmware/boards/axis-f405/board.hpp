@@ -60,6 +60,7 @@ static_assert(hal::AxisHal<BoardAxisHal>);
 
 class Board {
  public:
+  static constexpr std::size_t kAxes = hal::kAxisCount;
   using AxisType = BoardAxisHal;
   using ControlShutOut = hal::cortex_m::ControlShutOut;
 

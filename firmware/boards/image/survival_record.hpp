@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/axis_count.hpp"
+
 namespace firmware::boards {
 
 enum class ResetCause : std::uint32_t {
@@ -38,7 +40,7 @@ struct LastAxisState {
 struct LastState {
   std::uint32_t control_periods = 0;
   std::uint32_t supervisor_rounds = 0;
-  std::array<LastAxisState, 2> axis{};
+  std::array<LastAxisState, hal::kAxisCount> axis{};
 };
 
 struct FaultRecord {

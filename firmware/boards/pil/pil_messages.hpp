@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
-namespace firmware::boards {
+#include "hal/axis_count.hpp"
 
-inline constexpr std::size_t kPilAxes = 2;
+namespace firmware::boards {
 
 enum class PilCommand : std::uint32_t {
   none = 0,
@@ -33,7 +33,7 @@ struct PilRequest {
   std::uint32_t number = 0;
   std::uint32_t now_us = 0;
   std::uint32_t board = 0;  ///< bit 0 emergency stop, 1 supply low, 2 parameter store damaged
-  std::array<PilAxisRequest, kPilAxes> axis{};
+  std::array<PilAxisRequest, hal::kAxisCount> axis{};
 };
 inline constexpr std::uint32_t kPilEnd = 0xFFFFFFFF;
 
@@ -56,7 +56,7 @@ struct PilAxisReply {
 
 struct PilReply {
   std::uint32_t number = 0;
-  std::array<PilAxisReply, kPilAxes> axis{};
+  std::array<PilAxisReply, hal::kAxisCount> axis{};
 
   bool operator==(const PilReply&) const = default;
 };
@@ -65,7 +65,7 @@ static_assert(sizeof(PilRequest) == 68 && sizeof(PilReply) == 180, "the same lay
 
 /// Answer to the parameters: one ParameterError an axis.
 struct PilConfigured {
-  std::array<std::uint32_t, kPilAxes> error{};
+  std::array<std::uint32_t, hal::kAxisCount> error{};
 };
 
 }  // namespace firmware::boards

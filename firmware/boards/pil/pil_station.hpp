@@ -15,12 +15,12 @@ template <typename Scalar>
 class PilStation {
  public:
   /// Parameters travel as the bytes of this array, so their layout is part of the interface.
-  using Parameters = std::array<AxisParameters<Scalar>, kPilAxes>;
+  using Parameters = std::array<AxisParameters<Scalar>, hal::kAxisCount>;
   static_assert(std::is_trivially_copyable_v<Parameters>);
 
   constexpr PilConfigured configure(const Parameters& parameters) {
     PilConfigured result;
-    for (std::size_t i = 0; i < kPilAxes; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       result.error[i] = static_cast<std::uint32_t>(axes_[i].configure(parameters[i]));
     axes_.board().configure(BoardWatch::default_limits(kPilPeriod_s));
     axes_.board().excuse_pause();
@@ -30,20 +30,20 @@ class PilStation {
   constexpr PilReply step(const PilRequest& request) {
     PilReply reply;
     reply.number = request.number;
-    std::array<bool, kPilAxes> accepted{};
-    for (std::size_t i = 0; i < kPilAxes; ++i) {
+    std::array<bool, hal::kAxisCount> accepted{};
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       read_in(request.axis[i], io_[i]);
       accepted[i] = obey(request.axis[i], axes_[i]);
     }
     axes_.step({request.now_us, (request.board & 1u) != 0, (request.board & 2u) != 0, (request.board & 4u) != 0});
-    for (std::size_t i = 0; i < kPilAxes; ++i) reply.axis[i] = write_out(axes_[i], io_[i], accepted[i]);
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) reply.axis[i] = write_out(axes_[i], io_[i], accepted[i]);
     return reply;
   }
 
   const SupervisedAxis<Scalar, ValueAxis>& axis(std::size_t index) const { return axes_[index]; }
 
  private:
-  using Axes = AxisGroup<Scalar, ValueAxis>;
+  using Axes = AxisGroup<Scalar, ValueAxis, hal::kAxisCount>;
   using BoardAxis = typename Axes::BoardAxis;
   static constexpr float kPilPeriod_s = 0.001f;
 
@@ -111,8 +111,8 @@ class PilStation {
     return reply;
   }
 
-  std::array<ValueAxis, kPilAxes> io_{};
-  Axes axes_{io_[0], io_[1]};
+  std::array<ValueAxis, hal::kAxisCount> io_{};
+  Axes axes_{io_};
 };
 
 }  // namespace firmware::boards

@@ -11,7 +11,7 @@ constinit hal::cortex_m::CycleMeter control_cycles;
 namespace {
 
 void remember(const Application::Axes& axes, LastState& last) {
-  for (std::size_t i = 0; i < kAxisCount; ++i) {
+  for (std::size_t i = 0; i < Application::kAxes; ++i) {
     const auto& telemetry = axes[i].telemetry();
     last.axis[i].encoder_counts = telemetry.encoder_counts;
     last.axis[i].dac_code = telemetry.dac_code;

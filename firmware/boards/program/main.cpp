@@ -12,7 +12,8 @@ namespace {
 /// Shows the state of the axes; what acts on them runs in the control interrupt.
 void supervise() {
   bool fault = board.emergency_stop().is_pressed() || !application.store_is_usable();
-  for (std::size_t i = 0; i < kAxisCount; ++i) fault = fault || application.axes()[i].fault() != AxisFault::none;
+  for (std::size_t i = 0; i < Application::kAxes; ++i)
+    fault = fault || application.axes()[i].fault() != AxisFault::none;
   board.show(true, fault);
   board.watch(!application.any_enabled());
   liveness.supervisor_ran();

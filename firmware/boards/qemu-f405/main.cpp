@@ -43,7 +43,7 @@ void remember(const PilReply& reply) {
   LastState& last = survival_record().running;
   last.control_periods = liveness.control_periods();
   last.supervisor_rounds = liveness.supervisor_rounds();
-  for (std::size_t i = 0; i < kPilAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     const auto& telemetry = station.axis(i).telemetry();
     last.axis[i].encoder_counts = telemetry.encoder_counts;
     last.axis[i].dac_code = reply.axis[i].dac_code;

@@ -30,6 +30,7 @@ std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's l
 
 class EmulatedBoard {
  public:
+  static constexpr std::size_t kAxes = hal::kAxisCount;
   using AxisType = ValueAxis;
 
   using ControlShutOut = hal::cortex_m::ControlShutOut;
@@ -66,7 +67,7 @@ class EmulatedBoard {
   std::uint32_t period_us() const { return period_us_; }
 
  private:
-  std::array<ValueAxis, kAxisCount> axes_;
+  std::array<ValueAxis, kAxes> axes_;
   Stop stop_;
   Supply supply_;
   Clock clock_;
@@ -91,7 +92,7 @@ void make_outputs_safe() noexcept {}
 extern "C" void control_interrupt() {
   using namespace firmware::boards;
   control_time_us = control_time_us + board.period_us();
-  for (std::size_t i = 0; i < firmware::kAxisCount; ++i) board.axis(i).encoder().reading.valid = true;
+  for (std::size_t i = 0; i < Application::kAxes; ++i) board.axis(i).encoder().reading.valid = true;
   application.control_period();
 }
 

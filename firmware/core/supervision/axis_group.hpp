@@ -3,19 +3,25 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "firmware/core/supervision/board_watch.hpp"
 #include "firmware/core/supervision/supervised_axis.hpp"
 
 namespace firmware {
 
-template <typename Scalar, SupervisedHal Hal>
+template <typename Scalar, SupervisedHal Hal, std::size_t axes>
 class AxisGroup {
  public:
-  static constexpr std::size_t kAxes = 2;
+  static constexpr std::size_t kAxes = axes;
   using BoardAxis = SupervisedAxis<Scalar, Hal>;
 
-  constexpr AxisGroup(Hal& first, Hal& second) : axes_{BoardAxis(first), BoardAxis(second)} {}
+  /// `hal_of(index)`: the hardware of each axis, by reference.
+  template <typename HalOf>
+  requires std::is_invocable_r_v<Hal&, HalOf, std::size_t>
+  constexpr explicit AxisGroup(HalOf hal_of) : AxisGroup(hal_of, std::make_index_sequence<axes>()) {}
+  constexpr explicit AxisGroup(std::array<Hal, axes>& hal)
+      : AxisGroup([&hal](std::size_t index) -> Hal& { return hal[index]; }) {}
 
   constexpr BoardAxis& operator[](std::size_t index) { return axes_[index]; }
   constexpr const BoardAxis& operator[](std::size_t index) const { return axes_[index]; }
@@ -28,16 +34,23 @@ class AxisGroup {
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer)); });
   }
 
-  /// One control period; an interpolator leads both axes.
+  /// One control period; an interpolator leads all axes.
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, outputs_on());
     latch();
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer)); });
   }
 
-  constexpr bool outputs_on() const { return outputs_are_on(axes_[0].state()) || outputs_are_on(axes_[1].state()); }
+  constexpr bool outputs_on() const {
+    for (const BoardAxis& axis : axes_)
+      if (outputs_are_on(axis.state())) return true;
+    return false;
+  }
 
  private:
+  template <typename HalOf, std::size_t... index>
+  constexpr AxisGroup(HalOf hal_of, std::index_sequence<index...>) : axes_{BoardAxis(hal_of(index))...} {}
+
   /// All positions belong to one instant, whatever the steps then take.
   constexpr void latch() {
     for (BoardAxis& axis : axes_) axis.latch();
@@ -54,9 +67,9 @@ class AxisGroup {
   constexpr void settle(std::size_t index, Step step) {
     const bool had_fault = axes_[index].fault() != AxisFault::none;
     step();
-    const std::size_t other = 1 - index;
-    if (!had_fault && axes_[index].fault() != AxisFault::none && axes_[other].is_or_will_be_on())
-      must_stop_[other] = true;
+    if (had_fault || axes_[index].fault() == AxisFault::none) return;
+    for (std::size_t other = 0; other < kAxes; ++other)
+      if (other != index && axes_[other].is_or_will_be_on()) must_stop_[other] = true;
   }
 
   BoardWatch board_;

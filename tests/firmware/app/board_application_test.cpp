@@ -13,25 +13,49 @@ using firmware::ParameterValues;
 using firmware::Status;
 using firmware::StoreState;
 using firmware::SupervisorState;
-using firmware_test::paper_values;
 using firmware_test::place_named;
 using firmware_test::set;
-using Bench = firmware_test::BoardOnABench<float>;
+
+/// Every test runs on boards of one, two and three axes.
+template <typename Axes>
+class OfAxes : public testing::Test {
+ protected:
+  static constexpr std::size_t kAxes = Axes::value;
+  using Bench = firmware_test::BoardOnABench<float, kAxes>;
+  static ParameterValues paper_values() { return firmware_test::paper_values(kAxes); }
+};
+using AxisCounts = testing::Types<std::integral_constant<std::size_t, 1>, std::integral_constant<std::size_t, 2>,
+                                  std::integral_constant<std::size_t, 3>>;
+struct CountNames {
+  template <typename Axes>
+  static std::string GetName(int) {
+    return std::to_string(Axes::value) + "axes";
+  }
+};
+#define AXIS_COUNTS(suite)    \
+  template <typename Axes>    \
+  using suite = OfAxes<Axes>; \
+  TYPED_TEST_SUITE(suite, AxisCounts, CountNames)
+
+AXIS_COUNTS(BoardParameters);
+AXIS_COUNTS(BoardMotion);
+AXIS_COUNTS(Capture);
+AXIS_COUNTS(BoardProtocol);
 
 constexpr auto kFault = static_cast<std::uint8_t>(SupervisorState::fault);
 constexpr auto kEnabled = static_cast<std::uint8_t>(SupervisorState::enabled);
 
-TEST(BoardParameters, AreTakenOverAsAWholeSet) {
-  Bench bench;
-  EXPECT_EQ(bench.download(paper_values()).status, Status::ok);
-  EXPECT_EQ(bench.application.active(), paper_values());
+TYPED_TEST(BoardParameters, AreTakenOverAsAWholeSet) {
+  typename TestFixture::Bench bench;
+  EXPECT_EQ(bench.download(this->paper_values()).status, Status::ok);
+  EXPECT_EQ(bench.application.active(), this->paper_values());
   EXPECT_NE(bench.status().flags & firmware::kBoardUnsaved, 0);
 }
 
-TEST(BoardParameters, ASetThatDoesNotFitTogetherChangesNothing) {
-  Bench bench;
-  ASSERT_EQ(bench.download(paper_values()).status, Status::ok);
-  ParameterValues other = paper_values();
+TYPED_TEST(BoardParameters, ASetThatDoesNotFitTogetherChangesNothing) {
+  typename TestFixture::Bench bench;
+  ASSERT_EQ(bench.download(this->paper_values()).status, Status::ok);
+  ParameterValues other = this->paper_values();
   set(other, "x.feedback.k1", 1);
   set(other, "x.drive.sample_period", 0.002);
   const firmware::Message reply = bench.download(other);
@@ -39,11 +63,11 @@ TEST(BoardParameters, ASetThatDoesNotFitTogetherChangesNothing) {
   firmware::ProblemPayload problem;
   ASSERT_TRUE(reply.get(problem));
   EXPECT_EQ(problem.key, firmware::key_at(place_named("x.drive.sample_period")).code);
-  EXPECT_EQ(bench.application.active(), paper_values());
+  EXPECT_EQ(bench.application.active(), this->paper_values());
 }
 
-TEST(BoardParameters, AReportWithOneBadValueStagesNone) {
-  Bench bench;
+TYPED_TEST(BoardParameters, AReportWithOneBadValueStagesNone) {
+  typename TestFixture::Bench bench;
   bench.ask(MessageType::begin_staging, firmware::BeginRequest{});
   firmware::ValuesPayload part;
   part.count = 2;
@@ -62,66 +86,66 @@ TEST(BoardParameters, AReportWithOneBadValueStagesNone) {
   EXPECT_EQ(bench.ask(MessageType::stage, part).status, Status::unknown_parameter);
 }
 
-TEST(BoardParameters, OnlyTheSetThatTheHostMeansIsCommitted) {
-  Bench bench;
+TYPED_TEST(BoardParameters, OnlyTheSetThatTheHostMeansIsCommitted) {
+  typename TestFixture::Bench bench;
   bench.ask(MessageType::begin_staging, firmware::BeginRequest{});
-  EXPECT_EQ(bench.ask(MessageType::commit, firmware::CommitRequest{firmware::set_crc(paper_values())}).status,
+  EXPECT_EQ(bench.ask(MessageType::commit, firmware::CommitRequest{firmware::set_crc(this->paper_values())}).status,
             Status::set_differs);
-  EXPECT_EQ(bench.application.active(), ParameterValues{});
+  EXPECT_EQ(bench.application.active(), ParameterValues(TestFixture::kAxes));
 }
 
-TEST(BoardParameters, AreRefusedAndNotSavedWhileADriveIsEnabled) {
-  Bench bench;
+TYPED_TEST(BoardParameters, AreRefusedAndNotSavedWhileADriveIsEnabled) {
+  typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
-  ParameterValues other = paper_values();
+  ParameterValues other = this->paper_values();
   set(other, "x.feedback.k1", 40);
   EXPECT_EQ(bench.download(other).status, Status::drive_enabled);
   EXPECT_EQ(bench.ask(MessageType::save).status, Status::drive_enabled);
   EXPECT_EQ(bench.ask(MessageType::restart).status, Status::drive_enabled);
-  EXPECT_EQ(bench.application.active(), paper_values());
+  EXPECT_EQ(bench.application.active(), this->paper_values());
   EXPECT_EQ(bench.status().axis[0].state, kEnabled);
 }
 
-TEST(BoardParameters, OutliveARestartOnceTheyAreSaved) {
-  Bench bench;
-  ASSERT_EQ(bench.download(paper_values()).status, Status::ok);
+TYPED_TEST(BoardParameters, OutliveARestartOnceTheyAreSaved) {
+  typename TestFixture::Bench bench;
+  ASSERT_EQ(bench.download(this->paper_values()).status, Status::ok);
   ASSERT_EQ(bench.ask(MessageType::save).status, Status::ok);
   EXPECT_EQ(bench.status().flags & firmware::kBoardUnsaved, 0);
-  Bench again(&bench.board.parameter_flash());
-  EXPECT_EQ(again.application.active(), paper_values());
+  typename TestFixture::Bench again(&bench.board.parameter_flash());
+  EXPECT_EQ(again.application.active(), this->paper_values());
   EXPECT_EQ(again.status().store_state, static_cast<std::uint8_t>(StoreState::loaded));
 }
 
-TEST(BoardParameters, ADamagedStoreKeepsTheDrivesDisabledAndHasAName) {
-  Bench bench;
-  ASSERT_EQ(bench.download(paper_values()).status, Status::ok);
+TYPED_TEST(BoardParameters, ADamagedStoreKeepsTheDrivesDisabledAndHasAName) {
+  typename TestFixture::Bench bench;
+  ASSERT_EQ(bench.download(this->paper_values()).status, Status::ok);
   ASSERT_EQ(bench.ask(MessageType::save).status, Status::ok);
   ASSERT_EQ(bench.ask(MessageType::save).status, Status::ok);
   bench.board.parameter_flash().contents()[1][64] ^= std::byte{4};
-  Bench again(&bench.board.parameter_flash());
+  typename TestFixture::Bench again(&bench.board.parameter_flash());
   EXPECT_EQ(again.status().store_state, static_cast<std::uint8_t>(StoreState::damaged));
   again.run(200);
   EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
   EXPECT_FALSE(again.board.axis(0).drive_enable().is_on());
   // Parameters alone do not mend it: they must also be saved.
-  ASSERT_EQ(again.download(paper_values()).status, Status::ok);
+  ASSERT_EQ(again.download(this->paper_values()).status, Status::ok);
   EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::device_fault);
   ASSERT_EQ(again.ask(MessageType::save).status, Status::ok);
   again.run(200);
   EXPECT_EQ(again.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
 }
 
-TEST(BoardMotion, AnAxisThatIsNotFittedStaysOff) {
-  Bench bench;
+TYPED_TEST(BoardMotion, AnAxisThatIsNotFittedStaysOff) {
+  typename TestFixture::Bench bench;
   bench.run(200);
   EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::not_fitted);
   EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{0}).status, Status::malformed);
-  EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{4}).status, Status::malformed);
+  EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1u << TestFixture::kAxes}).status, Status::malformed);
   EXPECT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 1.0F}).status, Status::wrong_state);
 }
 
-TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
-  Bench bench;
+TYPED_TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
+  typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
   const std::int64_t target = 4096;  // 10 mm
   ASSERT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::to(0, target)).status, Status::ok);
@@ -136,6 +160,7 @@ TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
 }
 
 /// Control periods of 1 ms from the last request to the beginning of the stop, and that it ends well.
+template <typename Bench>
 int periods_until_a_stop(double timeout_s) {
   Bench bench;
   bench.fit_and_enable_x();
@@ -154,20 +179,20 @@ int periods_until_a_stop(double timeout_s) {
   return periods;
 }
 
-TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
-  EXPECT_NEAR(periods_until_a_stop(0.2), 200, 2);
-  EXPECT_NEAR(periods_until_a_stop(0.05), 50, 2);
+TYPED_TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
+  EXPECT_NEAR(periods_until_a_stop<typename TestFixture::Bench>(0.2), 200, 2);
+  EXPECT_NEAR(periods_until_a_stop<typename TestFixture::Bench>(0.05), 50, 2);
 }
 
-TEST(BoardMotion, StandsAsLongAsItLikesWithoutAHost) {
-  Bench bench;
+TYPED_TEST(BoardMotion, StandsAsLongAsItLikesWithoutAHost) {
+  typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
   bench.run(2000);
   EXPECT_EQ(bench.status().axis[0].state, kEnabled);
 }
 
-TEST(BoardMotion, FaultsAreClearedAndKeptRowsAreReadable) {
-  Bench bench;
+TYPED_TEST(BoardMotion, FaultsAreClearedAndKeptRowsAreReadable) {
+  typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
   bench.board.emergency_stop().press();
   bench.run(20);
@@ -184,20 +209,12 @@ TEST(BoardMotion, FaultsAreClearedAndKeptRowsAreReadable) {
   EXPECT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
 }
 
-struct CaptureCase {
-  firmware::CaptureRequest request;
-  std::size_t words;
-};
-
-class Capture : public testing::TestWithParam<CaptureCase> {};
-INSTANTIATE_TEST_SUITE_P(Rows, Capture,
-                         testing::Values(CaptureCase{{{1u << 1, 0}, 1, 0}, 1}, CaptureCase{{{0x7, 0x7}, 1, 0}, 6},
-                                         CaptureCase{{{0x7FF, 1}, 1, 0}, 12}, CaptureCase{{{0x1F, 0}, 3, 0}, 5}));
-
-TEST_P(Capture, SendsEveryRowOnceAndInOrder) {
+/// Captures for 3 s and expects every row once and in order.
+template <typename Bench>
+void expect_all_rows(const firmware::CaptureRequest& request, std::size_t words) {
   Bench bench;
   bench.fit_and_enable_x();
-  ASSERT_EQ(bench.ask(MessageType::start_capture, GetParam().request).status, Status::ok);
+  ASSERT_EQ(bench.ask(MessageType::start_capture, request).status, Status::ok);
   const int kPeriods = 3000;
   std::uint32_t next_row = 0;
   const auto fetch = [&] {
@@ -209,8 +226,8 @@ TEST_P(Capture, SendsEveryRowOnceAndInOrder) {
       std::uint32_t first = 0;
       std::memcpy(&first, message.payload.data(), 4);
       ASSERT_EQ(first, next_row);
-      ASSERT_EQ((message.length - 4u) % (4 * GetParam().words), 0u);
-      next_row += static_cast<std::uint32_t>((message.length - 4u) / (4 * GetParam().words));
+      ASSERT_EQ((message.length - 4u) % (4 * words), 0u);
+      next_row += static_cast<std::uint32_t>((message.length - 4u) / (4 * words));
     }
   };
   for (int k = 0; k < kPeriods; ++k) {
@@ -221,16 +238,37 @@ TEST_P(Capture, SendsEveryRowOnceAndInOrder) {
   ASSERT_TRUE(bench.ask(MessageType::stop_capture).get(taken));
   for (int i = 0; i < 100; ++i) bench.server.poll(bench.board.usb());
   fetch();
-  EXPECT_EQ(taken.rows, (kPeriods + GetParam().request.every - 1u) / GetParam().request.every);
+  EXPECT_EQ(taken.rows, (kPeriods + request.every - 1u) / request.every);
   EXPECT_EQ(taken.dropped, 0u);
   EXPECT_EQ(next_row, taken.rows);
 }
 
-TEST(CaptureLoss, IsCountedAndShowsInTheNumbersOfRows) {
-  Bench bench;
+TYPED_TEST(Capture, SendsEveryRowOnceAndInOrder) {
+  using Tested = typename TestFixture::Bench;
+  expect_all_rows<Tested>({{1u << 1}, 1, 0}, 1);
+  expect_all_rows<Tested>({{0x1F}, 3, 0}, 5);
+  firmware::CaptureRequest full{{0x7FF >> (TestFixture::kAxes - 1)}, 1, 0};  // twelve words with those of the others
+  for (std::size_t axis = 1; axis < TestFixture::kAxes; ++axis) full.channels[axis] = axis == 1 ? 3 : 1;
+  expect_all_rows<Tested>(full, full.words());
+}
+
+TYPED_TEST(Capture, ARowHoldsTheAxesInTheirOrder) {
+  typename TestFixture::Bench bench;
   bench.fit_and_enable_x();
-  ASSERT_EQ(bench.ask(MessageType::start_capture, firmware::CaptureRequest{{0xFFF & 0x7FF, 1}, 1, 0}).status,
-            Status::ok);
+  firmware::CaptureRequest request;
+  for (std::size_t axis = 0; axis < TestFixture::kAxes; ++axis) request.channels[axis] = 1u << 10;  // flags: the state
+  ASSERT_EQ(bench.ask(MessageType::start_capture, request).status, Status::ok);
+  bench.run(12);
+  hal::HidReport report;
+  ASSERT_TRUE(bench.board.usb().host_receive(report));
+  for (std::size_t axis = 0; axis < TestFixture::kAxes; ++axis)
+    EXPECT_EQ(std::to_integer<int>(report[firmware::kPayloadOffset + 4 + 4 * axis]), axis == 0 ? kEnabled : 0) << axis;
+}
+
+TYPED_TEST(Capture, LossIsCountedAndShowsInTheNumbersOfRows) {
+  typename TestFixture::Bench bench;
+  bench.fit_and_enable_x();
+  ASSERT_EQ(bench.ask(MessageType::start_capture, firmware::CaptureRequest{{0x7FF}, 1, 0}).status, Status::ok);
   bench.run(500);  // nobody fetches: the queue of the cable and then the board's rows fill up
   std::vector<std::uint32_t> numbers;
   firmware::CaptureReply taken;
@@ -249,19 +287,72 @@ TEST(CaptureLoss, IsCountedAndShowsInTheNumbersOfRows) {
   EXPECT_EQ(numbers.size(), taken.rows - taken.dropped) << "what was not dropped arrives";
 }
 
-TEST(Capture, RefusesWhatDoesNotFitAReport) {
-  Bench bench;
+TYPED_TEST(Capture, RefusesWhatDoesNotFitAReport) {
+  typename TestFixture::Bench bench;
   const auto status_of = [&](firmware::CaptureRequest request) {
     return bench.ask(MessageType::start_capture, request).status;
   };
-  EXPECT_EQ(status_of({{0, 0}, 1, 0}), Status::malformed) << "no channel";
-  EXPECT_EQ(status_of({{0x7FF, 3}, 1, 0}), Status::malformed) << "13 channels";
-  EXPECT_EQ(status_of({{1u << 11, 0}, 1, 0}), Status::malformed) << "no such channel";
-  EXPECT_EQ(status_of({{1, 0}, 0, 0}), Status::malformed) << "every 0th period";
+  EXPECT_EQ(status_of({{}, 1, 0}), Status::malformed) << "no channel";
+  EXPECT_EQ(status_of({{1u << 11}, 1, 0}), Status::malformed) << "no such channel";
+  EXPECT_EQ(status_of({{1}, 0, 0}), Status::malformed) << "every 0th period";
+  firmware::CaptureRequest beyond{{1}, 1, 0};
+  beyond.channels[TestFixture::kAxes] = 1;
+  EXPECT_EQ(status_of(beyond), Status::malformed) << "no such axis";
+  if (TestFixture::kAxes > 1) {
+    EXPECT_EQ(status_of({{0x7FF, 3}, 1, 0}), Status::malformed) << "13 channels";
+  }
 }
 
-TEST(BoardProtocol, AnswersWhatItDoesNotKnow) {
-  Bench bench;
+TYPED_TEST(BoardProtocol, TellsHowManyAxesThereAreAndNothingOfOthers) {
+  typename TestFixture::Bench bench;
+  firmware::IdentityPayload identity;
+  ASSERT_TRUE(bench.ask(MessageType::identify).get(identity));
+  EXPECT_EQ(identity.axis_count, TestFixture::kAxes);
+  EXPECT_EQ(identity.parameter_count, firmware::parameter_count(TestFixture::kAxes));
+  EXPECT_EQ(bench.status().axis.size(), TestFixture::kAxes);
+  constexpr std::uint8_t kBeyond = TestFixture::kAxes;
+  EXPECT_EQ(bench.ask(MessageType::status, firmware::StatusRequest{kBeyond}).status, Status::malformed);
+  EXPECT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{kBeyond, {}, 1.0F}).status, Status::malformed);
+  EXPECT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::to(kBeyond, 1)).status, Status::malformed);
+  EXPECT_EQ(bench.ask(MessageType::read_fault_capture, firmware::FaultRowRequest{kBeyond, 0, 0}).status,
+            Status::malformed);
+  firmware::ValuesPayload part;
+  part.count = 1;
+  part.key[0] = firmware::ParameterKey::of_axis(TestFixture::kAxes, 80).code;
+  EXPECT_EQ(bench.ask(MessageType::stage, part).status, Status::unknown_parameter);
+}
+
+TYPED_TEST(BoardMotion, TheLastAxisMovesAndTheOthersStopWithIt) {
+  typename TestFixture::Bench bench;
+  constexpr std::uint8_t kLast = TestFixture::kAxes - 1;
+  ParameterValues values = this->paper_values();
+  for (std::size_t axis = 0; axis < TestFixture::kAxes; ++axis)
+    firmware_test::fit_axis(values, std::string(firmware::kAxisNames[axis]),
+                            axis % 2 == 0 ? firmware_test::kPaperX : firmware_test::kPaperY);
+  ASSERT_EQ(bench.download(values).status, Status::ok);
+  bench.run(200);
+  ASSERT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{(1u << TestFixture::kAxes) - 1}).status, Status::ok);
+  bench.run(5);
+  ASSERT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::to(kLast, 2048)).status, Status::ok);
+  for (int i = 0; i < 20; ++i) {
+    bench.run(50);
+    ASSERT_EQ(bench.ask(MessageType::heartbeat).status, Status::ok);
+  }
+  EXPECT_NEAR(static_cast<double>(bench.status().axis.at(kLast).counts()), 2048.0, 2.0);
+  bench.board.plant(kLast).set_enabled(false);  // the drive gives way, and something pushes
+  ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{kLast, {}, 50.0F}).status, Status::ok);
+  for (int i = 0; i < 100; ++i) {
+    bench.run(10);
+    ASSERT_EQ(bench.ask(MessageType::heartbeat).status, Status::ok);
+  }
+  const auto seen = bench.status();
+  EXPECT_NE(seen.axis.at(kLast).fault, 0);
+  for (std::size_t axis = 0; axis < kLast; ++axis)
+    EXPECT_EQ(seen.axis[axis].fault, static_cast<std::uint8_t>(firmware::AxisFault::other_axis_stopped)) << axis;
+}
+
+TYPED_TEST(BoardProtocol, AnswersWhatItDoesNotKnow) {
+  typename TestFixture::Bench bench;
   EXPECT_EQ(bench.ask(static_cast<MessageType>(0x44)).status, Status::unknown_request);
   EXPECT_EQ(bench.ask(MessageType::jog).status, Status::malformed);
   hal::HidReport noise{};
@@ -272,7 +363,7 @@ TEST(BoardProtocol, AnswersWhatItDoesNotKnow) {
   EXPECT_EQ(reply.status, Status::damaged);
 }
 
-TEST(BoardProtocol, FixedPointSpeaksThePhysicalUnitsOfRequests) {
+TEST(FixedPointProtocol, SpeaksThePhysicalUnitsOfRequests) {
   firmware_test::BoardOnABench<firmware::FixedPoint> bench;
   bench.fit_and_enable_x();
   ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 20.0F}).status, Status::ok);

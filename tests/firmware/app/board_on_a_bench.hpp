@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
 #include "firmware/app/protocol/server.hpp"
 #include "hal/pc/simulated_board.hpp"
 #include "tests/firmware/app/paper_values.hpp"
@@ -22,16 +26,30 @@ inline sim::DriveDescription paper_machine(const PaperAxis& paper) {
   return drive;
 }
 
-template <typename Scalar = float>
-struct BoardOnABench {
-  using Application = firmware::BoardApplication<Scalar, hal::pc::SimulatedBoard>;
+/// What a board says of itself and of each of its axes.
+struct SeenStatus : firmware::BoardStatus {
+  std::vector<firmware::AxisStatus> axis;
+};
 
-  hal::pc::SimulatedBoard board{paper_machine(kPaperX), paper_machine(kPaperY), 1};
+/// The paper's axes take turns.
+template <typename Scalar = float, std::size_t axes = hal::kAxisCount>
+struct BoardOnABench {
+  using Board = hal::pc::SimulatedBoardOf<axes>;
+  using Application = firmware::BoardApplication<Scalar, Board>;
+  static constexpr std::size_t kAxes = axes;
+
+  Board board{machines(), 1};
   Application application{board};
   firmware::ImageHeader image;
   firmware::ProtocolServer<Application> server{application, image, {}};
   std::uint16_t sequence = 0;
   std::uint16_t client = 1;  ///< who asks
+
+  static typename Board::Drives machines() {
+    typename Board::Drives drives;
+    for (std::size_t axis = 0; axis < axes; ++axis) drives[axis] = paper_machine(axis % 2 == 0 ? kPaperX : kPaperY);
+    return drives;
+  }
 
   /// Starts with what the flash holds.
   explicit BoardOnABench(const hal::pc::SimulatedFlash* flash = nullptr) {
@@ -78,7 +96,7 @@ struct BoardOnABench {
   firmware::Message download(const firmware::ParameterValues& values) {
     EXPECT_EQ(ask(firmware::MessageType::begin_staging, firmware::BeginRequest{}).status, firmware::Status::ok);
     firmware::ValuesPayload part;
-    for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+    for (std::size_t place = 0; place < values.size(); ++place) {
       if (values.at(place) == application.active().at(place)) continue;
       part.key[part.count] = firmware::key_at(place).code;
       part.bits[part.count++] = std::bit_cast<std::uint32_t>(values.at(place));
@@ -92,15 +110,25 @@ struct BoardOnABench {
     return ask(firmware::MessageType::commit, firmware::CommitRequest{firmware::set_crc(values)});
   }
 
-  firmware::StatusPayload status() {
-    firmware::StatusPayload payload;
-    EXPECT_TRUE(ask(firmware::MessageType::status).get(payload));
-    return payload;
+  /// As many requests as it takes.
+  SeenStatus status() {
+    SeenStatus seen;
+    do {
+      const firmware::StatusRequest from{static_cast<std::uint8_t>(seen.axis.size())};
+      const firmware::Message reply = ask(firmware::MessageType::status, from);
+      firmware::StatusPayload part;
+      std::memcpy(&part, reply.payload.data(), reply.length);
+      static_cast<firmware::BoardStatus&>(seen) = part.board;
+      const std::size_t told = (reply.length - sizeof part.board) / sizeof part.axis[0];
+      if (told == 0) throw std::runtime_error("a status without axes");
+      seen.axis.insert(seen.axis.end(), part.axis.begin(), part.axis.begin() + static_cast<std::ptrdiff_t>(told));
+    } while (seen.axis.size() < seen.axis_count);
+    return seen;
   }
 
   /// Parameters of the paper's x axis, self-test passed, enabled.
   void fit_and_enable_x() {
-    ASSERT_EQ(download(paper_values()).status, firmware::Status::ok);
+    ASSERT_EQ(download(paper_values(axes)).status, firmware::Status::ok);
     run(200);
     ASSERT_EQ(ask(firmware::MessageType::enable, firmware::AxesRequest{1}).status, firmware::Status::ok);
     run(5);

@@ -12,7 +12,7 @@ namespace firmware_test {
 
 /// "x.kalman.k11", "control.rate". Throws for an unknown name.
 inline std::size_t place_named(std::string_view name) {
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kMostAxes); ++place) {
     const std::size_t owner = firmware::key_at(place).owner();
     const std::string_view row = firmware::kParameters[firmware::row_at(place)].name;
     if ((owner == 0 ? std::string() : std::string(firmware::kAxisNames[owner - 1]) + ".") + std::string(row) == name)
@@ -54,8 +54,8 @@ inline void fit_axis(firmware::ParameterValues& values, const std::string& axis,
   }
 }
 
-inline firmware::ParameterValues paper_values() {
-  firmware::ParameterValues values;
+inline firmware::ParameterValues paper_values(std::size_t axes = hal::kAxisCount) {
+  firmware::ParameterValues values(axes);
   fit_axis(values, "x", kPaperX);
   return values;
 }

@@ -31,7 +31,7 @@ SimulatedFlash blank_flash() { return SimulatedFlash(2, 2048, 4); }
 /// A set in which every parameter differs from every other generation's.
 ParameterValues generation(int number) {
   ParameterValues values;
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     const firmware::ParameterRule& rule = firmware::rule_at(place);
     const float toggled = static_cast<float>(number % 2);
     const float whole = rule.minimum + static_cast<float>(number);
@@ -144,7 +144,7 @@ TEST(PowerCut, AtEveryOperationOfTwoSavesLeavesTheOldSetOrTheNew) {
   save(flash, generation(1));
   // An erase, two words an entry, six of the header, two marks: in each save.
   EXPECT_EQ(cut_everywhere(flash, generation(1), StoreState::loaded),
-            4 * 2 * (1 + 2 * firmware::kParameterCount + 6 + 2));
+            4 * 2 * (1 + 2 * firmware::parameter_count(hal::kAxisCount) + 6 + 2));
 }
 
 TEST(PowerCut, AtEveryOperationOfTheFirstSaveEverLeavesNothingOrTheNewSet) {
@@ -183,7 +183,8 @@ TEST(DamagedStore, IsNamedAndNeverReplacedByTheSetBefore) {
   save(whole, generation(1));
   save(whole, generation(2));
   const std::size_t newest = 1;
-  const std::size_t used = firmware::kEntriesOffset + firmware::kParameterCount * sizeof(firmware::StoredEntry);
+  const std::size_t used =
+      firmware::kEntriesOffset + firmware::parameter_count(hal::kAxisCount) * sizeof(firmware::StoredEntry);
   const std::size_t superseded_mark = firmware::kMarksOffset + offsetof(firmware::StoredMarks, superseded);
   for (std::size_t offset = 0; offset < used; ++offset) {
     if (offset / 4 == superseded_mark / 4) continue;

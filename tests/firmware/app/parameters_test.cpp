@@ -103,7 +103,7 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   compensate(compensated);
   const auto before_compensated = behaviour<TypeParam>(compensated);
   ASSERT_EQ(before_compensated.first, SetProblem{});
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
     // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
     if (place == place_named("host.timeout") || place == place_named("host.standing_timeout")) continue;
@@ -128,8 +128,7 @@ TYPED_TEST(Parameters, ASlowerControlRateIsTakenTogetherWithItsPeriod) {
 TYPED_TEST(Parameters, InitialValuesFitNoAxisAndAreAdmissible) {
   const ParameterValues initial;
   EXPECT_EQ(firmware::check<TypeParam>(initial), SetProblem{});
-  for (std::size_t axis = 0; axis < firmware::kAxisCount; ++axis)
-    EXPECT_FALSE(initial.axis(axis).get<"drive.fitted">());
+  for (std::size_t axis = 0; axis < hal::kAxisCount; ++axis) EXPECT_FALSE(initial.axis(axis).get<"drive.fitted">());
 }
 
 TYPED_TEST(Parameters, AnAxisThatIsFittedButNotDesignedIsRefused) {
@@ -140,7 +139,7 @@ TYPED_TEST(Parameters, AnAxisThatIsFittedButNotDesignedIsRefused) {
 }
 
 TYPED_TEST(Parameters, ValuesBeyondTheirRangeAreNamed) {
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place) {
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     const firmware::ParameterRule& rule = firmware::rule_at(place);
     const float infinity = std::numeric_limits<float>::infinity();
     for (const auto& [value, kind] :
@@ -180,13 +179,14 @@ TEST(ParameterTable, WholeNumbersAndSwitchesTakeNoFractions) {
 }
 
 TEST(ParameterTable, KeysAndPlacesAreOneToOne) {
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place)
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place)
     EXPECT_EQ(firmware::place_of(firmware::key_at(place)), place);
   EXPECT_EQ(firmware::place_of(ParameterKey{0}), std::nullopt);
   EXPECT_EQ(firmware::place_of(ParameterKey::of_board(0xFFF)), std::nullopt);
   EXPECT_EQ(firmware::place_of(ParameterKey::of_axis(0, 1)), std::nullopt) << "control.rate belongs to the board";
   EXPECT_EQ(firmware::place_of(ParameterKey::of_board(64)), std::nullopt) << "kalman.k11 belongs to an axis";
-  EXPECT_EQ(firmware::place_of(ParameterKey::of_axis(firmware::kAxisCount, 64)), std::nullopt);
+  EXPECT_EQ(firmware::place_of(ParameterKey::of_axis(hal::kMostAxes, 64)), std::nullopt);
+  EXPECT_EQ(ParameterValues(1).place_of(ParameterKey::of_axis(1, 64)), std::nullopt) << "the board has one axis";
 }
 
 /// As released; a row may go, but its id never means anything else.

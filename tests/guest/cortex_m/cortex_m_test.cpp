@@ -84,7 +84,7 @@ TEST_P(CortexM, KeepsParametersOverAReset) {
   if (GetParam() == host::HidBackend::libusb) firmware_test::fit_axis(wanted, "y", firmware_test::kPaperY);
   {
     BoardClient board = client();
-    const firmware::StatusPayload before = board.status();
+    const host::BoardState before = board.status();
     const firmware::IdentityPayload identity = board.identify();
     EXPECT_STREQ(identity.board.data(), "qemu-usb");
     EXPECT_EQ(identity.schema_hash, firmware::kSchemaHash);

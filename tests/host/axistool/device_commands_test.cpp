@@ -169,6 +169,38 @@ TEST_F(DeviceCommands, TellAboutTheBoard) {
   EXPECT_EQ(run("clear-faults").exit_code, 0);
 }
 
+/// No command may believe that a board has two axes.
+class AxesOfABoard : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Counts, AxesOfABoard, testing::Values(1, 3));
+
+TEST_P(AxesOfABoard, AreAsManyAsItSays) {
+  const TemporaryFolder folder;
+  const std::string last = GetParam() == 1 ? "x" : "z", next = GetParam() == 1 ? "y" : "a";
+  const SimulatedBoardProcess board(folder.path(""),
+                                    {"--axes", std::to_string(GetParam()), "--" + last, kCase + "/model.toml"});
+  const auto json = [&](const std::string& command) {
+    return nlohmann::json::parse(board.run(command + " --json -", "2>/dev/null").output, nullptr, false);
+  };
+  EXPECT_EQ(json("info")["axes"].size(), GetParam());
+  EXPECT_EQ(json("faults")["axes"].size(), GetParam());
+  const std::string params = folder.path("params.toml");
+  ASSERT_EQ(run_axistool("design " + kCase + "/model.toml -o " + params).exit_code, 0);
+  const std::string meant = params + " --axis " + last;
+  ASSERT_EQ(board.run("set-params " + meant + " host.timeout=5 --save").exit_code, 0);
+  EXPECT_EQ(board.run("diff-params " + meant).exit_code, 0);
+  EXPECT_EQ(board.run("set-params " + next + ".feedback.k1=1").exit_code, 9) << "there is no such axis";
+  EXPECT_EQ(board.run("get-params " + next).exit_code, 9);
+  ASSERT_EQ(board.run("enable " + last + " --yes").exit_code, 0);
+  EXPECT_EQ(board.run("jog " + next + " 1").exit_code, 2);
+  EXPECT_NEAR(json("move " + last + " 2 --relative")["to"].get<double>(), 2.0, 0.01);
+  EXPECT_EQ(board.run("disable").exit_code, 0);
+  ASSERT_EQ(board.run("backup " + folder.path("backup.toml")).exit_code, 0);
+  ASSERT_EQ(board.run("reset-params --yes").exit_code, 0);
+  ASSERT_EQ(board.run("restore " + folder.path("backup.toml") + " --yes").exit_code, 0);
+  EXPECT_EQ(board.run("diff-params " + meant).exit_code, 0);
+  EXPECT_EQ(json("bench --for 0.5")["lost_rows"], 0);
+}
+
 TEST(DeviceOption, NamesWhatItTakes) {
   const ProgramRun odd = run_axistool("info --device com3");
   EXPECT_EQ(odd.exit_code, 2);

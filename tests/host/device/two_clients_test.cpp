@@ -29,7 +29,7 @@ class BoardAtASocket {
  private:
   TemporaryFolder folder_;
   std::string path_ = folder_.path("board.socket");
-  host::SimulatedDevice device_{{*host::paper_drive("x"), *host::paper_drive("y"), {}, 1}};
+  host::SimulatedDevice device_{{{{*host::paper_drive("x")}, {*host::paper_drive("y")}}, {}, 1}};
   host::OwnedDescriptor listener_ = host::listen_at_socket(path_);
   std::atomic<bool> stop_ = false;
   std::thread thread_;
@@ -50,7 +50,7 @@ TEST(TwoPrograms, AMonitorDoesNotKeepTheMotionOfADeadProgramAlive) {
     host::enable_and_wait(mover, 1);
     mover.jog(0, 5.0);
   }
-  firmware::StatusPayload status = monitor.status();
+  host::BoardState status = monitor.status();
   for (int i = 0; i < 2000 && status.axis[0].fault == 0; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     status = monitor.status();

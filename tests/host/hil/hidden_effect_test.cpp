@@ -25,7 +25,7 @@ TEST(HiddenEffect, IsFoundInTheRecordsThatItSpoiltAndCompensated) {
   const host::ScenarioRun check = host::run_scenario(host::read_scenario(folder + "hidden-effect-check.toml"));
   // The paper's machine kept 12 um (section 4) where its model promised 4.
   EXPECT_GT(worst_contour_um(before), 10.0);
-  for (std::size_t i = 0; i < host::kMachineAxes; ++i) {
+  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     const sim::DriveDescription nominal = *host::paper_drive(host::kAxisNames[i]);
     const auto improved =
         host::improve(nominal, host::MeasurementGate(nominal).admit({before.records[i]}, {check.records[i]}));

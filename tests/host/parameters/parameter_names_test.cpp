@@ -19,7 +19,7 @@ std::string complaint(const char* name, SetProblemKind kind, float value) {
 }
 
 TEST(ParameterNames, AreTheSameBothWays) {
-  for (std::size_t place = 0; place < firmware::kParameterCount; ++place)
+  for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place)
     EXPECT_EQ(host::place_named(host::full_name(place)), place);
   EXPECT_EQ(host::place_named("kalman.k11"), std::nullopt) << "the axis is missing";
   EXPECT_EQ(host::place_named("x.control.rate"), std::nullopt);
@@ -65,7 +65,7 @@ TEST(ParameterPage, IsTheOneInTheRepository) {
 
 TEST(ParameterPage, DataHoldsEveryParameter) {
   const nlohmann::json table = host::parameter_table_json();
-  EXPECT_EQ(table["parameters"].size(), firmware::kParameterCount);
+  EXPECT_EQ(table["parameters"].size(), firmware::parameter_count(hal::kAxisCount));
   EXPECT_EQ(table["schema_hash"], firmware::kSchemaHash);
 }
 

@@ -6,6 +6,7 @@
 #include "firmware/boards/pil/value_axis.hpp"
 #include "firmware/core/fixed_units.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
+#include "hal/axis_count.hpp"
 #include "tests/firmware/paper_axes.hpp"
 #include "tests/target/images/instruction_counter.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 using namespace target_image;
 using firmware::boards::ValueAxis;
 using Scalar = AXIS_COST_SCALAR;
-using Axes = firmware::AxisGroup<Scalar, ValueAxis>;
+using Axes = firmware::AxisGroup<Scalar, ValueAxis, hal::kAxisCount>;
 
 template <typename T>
 constexpr firmware::AxisParameters<T> in_scalar(const firmware_test::PaperAxis& axis) {
@@ -40,8 +41,8 @@ constexpr firmware::AxisParameters<Scalar> with_everything_on(const firmware_tes
 constexpr std::array kParameters{with_everything_on(firmware_test::kPaperX),
                                  with_everything_on(firmware_test::kPaperY)};
 
-std::array<ValueAxis, 2> io;
-[[gnu::section(".ccm")]] Axes axes(io[0], io[1]);
+std::array<ValueAxis, hal::kAxisCount> io;
+[[gnu::section(".ccm")]] Axes axes(io);
 std::uint32_t now_us = 0;
 
 std::uint32_t random_state = 1;
