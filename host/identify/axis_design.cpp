@@ -66,6 +66,19 @@ void describe_observer(AxisDesign& design, double sample_period_s) {
   }
 }
 
+/// Gains that are numbers, and an observer that settles.
+void require_usable(const AxisDesign& design) {
+  const bool settles = std::ranges::all_of(design.observer_poles, [](const auto& z) { return std::abs(z) < 1.0; });
+  if (settles && design.Kobs.allFinite() && design.Kc.allFinite()) return;
+  throw Failure(
+      ExitCode::refused,
+      fmt::format("no usable design: {}; give variances and a bandwidth that belong to one machine (--rwd {:g} "
+                  "V², --rx {:g}, --ru {:g} V², --fc {:g} Hz, --zeta {:g})",
+                  settles ? "gains that are no numbers" : "the observer would not settle",
+                  design.used.disturbance_variance, design.used.position_variance.value_or(0.0),
+                  design.used.command_variance.value_or(0.0), design.used.bandwidth_Hz, design.used.damping));
+}
+
 }  // namespace
 
 Eigen::Matrix3d solve_estimator_dare(const Eigen::Matrix3d& A, const Eigen::MatrixXd& C, const Eigen::Matrix3d& Q,
@@ -118,6 +131,7 @@ AxisDesign design_axis(const sim::DriveDescription& model, const DesignOptions& 
   design.Kobs = P * C.transpose() * (C * P * C.transpose() + R).inverse();
   describe_observer(design, period_s);
   design.Kc = place_poles(sampled, options.bandwidth_Hz, options.damping, period_s);
+  require_usable(design);
   return design;
 }
 

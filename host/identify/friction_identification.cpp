@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "host/exit_codes.hpp"
 #include "host/identify/encoder_step.hpp"
+#include "host/identify/plausibility.hpp"
 
 namespace host {
 
@@ -177,6 +179,7 @@ FrictionIdentification identify_friction(const Measurements& measured, const sim
   cross_check(result);
   if (symmetric) warn_of_unequal_directions(result);
   warn_of_other_effects(result);
+  std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
   return result;
 }
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/identify/plausibility.hpp"
 #include "host/record/channel_checks.hpp"
 
 namespace host {
@@ -153,6 +155,7 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
 
   result.model = model_from(drive, result.estimate, origin_of(given));
   if (result.tach_noise_variance && tachometer) result.model.data.tach_noise_variance = result.tach_noise_variance;
+  std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
   result.relative_error = relative_error(result.model, records, settled);
   warn_of_tachometer(result, corrected);
   if (const std::string kinds = dropped_effects(drive); !kinds.empty()) {

@@ -31,6 +31,8 @@ inline constexpr DataSheetField kDataSheetFields[] = {
     {"", "lead_mm_per_rad", sim::DriveKind::rotary, &sim::DataSheet::lead, false, Presence::required},
     {"", "force_constant_N_per_V", sim::DriveKind::linear, &sim::DataSheet::force_constant_N_per_V, false,
      Presence::required},
+    {"", "force_constant_N_per_A", sim::DriveKind::linear, &sim::DataSheet::torque_constant_Nm_per_A, false,
+     Presence::optional},
     {"", "sample_period_s", {}, &sim::DataSheet::sample_period_s, false, Presence::required},
     {"dac", "resolution_V", {}, &sim::DataSheet::dac_resolution_V, true, Presence::optional},
     {"dac", "limit_V", {}, &sim::DataSheet::dac_limit_V, false, Presence::optional},

@@ -1,5 +1,7 @@
 #include "host/model/effect_forms.hpp"
 
+#include <cmath>
+
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -21,6 +23,11 @@ std::vector<std::string_view> effect_kinds() {
   std::vector<std::string_view> kinds;
   for (const sim::EffectInfo* info : sim::catalogue()) kinds.push_back(info->kind);
   return kinds;
+}
+
+bool holds(const std::array<double, 2>& interval, double value) {
+  const double rounding = 1e-9 * std::abs(value);
+  return interval[0] - rounding <= value && value <= interval[1] + rounding;
 }
 
 }  // namespace host

@@ -1,6 +1,7 @@
 // Effects whose parameters may be given per direction or once for both.
 #pragma once
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -16,5 +17,8 @@ bool may_repeat(const sim::EffectInfo& info);
 
 /// All kinds of the catalogue, for messages.
 std::vector<std::string_view> effect_kinds();
+
+/// Whether an interval is one of this value: it holds it, to the rounding of its ends.
+bool holds(const std::array<double, 2>& interval, double value);
 
 }  // namespace host

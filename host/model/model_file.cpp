@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "host/model/effect_forms.hpp"
 #include "host/nearest_name.hpp"
 #include "host/read_file.hpp"
+#include "host/toml_text.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -26,13 +26,8 @@ constexpr std::string_view kIntervalSuffix = "_ci95";
 
 class ModelReader {
  public:
-  ModelReader(std::string_view text, std::string_view name) : name_(name) {
-    try {
-      root_ = toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      fail(error.source().begin.line, "not valid TOML: {}; correct the line", error.description());
-    }
-  }
+  ModelReader(std::string_view text, std::string_view name, Bounds bounds = Bounds::enforced)
+      : name_(name), bounds_(bounds), root_(parse_toml(text, name)) {}
 
   sim::DriveDescription read(bool effects_required) {
     refuse_unknown(root_, {"format", "name", "drive", "effect"}, "at the top");
@@ -126,6 +121,9 @@ class ModelReader {
   void read_field(const toml::table& drive, const DataSheetField& field) {
     const toml::table* table = field.table.empty() ? &drive : table_at(drive, field.table);
     const toml::node* node = table == nullptr ? nullptr : table->get(field.key);
+    // Where the force is known by the current alone, a volt stands for an ampere.
+    if (node == nullptr && field.value == &sim::DataSheet::force_constant_N_per_V)
+      node = drive.get("force_constant_N_per_A");
     if (node == nullptr && field.presence == Presence::required)
       fail(line_of(drive), "missing field {} in [drive]; add {} = … from the data sheet", field.key, field.key);
     if (node == nullptr) return;
@@ -217,20 +215,23 @@ class ModelReader {
       fail(line_of(*interval), "{} stands without {}; add the value, or remove its interval", interval_key, key);
     if (node == nullptr) return;
     const double value = number_of(*node, key);
-    if (value < parameter.lower || value > parameter.upper)
+    if (bounds_ == Bounds::enforced && (value < parameter.lower || value > parameter.upper))
       fail(line_of(*node), "{}: {} is out of bounds ({}); it must lie within {} … {}", key, value, parameter.doc,
            parameter.lower, parameter.upper);
     const std::string id(parameter.id);
     entry.parameters[id] = value;
-    if (interval != nullptr) entry.ci95[id] = interval_of(*interval, interval_key);
+    if (interval != nullptr) entry.ci95[id] = interval_of(*interval, interval_key, value);
   }
 
-  std::array<double, 2> interval_of(const toml::node& node, std::string_view key) const {
+  std::array<double, 2> interval_of(const toml::node& node, std::string_view key, double value) const {
     const toml::array* ends = node.as_array();
     if (ends == nullptr || ends->size() != 2) fail(line_of(node), "{}: write the interval as [low, high]", key);
     const std::array<double, 2> interval = {number_of(*ends->get(0), key), number_of(*ends->get(1), key)};
     if (interval[0] > interval[1])
       fail(line_of(node), "{}: its low end {} is above its high end {}; swap them", key, interval[0], interval[1]);
+    if (!holds(interval, value))
+      fail(line_of(node), "{}: the interval {} … {} does not hold the value {}; remove the one that is not of this fit",
+           key, interval[0], interval[1], value);
     return interval;
   }
 
@@ -262,21 +263,24 @@ class ModelReader {
   }
 
   std::string_view name_;
+  Bounds bounds_;
   toml::table root_;
   sim::DriveDescription model_;
 };
 
 }  // namespace
 
-sim::DriveDescription parse_model(std::string_view text, std::string_view name) {
-  return ModelReader(text, name).read(true);
+sim::DriveDescription parse_model(std::string_view text, std::string_view name, Bounds bounds) {
+  return ModelReader(text, name, bounds).read(true);
 }
 
 sim::DriveDescription parse_drive(std::string_view text, std::string_view name) {
   return ModelReader(text, name).read(false);
 }
 
-sim::DriveDescription read_model(const std::string& path) { return parse_model(read_file(path), path); }
+sim::DriveDescription read_model(const std::string& path, Bounds bounds) {
+  return parse_model(read_file(path), path, bounds);
+}
 
 sim::DriveDescription read_drive(const std::string& path) { return parse_drive(read_file(path), path); }
 

@@ -8,14 +8,18 @@
 
 namespace host {
 
-/// Reads a model. Throws Failure(bad_input) naming file, line, field and remedy; unknown fields are errors too.
-sim::DriveDescription read_model(const std::string& path);
+/// Whether a reader refuses values outside their physical bounds, or leaves them to doubts_of().
+enum class Bounds { enforced, examined_later };
+
+/// Reads a model. Throws Failure(bad_input) naming file, line, field and remedy; unknown fields are errors too, and an
+/// interval that does not hold its value.
+sim::DriveDescription read_model(const std::string& path, Bounds bounds = Bounds::enforced);
 
 /// Reads the data sheet of a drive: a model file whose effects may be absent.
 sim::DriveDescription read_drive(const std::string& path);
 
 /// read_model and read_drive from text that is already in memory; `name` stands for the path in messages.
-sim::DriveDescription parse_model(std::string_view text, std::string_view name);
+sim::DriveDescription parse_model(std::string_view text, std::string_view name, Bounds bounds = Bounds::enforced);
 sim::DriveDescription parse_drive(std::string_view text, std::string_view name);
 
 /// Writes a model beside its destination, fsyncs, renames. Reading it again gives the same numbers to the last bit, and

@@ -6,6 +6,7 @@
 #include "host/atomic_file.hpp"
 #include "host/exit_codes.hpp"
 #include "host/model/data_sheet_fields.hpp"
+#include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
 #include "sim/catalogue.hpp"
 
@@ -41,6 +42,7 @@ void append_data_sheet(const sim::DataSheet& data, std::string& text) {
   std::string_view table;
   for (const DataSheetField& field : kDataSheetFields) {
     if (!field.belongs_to(data.kind) || field.presence == Presence::alternative_unit) continue;
+    if (data.*field.value == 0.0 && !field.zero_allowed && field.presence == Presence::optional) continue;
     if (field.table != table) fmt::format_to(out, "\n[drive.{}]\n", field.table);
     table = field.table;
     fmt::format_to(out, "{} = {}\n", field.key, number(data.*field.value));
@@ -62,7 +64,9 @@ void append_effect(const sim::EffectEntry& entry, sim::DriveKind kind, std::stri
     const std::string id(parameter.id);
     if (!entry.has(id)) continue;
     fmt::format_to(out, "{} = {}\n", parameter.key(kind), number(entry.at(id)));
-    if (const auto interval = entry.ci95.find(id); interval != entry.ci95.end())
+    // An interval that does not hold the value belongs to an earlier fit.
+    if (const auto interval = entry.ci95.find(id);
+        interval != entry.ci95.end() && holds(interval->second, entry.at(id)))
       fmt::format_to(out, "{}_ci95 = [{}, {}]\n", parameter.key(kind), number(interval->second[0]),
                      number(interval->second[1]));
   }

@@ -208,4 +208,15 @@ TEST(Design, RefusesWhatCannotBeDesignedAndSaysWhy) {
   EXPECT_THAT(message(model_of(kX), too_fast), testing::HasSubstr("--fc"));
 }
 
+TEST(Design, RefusesGainsThatAreNoNumbers) {
+  host::DesignOptions endless;
+  endless.disturbance_variance = 1e300;
+  try {
+    host::design_axis(model_of(kX), endless);
+    FAIL() << "gains of 1e300 V² a sample";
+  } catch (const host::Failure& failure) {
+    EXPECT_THAT(failure.what(), testing::HasSubstr("--rwd"));
+  }
+}
+
 }  // namespace

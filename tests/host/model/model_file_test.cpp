@@ -135,6 +135,25 @@ TEST(ReadModel, SeveralHarmonicsButOneInertia) {
               AllOf(HasSubstr("line 37"), HasSubstr("inertia stands in the model twice")));
 }
 
+/// Taking apart a tree of 50,000 levels exhausts the stack, so that such keys are refused before one is made.
+TEST(ReadModel, KeysOfEndlesslyManyParts) {
+  std::string key = "a", quoted = "'a'";
+  for (int k = 0; k < 50'000; ++k) key += ".a", quoted += " . 'a'";
+  for (const std::string& line : {key + " = 1", "[" + key + "]", "[[" + quoted + "]]", "a = { " + key + " = 1 }"})
+    EXPECT_THAT(message_of("name = \"x\"", line), AllOf(HasSubstr("line 2"), HasSubstr("parts")));
+}
+
+TEST(ReadModel, DotsInTextsAndNumbersAreNoKeys) {
+  const std::string dots(100, '.');
+  const std::string text = replaced(kPaperX, "name = \"x\"", "name = \"" + dots + "\"  # " + dots);
+  EXPECT_EQ(host::parse_model(text, "drive.toml").name, dots);
+}
+
+TEST(ReadModel, AnIntervalHoldsItsValue) {
+  EXPECT_THAT(message_of("[0.0076, 0.0077]", "[0.0077, 0.0078]"),
+              AllOf(HasSubstr("line 19"), HasSubstr("does not hold the value 0.00765")));
+}
+
 TEST(ReadModel, NotToml) {
   EXPECT_THAT(message_of("name = \"x\"", "name = x"), AllOf(HasSubstr("line 2"), HasSubstr("not valid TOML")));
 }
@@ -259,6 +278,12 @@ TEST(WriteModel, WritesNumbersAsPeopleDo) {
   EXPECT_THAT(text, AllOf(HasSubstr("J_kg_m2 = 0.00765\nJ_kg_m2_ci95 = [0.0076, 0.0077]\n"),
                           HasSubstr("resolution_V = 0.00030517578125\nlimit_V = 10.0\n"),
                           HasSubstr("negative_Nm = -1.656\n"), HasSubstr("from = \"steps.csv\"\n")));
+}
+
+TEST(WriteModel, LeavesOutAnIntervalOfAnotherValue) {
+  sim::DriveDescription model = host::parse_model(kPaperX, "drive.toml");
+  model.find("inertia")->parameters["J"] = 0.009;
+  EXPECT_TRUE(host::parse_model(host::format_model(model), "again").find("inertia")->ci95.empty());
 }
 
 TEST(WriteModel, RefusesAFailedFit) {
