@@ -159,7 +159,13 @@ ModelComparison compare_model(const sim::DriveDescription& model, const Measurem
 Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord prepared) {
   const sim::Drive drive(model);
   const std::size_t end = prepared.windows.back().begin + prepared.windows.back().length;
-  if (end + 1 < prepared.record->size()) prepared.windows.push_back({end, prepared.record->size() - 1 - end});
+  if (end + 1 < prepared.record->size()) {
+    prepared.windows.push_back({end, prepared.record->size() - 1 - end});
+    auto weights = *prepared.shift_weights;
+    if (end / prepared.windows.front().length == weights.size())
+      weights.push_back(prepared.smoother.shift_weights(end));
+    prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
+  }
   Prediction prediction;
   predict(drive, prepared, prediction);
   const sim::DriveState start = restart_states(drive, prepared).front();

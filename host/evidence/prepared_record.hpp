@@ -34,7 +34,10 @@ struct PreparedRecord {
   double window_s() const {
     return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
   }
-  const ShiftWeights& weights_of(const Window& window) const { return (*shift_weights)[window.begin / window.length]; }
+  /// Of a window that begins at a multiple of their common length, though it may be a shorter one at the end.
+  const ShiftWeights& weights_of(const Window& window) const {
+    return (*shift_weights)[window.begin / windows.front().length];
+  }
 };
 
 /// `base` gives the inertia and viscous friction that the smoother needs. Throws Failure(bad_input) for a record

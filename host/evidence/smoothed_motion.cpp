@@ -109,11 +109,20 @@ void doubt_command(const std::vector<double>& u_V, double period_s, Observations
 
 std::vector<double> command_volts(const Record& record, const sim::DataSheet& data) {
   if (!record.u_V.empty()) return record.u_V;
-  if (record.i_A.empty() || data.amplifier_gain_A_per_V <= 0.0)
-    throw Failure(ExitCode::bad_input,
-                  record.path + ": no column u_V, and i_A needs amplifier_gain_A_per_V in the model");
+  const double gain_A_per_V = data.kind == sim::DriveKind::rotary ? data.amplifier_gain_A_per_V
+                              : data.torque_constant_Nm_per_A > 0.0
+                                  ? data.effort_per_volt() / data.torque_constant_Nm_per_A
+                                  : 0.0;
+  if (record.i_A.empty())
+    throw Failure(ExitCode::bad_input, record.path +
+                                           ": no effort was recorded (u_V or i_A), which this needs; axistool compare "
+                                           "tells of the tracking error");
+  if (gain_A_per_V <= 0.0)
+    throw Failure(ExitCode::bad_input, record.path +
+                                           ": no column u_V, and i_A needs amplifier_gain_A_per_V (a linear drive: "
+                                           "force_constant_N_per_A) in the model");
   std::vector<double> u_V(record.i_A.size());
-  std::ranges::transform(record.i_A, u_V.begin(), [&](double i_A) { return i_A / data.amplifier_gain_A_per_V; });
+  std::ranges::transform(record.i_A, u_V.begin(), [&](double i_A) { return i_A / gain_A_per_V; });
   return u_V;
 }
 

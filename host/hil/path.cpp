@@ -123,7 +123,7 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
   profile.start(planned.plan);
   std::vector<std::array<firmware::Increment, 2>> increments;
   firmware::CountPosition travelled;
-  std::array<firmware::Increment, 2> given{};
+  std::array<double, 2> given{};  // on the grid below
   while (!profile.is_done()) {
     travelled.advance(profile.next());
     const double distance_mm =
@@ -132,11 +132,18 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
     const std::array<double, 2> position_mm{point.x, point.y};
     std::array<firmware::Increment, 2> step{};
     for (std::size_t i = 0; i < 2; ++i) {
-      // Below 2^-20 counts the axis does not tell a difference; keeping to that grid keeps doubles exact.
-      constexpr double kGrid = 1 << 20;
-      const auto target = static_cast<firmware::Increment>(std::llround(position_mm[i] / count_mm[i] * kGrid)) *
-                          (firmware::kOneCount >> 20);
-      step[i] = target - given[i];
+      // Below 2^-20 counts the axis does not tell a difference; on that grid doubles are exact up to 2^33 counts. As
+      // increments whole positions would not fit: only their differences are made ones.
+      constexpr double kGrid = 1 << 20, kFarthest = 0x1p53, kLargestStep = 16384 * kGrid;  // as motion limits have it
+      const double target = std::round(position_mm[i] / count_mm[i] * kGrid);
+      const double change = target - given[i];
+      if (!(std::abs(target) <= kFarthest) || !(std::abs(change) <= kLargestStep))
+        throw Failure(
+            ExitCode::bad_input,
+            fmt::format("a path of {:g} mm at {:g} mm/s is outside the range of an encoder with steps of {:g} "
+                        "mm: smaller, or slower",
+                        path.length(), limits.feed, count_mm[i]));
+      step[i] = static_cast<firmware::Increment>(change) * (firmware::kOneCount >> 20);
       given[i] = target;
     }
     increments.push_back(step);

@@ -6,7 +6,9 @@
 #include "host/identify/paper_drives.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
+#include "host/output_target.hpp"
 #include "host/read_file.hpp"
+#include "host/toml_text.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -16,19 +18,13 @@ namespace {
 using Names = std::vector<std::string_view>;
 
 constexpr double kLongest_s = 600.0;
+constexpr double kFarthest_mm = 1e6;
 const Names kAxes(kAxisNames.begin(), kAxisNames.end());
 const Names kMoves{"jog", "move_to", "stop", "circle", "square", "enable", "disable", "clear"};
 
 class ScenarioReader {
  public:
-  ScenarioReader(std::string_view text, const std::string& path) : path_(path) {
-    try {
-      root_ = toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      throw Failure(ExitCode::bad_input, fmt::format("{}: line {}: not valid TOML: {}; correct the line", path,
-                                                     error.source().begin.line, error.description()));
-    }
-  }
+  ScenarioReader(std::string_view text, const std::string& path) : path_(path), root_(parse_toml(text, path)) {}
 
   Scenario read() {
     TomlFields top = fields(root_, "the top");
@@ -69,6 +65,7 @@ class ScenarioReader {
       from.fail(key, fmt::format("there is no model file '{}'; name one beside the scenario, or write \"paper x\" or "
                                  "\"paper y\"",
                                  file.string()));
+    protect_input(file.string());
     return read_model(file.string());
   }
 
@@ -138,21 +135,28 @@ class ScenarioReader {
       move.axis = from.choice("axis", kAxes);
       if (move.kind == MoveKind::jog) move.speed_mm_s = from.number("speed_mm_s");
       if (move.kind == MoveKind::move_to) move.target_mm = from.number("target_mm");
-      if (std::abs(move.target_mm) > 1e6) from.fail("target_mm", "it must be within 1e6 mm");
+      if (std::abs(move.target_mm) > kFarthest_mm)
+        from.fail("target_mm", fmt::format("it must be within {:g} mm", kFarthest_mm));
     }
     from.refuse_rest();
     scenario_.moves.push_back(std::move(move));
   }
 
+  static double length_mm(TomlFields& from, std::string_view key, double otherwise) {
+    const double length = from.positive(key, otherwise);
+    if (length > kFarthest_mm) from.fail(key, fmt::format("it must be at most {:g} mm", kFarthest_mm));
+    return length;
+  }
+
   static void read_path(TomlFields& from, ScenarioMove& move) {
     if (move.kind == MoveKind::circle) {
-      const double radius = from.positive("radius_mm", 35.0);
+      const double radius = length_mm(from, "radius_mm", 35.0);
       const double turns = from.positive("turns", 1.0);
       if (turns > 100.0 || turns != static_cast<int>(turns))
         from.fail("turns", "a whole number from 1 to 100 belongs here");
       move.path = Path::circle(radius, static_cast<int>(turns));
     } else {
-      const double side = from.positive("side_mm", 40.0), corner = from.positive("corner_mm", 8.0);
+      const double side = length_mm(from, "side_mm", 40.0), corner = from.positive("corner_mm", 8.0);
       if (2.0 * corner >= side) from.fail("corner_mm", "it must be below half of side_mm");
       move.path = Path::rounded_square(side, corner);
     }

@@ -72,13 +72,13 @@ TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
   plot.t_s = record.t_s;
   plot.panels = {
       {"position", "mm", {{"encoder", SeriesRole::measured, record.x}, {"reference", SeriesRole::model, record.x_ref}}},
-      {"speed",
-       "rad/s",
-       {{"tachometer", SeriesRole::measured, record.w}, {"reference", SeriesRole::model, record.w_ref}}},
+      {"speed", "rad/s", {{"reference", SeriesRole::model, record.w_ref}}},
       {"command",
        "V",
        {{"D/A converter", SeriesRole::other, record.u_V},
         {"disturbance", SeriesRole::residual, run.disturbance_V[axis]}}}};
+  if (record.has_speed())
+    plot.panels[1].traces.insert(plot.panels[1].traces.begin(), {"tachometer", SeriesRole::measured, record.w});
   return plot;
 }
 

@@ -23,9 +23,20 @@ double percentile_of_magnitude(std::vector<double> values, double share) {
   return *rank;
 }
 
+/// The largest of what was recorded to drive the axis.
+std::string largest_seen(const ExcitationSummary& summary) {
+  return summary.peak_command_V > 0.0 || summary.peak_current_A == 0.0
+             ? fmt::format("commands up to {:.2g} V", summary.peak_command_V)
+             : fmt::format("currents up to {:.2g} A", summary.peak_current_A);
+}
+
 /// What to do instead, in volts where the command is known.
 std::string better_excitation(const ExcitationSummary& summary, const sim::DataSheet& data) {
   std::string amplitude = "larger steps";
+  if (summary.peak_command_V == 0.0 && summary.peak_current_A > 0.0)
+    amplitude =
+        fmt::format("steps of about ±{:.2g} A (twice what was seen), larger still if the axis does not break away",
+                    2.0 * summary.peak_current_A);
   if (summary.peak_command_V > 0.0) {
     const double suggested = std::min(data.dac_limit_V, 2.0 * summary.peak_command_V);
     amplitude = summary.peak_command_V < 0.99 * data.dac_limit_V
@@ -57,6 +68,7 @@ ExcitationSummary summarise_excitation(const std::vector<Record>& records, const
   }
   for (const Record& record : records) {
     for (const double u : record.u_V) summary.peak_command_V = std::max(summary.peak_command_V, std::abs(u));
+    for (const double i : record.i_A) summary.peak_current_A = std::max(summary.peak_current_A, std::abs(i));
   }
   summary.peak_effort = percentile_of_magnitude(std::move(efforts), 0.99);
   // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can fake in 0.1 s.
@@ -76,14 +88,19 @@ void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data
   const bool forward = summary.forward_s >= kLeastSliding_s, backward = summary.backward_s >= kLeastSliding_s;
   if (forward && backward) return;
   const char* what = forward || backward ? "the axis moved in one direction only" : "the axis did not move enough";
-  throw Failure(
-      ExitCode::refused,
-      fmt::format("{}: {:.2f} s forward and {:.2f} s backward beyond {:g} {}, at commands up to {:.2g} V. {}.", what,
-                  summary.forward_s, summary.backward_s, summary.threshold, speed_unit(data), summary.peak_command_V,
-                  better_excitation(summary, data)));
+  throw Failure(ExitCode::refused,
+                fmt::format("{}: {:.2f} s forward and {:.2f} s backward beyond {:g} {}, at {}. {}.", what,
+                            summary.forward_s, summary.backward_s, summary.threshold, speed_unit(data),
+                            largest_seen(summary), better_excitation(summary, data)));
 }
 
 void require_determined(const RigidEstimate& estimate, const ExcitationSummary& summary, const sim::DataSheet& data) {
+  if (std::isfinite(estimate.condition_number) && estimate.inertia.ci95[1] < 0.0)
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("the inertia comes out negative ({:.4g}): the axis accelerates against its command. The sign "
+                    "of the command or of the motion is turned, or channels are swapped",
+                    estimate.inertia.value));
   const bool determined = std::isfinite(estimate.condition_number) && estimate.inertia.ci95[0] > 0.0;
   if (determined) return;
   throw Failure(
@@ -120,11 +137,6 @@ std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const Exc
         fmt::format("the record hardly separates the parameters (condition number {:.0f}): vary amplitude "
                     "and duration of the steps",
                     estimate.condition_number));
-  }
-  if (estimate.viscous.ci95[1] < 0.0) {
-    warnings.push_back(
-        "viscous friction comes out negative, which no drive has: friction falls with speed (Stribeck), or the sign or "
-        "the scale of a channel is off");
   }
   return warnings;
 }

@@ -18,15 +18,15 @@ double student_t_95(double degrees) {
          (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
 }
 
-Regression solve_blocks(const std::vector<NormalEquations>& blocks, std::size_t rows) {
+Regression solve_blocks(const std::vector<NormalEquations>& blocks, Eigen::Index unknowns, std::size_t rows) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Regression result;
   result.rows = rows;
   result.condition_number = infinity;
-  if (blocks.empty()) return result;
-  const Eigen::Index p = blocks.front().projection.size();
+  const Eigen::Index p = unknowns;
   result.parameters = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
   result.covariance = Eigen::MatrixXd::Constant(p, p, infinity);
+  if (blocks.empty()) return result;
 
   Eigen::MatrixXd moment = Eigen::MatrixXd::Zero(p, p);
   Eigen::VectorXd projection = Eigen::VectorXd::Zero(p);

@@ -25,10 +25,11 @@ struct NormalEquations {
   Eigen::VectorXd projection;  ///< Phi'y
 };
 
-/// Solves the sum of the blocks. Covariance: sandwich estimate with the blocks as independent clusters (batch means),
-/// right for residuals of any colour and variance whose correlation is shorter than a block; intervals use Student's t
-/// with (blocks - parameters) degrees. Parameters are NaN when the equations are singular.
-Regression solve_blocks(const std::vector<NormalEquations>& blocks, std::size_t rows);
+/// Solves the sum of the blocks for `unknowns` parameters. Covariance: sandwich estimate with the blocks as independent
+/// clusters (batch means), right for residuals of any colour and variance whose correlation is shorter than a block;
+/// intervals use Student's t with (blocks - parameters) degrees. Parameters are NaN when the equations are singular, as
+/// they are without a row.
+Regression solve_blocks(const std::vector<NormalEquations>& blocks, Eigen::Index unknowns, std::size_t rows);
 
 /// Gathers rows into blocks. A block's score (sum of regressor times residual) follows from its own sums once the
 /// parameters are known, so one pass over the data gives estimate and intervals.
@@ -82,7 +83,7 @@ class BlockedRegression {
 
   Regression solve() {
     end_block();
-    return solve_blocks(blocks_, rows_);
+    return solve_blocks(blocks_, P, rows_);
   }
 
  private:

@@ -289,6 +289,8 @@ void check_channels(const Record& record) {
   check_range(record, &Record::u_V, -kLargestCommand_V, kLargestCommand_V,
               "D/A converters and amplifiers take less; the numbers look like counts or mV");
   check_range(record, &Record::i_A, -kLargestCurrent_A, kLargestCurrent_A, "the numbers look like mA or counts");
+  check_range(record, &Record::x, -kFarthest, kFarthest, "no axis is so long; the numbers look like an overflow");
+  check_range(record, &Record::w, -kFastest, kFastest, "no drive is so fast; the numbers look like an overflow");
   check_range(record, &Record::temp_C, kLowestTemperature_C, kHighestTemperature_C,
               "the numbers look like kelvins or counts");
   check_position_and_speed_alive(record);
@@ -305,10 +307,11 @@ void adapt_to(Record& record, const sim::DataSheet& sheet) {
                      where(record, speed), record.kind == sim::DriveKind::rotary ? "rotary" : "linear",
                      sheet.kind == sim::DriveKind::rotary ? "rotary" : "linear", column_name(speed, sheet.kind)));
   }
-  if (sheet.kind == sim::DriveKind::linear && record.u_V.empty())
+  if (sheet.kind == sim::DriveKind::linear && record.u_V.empty() && !record.i_A.empty() &&
+      !(sheet.torque_constant_Nm_per_A > 0.0))
     fail(record,
-         "missing column: u_V; a linear drive's model knows its force by the command in volts, and the record "
-         "holds the current i_A alone");
+         "missing column: u_V; the record holds the current i_A alone, and this drive's data sheet knows its force by "
+         "the command in volts: add force_constant_N_per_A to [drive], or log u_V");
   scale(record.x, record.kind, sheet.kind);
   scale(record.x_ref, record.kind, sheet.kind);
   record.kind = sheet.kind;

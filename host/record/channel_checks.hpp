@@ -12,6 +12,10 @@ namespace host {
 inline constexpr double kLargestCommand_V = 1000.0;
 /// Largest motor current of a feed drive, A; beyond it the numbers are mA.
 inline constexpr double kLargestCurrent_A = 10000.0;
+/// Farthest position, mm or m, and fastest speed, rad/s or m/s: a thousand kilometres and a hundred times the fastest
+/// spindle. Beyond, sums of squares lose what they are made of.
+inline constexpr double kFarthest = 1e9;
+inline constexpr double kFastest = 1e6;
 /// Absolute zero, and what no part of a feed drive survives (kelvins read as Celsius lie above it), deg C.
 inline constexpr double kLowestTemperature_C = -273.15;
 inline constexpr double kHighestTemperature_C = 200.0;

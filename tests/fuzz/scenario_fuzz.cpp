@@ -1,4 +1,4 @@
-// Any bytes as a scenario: read or refused with a message, never anything else.
+// Any bytes as a scenario: read or refused with a message, never anything else; so are its paths.
 #include <cstdint>
 #include <string_view>
 
@@ -7,7 +7,13 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    host::parse_scenario({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
+    const host::Scenario scenario = host::parse_scenario({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
+    const sim::DataSheet &x = scenario.axes[0].drive.data, &y = scenario.axes[1].drive.data;
+    constexpr double kLongest_s = 20.0;  // of motion: fast enough to try many
+    for (const host::ScenarioMove& move : scenario.moves)
+      if (move.path && move.path->length() / move.path_limits.feed < kLongest_s)
+        host::follow_path(*move.path, move.path_limits, x.sample_period_s,
+                          {x.encoder_resolution, y.encoder_resolution});
   } catch (const host::Failure&) {
     return 0;
   }

@@ -86,6 +86,24 @@ TEST(Path, ACircleIsFollowedToItsEndWithinTheLimits) {
   EXPECT_NEAR(static_cast<double>(steps.size()) * 1e-3, duration_s, 0.003);
 }
 
+/// 800,000 counts are 2^67 increments: positions as such do not fit.
+TEST(Path, AWideCircleIsFollowedToItsEnd) {
+  const double count_mm = 10.0 / 4096.0;
+  const auto steps = host::follow_path(Path::circle(1000.0), {}, 1e-3, {count_mm, count_mm});
+  std::array<firmware::CountPosition, 2> position{};
+  double farthest_mm = 0.0;
+  for (const auto& step : steps) {
+    for (std::size_t i = 0; i < 2; ++i) position[i].advance(step[i]);
+    farthest_mm = std::max(farthest_mm, static_cast<double>(position[0].counts) * count_mm);
+  }
+  EXPECT_NEAR(farthest_mm, 2000.0, 2 * count_mm);
+  for (const auto& axis : position) EXPECT_EQ(axis.counts + (axis.fraction > firmware::kOneCount / 2 ? 1 : 0), 0);
+}
+
+TEST(Path, StepsBeyondTheReferencesRangeAreRefused) {
+  EXPECT_THROW(host::follow_path(Path::circle(35.0), {}, 1e-3, {1e-7, 1e-7}), host::Failure);
+}
+
 TEST(Path, ARoundedSquareIsClosedAndSmooth) {
   const Path square = Path::rounded_square(40.0, 8.0);
   EXPECT_NEAR(square.length(), 4.0 * 24.0 + 2.0 * std::numbers::pi * 8.0, 1e-9);

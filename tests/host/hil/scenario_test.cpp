@@ -126,6 +126,14 @@ TEST(BadScenario, NamesFileLineFieldAndRemedy) {
               HasSubstr("there is no model file"));
 }
 
+TEST(ScenarioReport, ServesAnAxisWithoutATachometer) {
+  host::Scenario scenario = parsed("");
+  scenario.axes[0].drive.data.tach_noise_variance.reset();
+  const auto run = host::run_scenario(scenario);
+  ASSERT_FALSE(run.records[0].has_speed());
+  EXPECT_THAT(scenario_report(scenario, run).html(), HasSubstr("Axis x: motion"));
+}
+
 TEST(ScenarioReport, ShowsFaultCauseAndPlots) {
   const host::Scenario scenario = parsed(
       "[[move]]\nat_s = 0.05\nkind = \"jog\"\naxis = \"x\"\nspeed_mm_s = 50\n[[fault]]\nat_s = 0.2\nkind = "

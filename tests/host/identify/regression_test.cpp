@@ -109,6 +109,15 @@ TEST(LeastSquares, SingularEquationsHaveNoEstimate) {
   EXPECT_TRUE(std::isnan(found.parameters(0)));
 }
 
+/// A record at rest gives a regression on sliding samples no row at all.
+TEST(LeastSquares, NoRowsHaveNoEstimateEither) {
+  const host::Regression found = host::BlockedRegression<4>(10).solve();
+  EXPECT_TRUE(std::isinf(found.condition_number));
+  ASSERT_EQ(found.parameters.size(), 4);
+  EXPECT_TRUE(std::isnan(found.parameters(3)));
+  EXPECT_EQ(found.covariance.rows(), 4);
+}
+
 TEST(LeastSquares, IntervalsCoverTheTruthWithColouredResiduals) {
   // Mean of an AR(1) process with coefficient 0.95: white-noise intervals would cover 25 % of the time.
   std::mt19937_64 generator(7);
