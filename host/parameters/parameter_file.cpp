@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "host/exit_codes.hpp"
 #include "host/parameters/parameter_names.hpp"
 #include "host/read_file.hpp"
+#include "host/toml_text.hpp"
 
 namespace host {
 
@@ -30,22 +30,20 @@ bool is_board_group(std::string_view name) {
   });
 }
 
+/// What a backup says of itself (backup_file.hpp).
+bool is_seal(std::string_view key) { return key == "count" || key == "crc32"; }
+
 class ParameterReader {
  public:
   ParameterReader(std::string_view name, std::string_view axis) : name_(name), axis_(axis) {}
 
   std::vector<Assignment> read(std::string_view text) {
-    toml::table root;
-    try {
-      root = toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      fail(error.source().begin.line, "not valid TOML: {}; correct the line", error.description());
-    }
+    const toml::table root = parse_toml(text, name_);
     const auto format = root["format"].value<std::string_view>();
     if (format != kFormat)
       fail(1, "format = \"{}\" is missing: this is no file of board parameters; `axistool design` writes one", kFormat);
     for (const auto& [key, node] : root) {
-      if (key.str() == "format") continue;
+      if (key.str() == "format" || is_seal(key.str())) continue;
       const std::size_t line = std::max<std::size_t>(1, key.source().begin.line);
       if (!node.is_table()) fail(line, "{}: parameters stand in tables, [x.kalman] for example", key.str());
       read_table(*node.as_table(), std::string(board_name_of(key.str(), line)));
@@ -101,11 +99,6 @@ class ParameterReader {
   std::vector<Assignment> list_;
 };
 
-std::string comment_of(const firmware::ParameterInfo& info) {
-  const bool has_unit = !info.unit.empty() && info.unit != "1";
-  return fmt::format("{}{}{}", has_unit ? unit_text(info) : "", has_unit ? ": " : "", info.doc);
-}
-
 }  // namespace
 
 std::vector<Assignment> parse_parameter_text(std::string_view text, std::string_view name, std::string_view axis) {
@@ -151,27 +144,6 @@ void require_fitting_set(const firmware::ParameterValues& values) {
   if (problem.kind == firmware::SetProblemKind::none) return;
   const float value = values.at(firmware::place_of(problem.key).value());
   throw Failure(ExitCode::bad_input, describe(problem.key, static_cast<std::uint8_t>(problem.kind), value));
-}
-
-std::string format_parameter_file(const firmware::ParameterValues& values,
-                                  const std::vector<firmware::StoredEntry>& foreign) {
-  std::string text =
-      fmt::format("# Parameters of an axis board, table {:#010x}.\nformat = \"{}\"\n", firmware::kSchemaHash, kFormat);
-  std::string table;
-  for (std::size_t place = 0; place < values.size(); ++place) {
-    const std::string name = full_name(place);
-    const std::size_t dot = name.rfind('.');
-    if (name.substr(0, dot) != table) {
-      table = name.substr(0, dot);
-      text += fmt::format("\n[{}]\n", table);
-    }
-    const firmware::ParameterInfo& info = info_at(place);
-    text += fmt::format("{} = {}  # {}\n", name.substr(dot + 1), value_text(info, values.at(place)), comment_of(info));
-  }
-  if (!foreign.empty()) text += "\n# In the board's flash, but unknown to this table (key, bits):\n";
-  for (const firmware::StoredEntry& entry : foreign)
-    text += fmt::format("# {:#06x} {:#010x}\n", entry.key, entry.value_bits);
-  return text;
 }
 
 }  // namespace host

@@ -31,9 +31,4 @@ void put(firmware::ParameterValues& values, const Assignment& one);
 /// Throws Failure(bad_input) naming what is wrong with the set as a whole, as far as the host can tell.
 void require_fitting_set(const firmware::ParameterValues& values);
 
-/// A file of all parameters, each with unit and meaning. `foreign`: entries of a board's flash that the table does not
-/// have; they stand in comments.
-std::string format_parameter_file(const firmware::ParameterValues& values,
-                                  const std::vector<firmware::StoredEntry>& foreign = {});
-
 }  // namespace host

@@ -1,0 +1,112 @@
+#include "host/parameters/backup_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <span>
+
+#include "firmware/app/crc32.hpp"
+#include "host/exit_codes.hpp"
+#include "host/parameters/parameter_names.hpp"
+#include "host/read_file.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr std::string_view kCountKey = "count = ", kCrcKey = "crc32 = \"0x";
+
+/// Programs whose backups had no CRC knew boards of two axes.
+constexpr std::size_t kOldBoard = firmware::parameter_rows::kBoardRows + 2 * firmware::parameter_rows::kAxisRows;
+
+/// Ends of lines as this program writes them: an editor or a mail that made CR LF of them has not changed a value.
+std::uint32_t crc_of(std::string_view text) {
+  std::string plain(text);
+  std::erase(plain, '\r');
+  return firmware::crc32(std::as_bytes(std::span(plain)));
+}
+
+std::string comment_of(const firmware::ParameterInfo& info) {
+  const bool has_unit = !info.unit.empty() && info.unit != "1";
+  return fmt::format("{}{}{}", has_unit ? unit_text(info) : "", has_unit ? ": " : "", info.doc);
+}
+
+std::string parameter_lines(const firmware::ParameterValues& values) {
+  std::string text, table;
+  for (std::size_t place = 0; place < values.size(); ++place) {
+    const std::string name = full_name(place);
+    const std::size_t dot = name.rfind('.');
+    if (name.substr(0, dot) != table) {
+      table = name.substr(0, dot);
+      text += fmt::format("\n[{}]\n", table);
+    }
+    const firmware::ParameterInfo& info = info_at(place);
+    text += fmt::format("{} = {}  # {}\n", name.substr(dot + 1), value_text(info, values.at(place)), comment_of(info));
+  }
+  return text;
+}
+
+/// What the file claims of the text below its CRC.
+struct Seal {
+  unsigned long count = 0;
+  std::uint32_t crc = 0;
+  std::string_view sealed;
+};
+
+std::optional<Seal> seal_of(std::string_view text) {
+  Seal seal;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    if (line.starts_with('[')) return std::nullopt;  // parameters begin: no seal
+    if (line.starts_with(kCountKey))
+      seal.count = std::strtoul(std::string(line.substr(kCountKey.size())).c_str(), nullptr, 10);
+    if (line.starts_with(kCrcKey)) {
+      const std::string digits(line.substr(kCrcKey.size(), 8));
+      seal.crc = static_cast<std::uint32_t>(std::strtoul(digits.c_str(), nullptr, 16));
+      seal.sealed = text.substr(std::min(end + 1, text.size()));
+      return seal;
+    }
+    begin = end + 1;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string format_backup(const firmware::ParameterValues& values, const std::vector<firmware::StoredEntry>& foreign) {
+  std::string sealed = parameter_lines(values);
+  if (!foreign.empty()) sealed += "\n# In the board's flash, but unknown to this table (key, bits):\n";
+  for (const firmware::StoredEntry& entry : foreign)
+    sealed += fmt::format("# {:#06x} {:#010x}\n", entry.key, entry.value_bits);
+  return fmt::format(
+      "# Parameters of an axis board, table {:#010x}. To change values, `axistool set-params` takes a file that was "
+      "edited;\n# `axistool restore` takes this one as it is.\nformat = \"axis-params/1\"\n{}{}\n{}{:08x}\"\n{}",
+      firmware::kSchemaHash, kCountKey, values.size(), kCrcKey, crc_of(sealed), sealed);
+}
+
+std::vector<Assignment> parse_backup(std::string_view text, std::string_view name) {
+  const auto fail = [&](const std::string& what) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{}: {}. Nothing was restored: take another copy, or give the values that are wanted with "
+                    "axistool set-params",
+                    name, what));
+  };
+  const std::optional<Seal> seal = seal_of(text);
+  if (seal && crc_of(seal->sealed) != seal->crc) fail("the backup was cut or changed: its CRC does not fit");
+  const std::vector<Assignment> list = parse_parameter_text(text, name);
+  if (seal && list.size() != seal->count)
+    fail(fmt::format("the backup names {} parameters, but says {}", list.size(), seal->count));
+  if (!seal && list.size() < kOldBoard)
+    fail(fmt::format("no whole backup: it has no CRC, and names {} of the {} parameters of a board with two axes",
+                     list.size(), kOldBoard));
+  if (!seal && !text.ends_with('\n')) fail("the backup was cut: its last line has no end");
+  return list;
+}
+
+std::vector<Assignment> read_backup(const std::string& path) { return parse_backup(read_file(path), path); }
+
+}  // namespace host

@@ -1,0 +1,69 @@
+#include "host/parameters/backup_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host/exit_codes.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+std::string message_of(std::string_view text) {
+  try {
+    host::parse_backup(text, "b.toml");
+  } catch (const host::Failure& failure) {
+    EXPECT_EQ(failure.code, host::ExitCode::bad_input);
+    return failure.what();
+  }
+  return "restored";
+}
+
+firmware::ParameterValues some_values() {
+  firmware::ParameterValues values;
+  values.set(host::parse_assignment("x.feedback.k1=48.4").place, 48.4F);
+  return values;
+}
+
+TEST(Backup, ReadsBackEveryBit) {
+  const firmware::ParameterValues values = some_values();
+  firmware::ParameterValues read;
+  for (const host::Assignment& one : host::parse_backup(host::format_backup(values), "b.toml"))
+    read.set(one.place, one.value);
+  for (std::size_t place = 0; place < values.size(); ++place)
+    EXPECT_EQ(read.at(place), values.at(place)) << place;
+}
+
+TEST(Backup, CutAnywhereIsRefused) {
+  const std::string whole = host::format_backup(some_values(), {{0x1234, 7}});
+  for (std::size_t length = 0; length < whole.size(); length += 1)
+    ASSERT_NE(message_of(std::string_view(whole).substr(0, length)), "restored") << length;
+}
+
+TEST(Backup, AChangedValueIsRefusedAndToldWhatTakesIt) {
+  std::string text = host::format_backup(some_values());
+  text.replace(text.find("48.4"), 4, "84.4");
+  EXPECT_THAT(message_of(text), testing::AllOf(HasSubstr("CRC"), HasSubstr("set-params")));
+}
+
+TEST(Backup, AFileOfPartsIsNoBackup) {
+  EXPECT_THAT(message_of("format = \"axis-params/1\"\n[x.feedback]\nk1 = 48.4\n"), HasSubstr("names 1 of"));
+}
+
+TEST(Backup, EndsOfLinesMayBeAnotherSystems) {
+  std::string text = host::format_backup(some_values());
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+  EXPECT_EQ(message_of(text), "restored");
+}
+
+/// Backups had no CRC once: whole they are taken, cut they are not.
+TEST(Backup, OfAnOlderProgramIsTakenWhole) {
+  std::string whole = host::format_backup(some_values());
+  whole.erase(whole.find("count ="), whole.find("\n[") - whole.find("count ="));
+  EXPECT_EQ(message_of(whole), "restored");
+  for (std::size_t length = 0; length < whole.size(); length += 37)
+    ASSERT_NE(message_of(std::string_view(whole).substr(0, length)), "restored") << length;
+  EXPECT_NE(message_of(std::string_view(whole).substr(0, whole.size() - 1)), "restored");
+}
+
+}  // namespace
