@@ -71,11 +71,17 @@ std::vector<double> motor_effort(const Record& record, const sim::DataSheet& dat
     for (const double u : record.u_V) effort.push_back(per_volt * std::clamp(u, -data.dac_limit_V, data.dac_limit_V));
     return effort;
   }
-  if (data.kind == sim::DriveKind::linear || !(data.torque_constant_Nm_per_A > 0.0)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: only a current was logged (i_A); that needs torque_constant_Nm_per_A of a rotary "
-                              "drive, or log u_V",
-                              record.path));
+  if (record.i_A.empty())
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{}: no effort was recorded (u_V or i_A), which this needs; axistool compare tells of the "
+                    "tracking error",
+                    record.path));
+  if (!(data.torque_constant_Nm_per_A > 0.0)) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{}: only a current was logged (i_A); that needs {} in [drive], or log u_V", record.path,
+                    data.kind == sim::DriveKind::rotary ? "torque_constant_Nm_per_A" : "force_constant_N_per_A"));
   }
   for (const double i : record.i_A) effort.push_back(data.torque_constant_Nm_per_A * i);
   return effort;

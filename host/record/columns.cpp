@@ -33,7 +33,10 @@ std::string fault_of_pair(std::string_view first, std::string_view second) {
 
 std::string_view missing_among(std::span<const std::string_view> names) {
   if (!give(names, &Record::t_s)) return "t_s (time in seconds)";
-  if (!give(names, &Record::u_V) && !give(names, &Record::i_A)) return "u_V (command in volts) or i_A (motor current)";
+  // A reference serves where no effort was logged: tracking errors can be told of.
+  const bool has_reference = give(names, &Record::x_ref) || give(names, &Record::w_ref);
+  if (!give(names, &Record::u_V) && !give(names, &Record::i_A) && !has_reference)
+    return "u_V (command in volts) or i_A (motor current)";
   if (!give(names, &Record::x) && !give(names, &Record::w))
     return "a position (x_mm or x_m) or a speed (w_rad_s, v_m_s or v_mm_s)";
   return {};

@@ -63,6 +63,12 @@ std::string Log::inventory() const {
 Log read_log(const std::string& path) {
   const std::string text = read_file(path);
   if (is_matlab_file(std::string_view(text).substr(0, 16), path)) return read_mat(path);
+  if (text.starts_with("\x93NUMPY")) return parse_npy(text, path);
+  if (text.starts_with("PK\x03\x04"))
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: a packed archive (.npz, .xlsx, .zip); save the arrays as .npy or "
+                              ".mat, a sheet as .csv",
+                              path));
   return parse_table(text, path);
 }
 

@@ -30,13 +30,17 @@ struct Log {
   std::string inventory() const;
 };
 
-/// Reads a MATLAB file (v4, v5, v7.3: by its content) or a table whose fields are separated by comma, semicolon, tab or
-/// blanks (found out), with or without headings, with lines of remarks (# or %) in front.
-/// Throws Failure(bad_input).
+/// Reads a MATLAB file (v4, v5, v7.3: by its content), a NumPy array (.npy) or a table: fields separated by comma,
+/// semicolon, tab or blanks, numbers with decimal point or comma (found out), with or without headings, a second line
+/// of units, remarks (# or %) or a preamble in front; UTF-8 or UTF-16. Dates and times of day become seconds. Throws
+/// Failure(bad_input).
 Log read_log(const std::string& path);
 
 /// read_log of a table that is already in memory.
 Log parse_table(std::string_view text, std::string_view name);
+
+/// read_log of a NumPy array.
+Log parse_npy(std::string_view bytes, std::string_view path);
 
 /// read_log of a MATLAB file.
 Log read_mat(const std::string& path);

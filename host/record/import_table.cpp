@@ -1,11 +1,17 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/record/clock.hpp"
+#include "host/record/columns.hpp"
 #include "host/record/import_log.hpp"
 #include "host/record/number.hpp"
+#include "host/record/table_layout.hpp"
+#include "host/record/text_encoding.hpp"
 
 namespace host {
 
@@ -13,66 +19,48 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-std::string_view unquoted(std::string_view field) {
-  field = trim_blanks(field);
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
-  return field;
+/// "[mm]", "(mm)" -> "mm".
+std::string_view without_brackets(std::string_view unit) {
+  const bool bracketed =
+      unit.size() >= 2 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')'));
+  return bracketed ? trim_blanks(unit.substr(1, unit.size() - 2)) : unit;
 }
 
-/// `separator` 0 stands for any run of blanks. A separator inside double quotes does not separate.
-void split(std::string_view line, char separator, Fields& fields) {
-  fields.clear();
-  if (separator == 0) {
-    for (line = trim_blanks(line); !line.empty(); line = trim_blanks(line)) {
-      const std::size_t end = line.front() == '"' ? line.find('"', 1) : line.find_first_of(" \t");
-      const std::size_t length = end == std::string_view::npos ? line.size() : end + (line.front() == '"' ? 1 : 0);
-      fields.push_back(unquoted(line.substr(0, length)));
-      line.remove_prefix(length);
-    }
-    return;
-  }
-  bool in_quotes = false;
-  std::size_t start = 0;
-  for (std::size_t k = 0; k <= line.size(); ++k) {
-    if (k < line.size() && line[k] == '"') in_quotes = !in_quotes;
-    if (k < line.size() && (in_quotes || line[k] != separator)) continue;
-    fields.push_back(unquoted(line.substr(start, k - start)));
-    start = k + 1;
-  }
+/// The name that a record has for a quantity of this name and unit, else the name.
+std::string name_with_unit(std::string_view name, std::string_view unit) {
+  std::string full = fmt::format("{}_{}", name, unit);
+  std::ranges::replace(full, '/', '_');
+  return find_known_column(full) != nullptr ? full : std::string(name);
 }
 
 class TableReader {
  public:
-  TableReader(std::string_view text, std::string_view name) : rest_(text) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  TableReader(std::string_view text, std::string_view name) : rest_(text), layout_(find_layout(text)) {
     log_.path = name;
   }
 
   Log read() {
-    skip_remarks();
-    if (line_.empty()) fail("no rows; name a file that holds a log");
-    find_separator();
-    Fields fields;
-    split(line_, separator_, fields);
-    const bool headed = std::ranges::any_of(fields, [](std::string_view f) { return !f.empty() && !parse_number(f); });
-    log_.columns.resize(fields.size());
-    for (std::size_t k = 0; headed && k < fields.size(); ++k) log_.columns[k].name = fields[k];
-    for (LogColumn& column : log_.columns) column.last_digit = std::numeric_limits<double>::infinity();
-    if (headed && !next_line()) fail("no rows follow the headings; name a file that holds a log");
+    find_table();
+    take_headings();
     log_.first_line = number_;
     do {
       if (trim_blanks(line_).empty()) {
         if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) break;
         fail("the line is blank; remove it, or cut the log there");
       }
-      take_row(fields);
+      take_row();
     } while (next_line());
-    for (LogColumn& column : log_.columns) column.kind = fmt::format("{} numbers", column.values.size());
+    for (std::size_t k = 0; k < log_.columns.size(); ++k) describe(log_.columns[k], states_[k]);
     return std::move(log_);
   }
 
  private:
+  struct ColumnState {
+    std::string unit;
+    bool begun = false, is_clock = false;
+    std::optional<std::int64_t> first_day;
+  };
+
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
     throw Failure(ExitCode::bad_input, fmt::format("{}: line {}: {}", log_.path, std::max<std::size_t>(number_, 1),
@@ -80,85 +68,130 @@ class TableReader {
   }
 
   bool next_line() {
-    if (rest_.empty()) {
-      line_ = {};
-      return false;
-    }
-    const std::size_t end = rest_.find('\n');
-    line_ = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    if (!take_line(rest_, line_)) return false;
     ++number_;
     return true;
   }
 
-  void skip_remarks() {
-    while (next_line()) {
-      const std::string_view text = trim_blanks(line_);
-      if (text.empty()) continue;
-      if (!text.starts_with('#') && !text.starts_with('%')) return;
-      const std::size_t colon = text.find(':');
-      if (colon == std::string_view::npos) continue;
-      log_.header.emplace(trim_blanks(text.substr(1, colon - 1)), trim_blanks(text.substr(colon + 1)));
-    }
-    line_ = {};
+  bool is_value(std::string_view field) const {
+    return layout_.number(field).has_value() || parse_clock(field).has_value();
   }
 
-  /// The first of these that splits the line; blanks otherwise.
-  void find_separator() {
-    Fields fields;
-    for (const char candidate : {'\t', ';', ','}) {
-      split(line_, candidate, fields);
-      if (fields.size() < 2) continue;
-      separator_ = candidate;
+  /// Leaves `line_` at the first line that has the table's fields. What stands in front is remarks or a preamble.
+  void find_table() {
+    std::size_t preamble = 0;
+    while (next_line()) {
+      if (trim_blanks(line_).empty()) continue;
+      if (is_remark(line_)) {
+        take_remark();
+        continue;
+      }
+      layout_.split(line_, fields_);
+      if (fields_.size() == layout_.fields) break;
+      if (fields_.size() > 1 && std::ranges::all_of(fields_, [&](std::string_view f) { return is_value(f); }))
+        fail_field_count(layout_.fields);
+      ++preamble;
+    }
+    if (trim_blanks(line_).empty()) fail("no rows; name a file that holds a log");
+    if (preamble > 0)
+      log_.header["imported_preamble"] = fmt::format("{} lines in front of the table were left out", preamble);
+  }
+
+  void take_remark() {
+    const std::string_view text = trim_blanks(line_);
+    const std::size_t colon = text.find(':');
+    if (colon != std::string_view::npos)
+      log_.header.emplace(trim_blanks(text.substr(1, colon - 1)), trim_blanks(text.substr(colon + 1)));
+  }
+
+  void take_headings() {
+    log_.columns.resize(fields_.size());
+    states_.resize(fields_.size());
+    for (LogColumn& column : log_.columns) column.last_digit = std::numeric_limits<double>::infinity();
+    if (std::ranges::all_of(fields_, [&](std::string_view f) { return f.empty() || is_value(f); })) return;
+    for (std::size_t k = 0; k < fields_.size(); ++k) log_.columns[k].name = fields_[k];
+    if (!next_line()) fail("no rows follow the headings; name a file that holds a log");
+    layout_.split(line_, fields_);
+    if (!are_units(fields_)) return;
+    for (std::size_t k = 0; k < fields_.size(); ++k) {
+      states_[k].unit = without_brackets(fields_[k]);
+      log_.columns[k].name = name_with_unit(log_.columns[k].name, states_[k].unit);
+    }
+    log_.header["imported_units"] = fmt::format("{}", fmt::join(fields_, ", "));
+    if (!next_line()) fail("no rows follow the headings and units; name a file that holds a log");
+  }
+
+  /// A second line of headings: short texts, no value among them.
+  bool are_units(const Fields& fields) const {
+    constexpr std::size_t kLongestUnit = 12;
+    return fields.size() == log_.columns.size() &&
+           std::ranges::any_of(fields, [](std::string_view f) { return !f.empty(); }) &&
+           std::ranges::none_of(fields, [&](std::string_view f) { return is_value(f) || f.size() > kLongestUnit; });
+  }
+
+  [[noreturn]] void fail_field_count(std::size_t columns) const {
+    fail("{} fields where there are {} columns; correct the line ({}fields here are separated by {})", fields_.size(),
+         columns, layout_.decimal_comma ? "" : "numbers take a decimal point, and ", layout_.separator_name());
+  }
+
+  void take_row() {
+    layout_.split(line_, fields_);
+    if (fields_.size() != log_.columns.size()) fail_field_count(log_.columns.size());
+    for (std::size_t k = 0; k < fields_.size(); ++k) take_field(k, fields_[k]);
+  }
+
+  void take_field(std::size_t k, std::string_view field) {
+    LogColumn& column = log_.columns[k];
+    if (field.empty()) {
+      column.values.push_back(std::numeric_limits<double>::quiet_NaN());
       return;
     }
-    separator_ = 0;
-  }
-
-  void take_row(Fields& fields) {
-    split(line_, separator_, fields);
-    if (fields.size() != log_.columns.size())
-      fail(
-          "{} fields where there are {} columns; correct the line (numbers take a decimal point, and fields here are "
-          "separated by {})",
-          fields.size(), log_.columns.size(), separator_name());
-    for (std::size_t k = 0; k < fields.size(); ++k) take_field(log_.columns[k], k, fields[k]);
-  }
-
-  void take_field(LogColumn& column, std::size_t k, std::string_view field) {
-    const auto value = field.empty() ? std::numeric_limits<double>::quiet_NaN() : parse_number(field);
+    const std::optional<double> value = value_of(states_[k], column, field);
     if (!value && column.fault.empty())
       column.fault = fmt::format(
-          "line {}, column {}{}: '{}' is not a number{}; correct it, or cut the log before this "
-          "line",
-          number_, k + 1, column.name.empty() ? "" : fmt::format(" ({})", column.name), field,
-          field.find(',') != std::string_view::npos ? " (numbers take a decimal point)" : "");
+          "line {}, column {}{}: '{}' is not a {}{}; correct it, or cut the log before this line", number_, k + 1,
+          column.name.empty() ? "" : fmt::format(" ({})", column.name), field,
+          states_[k].is_clock ? "date or time of day" : "number",
+          !layout_.decimal_comma && field.find(',') != std::string_view::npos ? " (numbers take a decimal point)" : "");
     column.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-    if (!field.empty()) column.last_digit = std::min(column.last_digit, last_digit_of(field));
   }
 
-  std::string_view separator_name() const {
-    switch (separator_) {
-      case ',':
-        return "commas";
-      case ';':
-        return "semicolons";
-      case '\t':
-        return "tabs";
-      default:
-        return "blanks";
+  /// A column whose first value is a time of day counts seconds from the first day's midnight.
+  std::optional<double> value_of(ColumnState& state, LogColumn& column, std::string_view field) const {
+    const bool is_first = !std::exchange(state.begun, true);
+    const std::optional<double> number = layout_.number(field);
+    if (is_first && !number) state.is_clock = parse_clock(field).has_value();
+    if (!state.is_clock) {
+      if (number) column.last_digit = std::min(column.last_digit, layout_.last_digit(field));
+      return number;
     }
+    const std::optional<ClockReading> reading = parse_clock(field);
+    if (!reading) return std::nullopt;
+    if (!state.first_day) state.first_day = reading->day;
+    column.last_digit = std::min(column.last_digit, reading->last_digit);
+    constexpr double kDay_s = 86'400.0;
+    return kDay_s * static_cast<double>(reading->day.value_or(0) - state.first_day.value_or(0)) + reading->second;
+  }
+
+  static void describe(LogColumn& column, const ColumnState& state) {
+    column.kind = fmt::format("{} {}{}", column.values.size(),
+                              state.is_clock ? "times, s from the first day's midnight" : "numbers",
+                              state.unit.empty() ? "" : fmt::format(", {}", state.unit));
   }
 
   std::string_view rest_, line_;
+  TableLayout layout_;
   std::size_t number_ = 0;
-  char separator_ = 0;
+  Fields fields_;
+  std::vector<ColumnState> states_;
   Log log_;
 };
 
 }  // namespace
 
-Log parse_table(std::string_view text, std::string_view name) { return TableReader(text, name).read(); }
+Log parse_table(std::string_view text, std::string_view name) {
+  const std::string plain = as_utf8(std::string(text));
+  return TableReader(plain, name).read();
+}
 
 }  // namespace host

@@ -12,6 +12,7 @@
 #include "host/record/columns.hpp"
 #include "host/record/log_fault.hpp"
 #include "host/record/number.hpp"
+#include "host/record/text_encoding.hpp"
 #include "host/record/time_axis.hpp"
 
 namespace host {
@@ -146,7 +147,7 @@ class Parser {
 
   void read_row() {
     if (line_.starts_with('#')) fail_here("a line that begins with # stands among the rows; move it to the top");
-    if (trim_blanks(line_).empty()) fail_here("the line is blank; remove it, or cut the record there");
+    if (trim_blanks(line_).empty()) fail_here("the line is blank; remove it, or cut the record there (axistool cut)");
     std::string_view rest = line_;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const std::size_t comma = rest.find(',');
@@ -184,7 +185,8 @@ class Parser {
                              : value && std::isnan(*value) ? fmt::format("'{}' (NaN) is not a measured value", field)
                              : value ? fmt::format("'{}' (infinite) is not a measured value", field)
                                      : fmt::format("'{}' is not a number", field);
-    fail_here("column {} ({}): {}; correct it, or cut the record before this line", number, column.name, what);
+    fail_here("column {} ({}): {}; correct it, or cut the record before this line (axistool cut)", number, column.name,
+              what);
   }
 
   void fill() {
@@ -228,9 +230,8 @@ class Parser {
 }  // namespace
 
 Record parse_record(std::string_view text, std::string_view name) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  return Parser(text, name).parse();
+  const std::string plain = as_utf8(std::string(text));
+  return Parser(plain, name).parse();
 }
 
 Record read_record(const std::string& path) { return parse_record(read_file(path), path); }

@@ -114,7 +114,7 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
     const double from_s = axis.t_s[spacing.first_gap_row - 1];
     const std::string message = fmt::format(
         "{}: {}: dropped samples: {:.6g} s pass between two rows (first of {} gap(s), {} sample(s) missing; "
-        "steps jitter by {}); record again, cut the record at the gaps, or fill them knowingly with "
+        "steps jitter by {}); record again, cut the record at the gaps (axistool cut), or fill them knowingly with "
         "axistool import --resample {:.6g}",
         path, where(axis, spacing.first_gap_row), axis.t_s[spacing.first_gap_row] - from_s, spacing.gaps,
         spacing.dropped, jitter, round_period(spacing.period_s));

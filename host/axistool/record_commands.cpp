@@ -1,0 +1,72 @@
+// axistool cut, axistool shift: a part of a record; a record with a channel moved in time.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/read_file.hpp"
+#include "host/record/edit_record.hpp"
+#include "host/record/read_record.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct EditArguments {
+  std::string record, output, json, channel;
+  double from_s = -HUGE_VAL, to_s = HUGE_VAL, by_s = 0.0;
+};
+
+void tell(const EditArguments& arguments, const host::Record& edited) {
+  host::write_record(edited, arguments.output);
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-edit/1"},
+                {"record", arguments.output},
+                {"rows", edited.size()},
+                {"from_s", edited.t_s.front()},
+                {"to_s", edited.t_s.back()}},
+               arguments.json);
+  if (arguments.json != "-")
+    fmt::print("{}: {} rows, {} s to {} s\n", arguments.output, edited.size(), edited.t_s.front(), edited.t_s.back());
+}
+
+CLI::App* add_edit(CLI::App& app, const char* name, const char* what, EditArguments& arguments) {
+  CLI::App* command = app.add_subcommand(name, what);
+  add_input(*command, "RECORD", arguments.record, "record (axis-record/1)")->required();
+  add_output(*command, "-o,--output", arguments.output, "the record to write")->required();
+  add_json_option(*command, arguments.json);
+  return command;
+}
+
+}  // namespace
+
+void add_cut(CLI::App& app) {
+  auto arguments = std::make_shared<EditArguments>();
+  CLI::App* command = add_edit(app, "cut", "a part of a record", *arguments);
+  command->add_option("--from", arguments->from_s, "first time to keep, s, as t_s counts; default: the beginning");
+  command->add_option("--to", arguments->to_s, "last time to keep, s; default: the end");
+  command->footer(
+      "Example:\n  axistool cut log.csv --from 2.5 --to 9 -o moving.csv\n"
+      "Time stamps stay as they are; the header says what was cut.");
+  command->callback([arguments] {
+    tell(*arguments,
+         host::cut_record(host::read_file(arguments->record), arguments->record, arguments->from_s, arguments->to_s));
+  });
+}
+
+void add_shift(CLI::App& app) {
+  auto arguments = std::make_shared<EditArguments>();
+  CLI::App* command = add_edit(app, "shift", "a record with one channel moved in time", *arguments);
+  command->add_option("--channel", arguments->channel, "its name in the record: w_rad_s, u_V, …")->required();
+  command->add_option("--by", arguments->by_s, "seconds; above 0: later, below: earlier")->required();
+  command->footer(
+      "Example:\n  axistool shift log.csv --channel w_rad_s --by -0.014 -o aligned.csv\n"
+      "A channel that runs 14 ms behind the others is moved by -0.014. Rows at the ends for which it holds nothing are "
+      "cut off.");
+  command->callback([arguments] {
+    tell(*arguments, host::shift_channel(host::read_record(arguments->record), arguments->channel, arguments->by_s));
+  });
+}
+
+}  // namespace axistool

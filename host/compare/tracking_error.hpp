@@ -1,0 +1,40 @@
+// What position (or speed) and reference say of a loop where nobody recorded the effort: no physics, but where the
+// tracking error comes from.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host/compare/period_search.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+/// A part of the tracking error that goes with something of the reference.
+struct TrackingPart {
+  std::string with;  ///< "constant", "speed", "direction", "acceleration"
+  double coefficient = 0.0;
+  std::string unit;    ///< of the coefficient
+  double share = 0.0;  ///< part of the squared error that is gone with it, 0..1, taken in this order
+};
+
+/// Reference less measurement.
+struct TrackingError {
+  std::string path;
+  std::string channel;  ///< x_mm, x_m, w_rad_s or v_m_s
+  double rms = 0.0, largest = 0.0, largest_at_s = 0.0;
+  std::vector<TrackingPart> parts;
+  std::vector<PeriodPeak> periods;  ///< of what the parts leave, along the travel; only where a position was recorded
+};
+
+/// Whether a record holds no effort, but a reference beside what it is the reference of.
+bool has_reference_only(const Record& record);
+
+/// Throws Failure(bad_input) where has_reference_only() does not hold.
+TrackingError tracking_error(const Record& record);
+
+std::string tracking_text(const std::vector<TrackingError>& errors);
+nlohmann::json tracking_json(const std::vector<TrackingError>& errors);  ///< "axis-tracking/1"
+
+}  // namespace host

@@ -1,0 +1,32 @@
+// How the lines of a table are divided: found from the lines themselves.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace host {
+
+struct TableLayout {
+  char separator = 0;  ///< 0 stands for any run of blanks
+  bool decimal_comma = false;
+  std::size_t fields = 0;  ///< in most lines
+
+  /// The fields of a line, without blanks and double quotes round them. A separator inside quotes does not separate.
+  void split(std::string_view line, std::vector<std::string_view>& fields) const;
+  std::optional<double> number(std::string_view field) const;
+  double last_digit(std::string_view field) const;
+  std::string_view separator_name() const;
+};
+
+/// The layout under which most of the lines have equally many fields and most of those are numbers or times.
+TableLayout find_layout(std::string_view text);
+
+/// A line of remarks in front of a table.
+bool is_remark(std::string_view line);
+
+/// Takes the next line, without its end, off `rest`; false where there is none.
+bool take_line(std::string_view& rest, std::string_view& line);
+
+}  // namespace host

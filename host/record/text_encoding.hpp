@@ -1,0 +1,12 @@
+// Text as programs of other systems save it.
+#pragma once
+
+#include <string>
+
+namespace host {
+
+/// UTF-8 without byte-order mark, of UTF-8 or UTF-16 (known by its mark, or by a zero byte beside its first character).
+/// Other encodings of one byte a character come back as they are.
+std::string as_utf8(std::string text);
+
+}  // namespace host
