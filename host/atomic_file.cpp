@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,14 +11,17 @@
 #include <filesystem>
 
 #include "host/exit_codes.hpp"
+#include "host/output_target.hpp"
 
 namespace host {
 
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* what) {
-  throw Failure(ExitCode::bad_input, fmt::format("{}: cannot {}: {}; check the folder's rights and free space", path,
-                                                 what, std::strerror(errno)));
+  const bool no_right = errno == EACCES || errno == EPERM || errno == EROFS;
+  throw Failure(
+      no_right ? ExitCode::permission : ExitCode::bad_input,
+      fmt::format("{}: cannot {}: {}; check the folder's rights and free space", path, what, std::strerror(errno)));
 }
 
 void write_all(int file, std::string_view text, const std::string& path) {
@@ -29,12 +33,20 @@ void write_all(int file, std::string_view text, const std::string& path) {
   }
 }
 
-/// Removes the temporary file when writing ends by an exception.
+/// A new file in the folder of `destination`, with its rights where it is there. Removed when writing ends by an
+/// exception. Messages name the output as the user did.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(std::string path) : path_(std::move(path)) {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (descriptor_ < 0) fail(path_, "create");
+  TemporaryFile(std::string destination, std::string name)
+      : destination_(std::move(destination)), name_(std::move(name)) {
+    const std::filesystem::path folder = std::filesystem::path(destination_).parent_path();
+    for (int number = 0; descriptor_ < 0; ++number) {
+      path_ = (folder / fmt::format(".axistool-{}-{}.partial", ::getpid(), number)).string();
+      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+      if (descriptor_ < 0 && errno != EEXIST) fail(name_, "create a file beside it");
+    }
+    struct stat old {};
+    if (::stat(destination_.c_str(), &old) == 0) ::fchmod(descriptor_, old.st_mode & 0777);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -44,17 +56,17 @@ class TemporaryFile {
   }
 
   void write_and_sync(std::string_view text) {
-    write_all(descriptor_, text, path_);
-    if (::fsync(descriptor_) != 0) fail(path_, "flush");
+    write_all(descriptor_, text, name_);
+    if (::fsync(descriptor_) != 0) fail(name_, "flush");
   }
 
-  void rename_to(const std::string& destination) {
-    if (::rename(path_.c_str(), destination.c_str()) != 0) fail(destination, "replace");
+  void take_the_place() {
+    if (::rename(path_.c_str(), destination_.c_str()) != 0) fail(name_, "replace");
     renamed_ = true;
   }
 
  private:
-  std::string path_;
+  std::string destination_, name_, path_;
   int descriptor_ = -1;
   bool renamed_ = false;
 };
@@ -70,10 +82,20 @@ void sync_folder_of(const std::string& path) {
 }  // namespace
 
 void write_file_atomically(const std::string& path, std::string_view text) {
-  TemporaryFile beside(fmt::format("{}.{}.partial", path, ::getpid()));
+  const std::string target = output_target(path);
+  TemporaryFile beside(target, path);
   beside.write_and_sync(text);
-  beside.rename_to(path);
-  sync_folder_of(path);
+  beside.take_the_place();
+  sync_folder_of(target);
+}
+
+void write_standard_output(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  finish_standard_output();
+}
+
+void finish_standard_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail("standard output", "write");
 }
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// Files that are either the old ones or the new ones, never half of each.
+// The one function that writes outputs: files are either the old ones or the new ones, never half of each.
 #pragma once
 
 #include <string>
@@ -6,7 +6,14 @@
 
 namespace host {
 
-/// Writes `text` beside `path`, fsyncs, renames. Throws Failure(bad_input) naming the path and the system's reason.
+/// Writes `text` beside the file that `path` stands for (links are followed, rights are kept), fsyncs, renames. Throws
+/// Failure naming the path and the system's reason: as output_target() does, permission, or bad_input (disk full).
 void write_file_atomically(const std::string& path, std::string_view text);
+
+/// Writes `text` on standard output and flushes it. Throws Failure(bad_input) where not all of it arrived.
+void write_standard_output(std::string_view text);
+
+/// What is still buffered for standard output. Throws as write_standard_output() does, also for what failed before.
+void finish_standard_output();
 
 }  // namespace host

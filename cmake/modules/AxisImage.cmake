@@ -1,12 +1,7 @@
 # How an image for the microcontroller is built: axis_image().
-set(AXIS_IMAGE_VERSION "0.1.0")
+include(AxisVersion)
 set(AXIS_IMAGES "${CMAKE_BINARY_DIR}/images")
 file(MAKE_DIRECTORY "${AXIS_IMAGES}")
-
-set(BUILD_VERSION "${CMAKE_BINARY_DIR}/version/build_version.hpp")
-add_custom_target(build_version BYPRODUCTS "${BUILD_VERSION}"
-  COMMAND "${CMAKE_COMMAND}" "-DROOT=${AXIS_ROOT}" "-DOUTPUT=${BUILD_VERSION}" "-DVERSION=${AXIS_IMAGE_VERSION}"
-          -P "${AXIS_ROOT}/cmake/modules/WriteBuildVersion.cmake")
 
 # The program that completes image headers runs on this machine, so this machine's compiler builds it.
 find_program(BUILD_MACHINE_CXX NAMES g++ c++ REQUIRED)

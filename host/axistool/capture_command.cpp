@@ -117,7 +117,7 @@ void run(const CaptureArguments& arguments) {
 void add_capture(CLI::App& app) {
   auto arguments = std::make_shared<CaptureArguments>();
   CLI::App* command = app.add_subcommand("capture", "Record an axis at loop rate, as it moves -> record");
-  command->add_option("-o,--output", arguments->output, "record to write (axis-record/1)")->required();
+  add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
   command->add_option("--axis", arguments->axis, "x or y")->capture_default_str();
   command
       ->add_option("--for", arguments->duration_s,

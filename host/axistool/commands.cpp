@@ -12,6 +12,8 @@ int exit_status() { return static_cast<int>(ending); }
 
 void add_all_commands(CLI::App& app) {
   add_import(app);
+  add_cut(app);
+  add_shift(app);
   add_identify(app);
   add_friction(app);
   add_design(app);
@@ -46,6 +48,7 @@ void add_all_commands(CLI::App& app) {
   add_sim(app);
   add_completion(app);
   add_udev_rule(app);
+  add_help(app);
 }
 
 }  // namespace axistool

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "host/exit_codes.hpp"
 
@@ -11,7 +13,10 @@ namespace axistool {
 /// Registers every command with the program's option parser.
 void add_all_commands(CLI::App& app);
 
+void add_help(CLI::App& app);
 void add_import(CLI::App& app);
+void add_cut(CLI::App& app);
+void add_shift(CLI::App& app);
 void add_identify(CLI::App& app);
 void add_friction(CLI::App& app);
 void add_design(CLI::App& app);
@@ -46,6 +51,12 @@ void add_diagnose(CLI::App& app);
 void add_improve(CLI::App& app);
 void add_add(CLI::App& app);
 void add_scoreboard(CLI::App& app);
+
+/// All of them, by their names.
+std::vector<const CLI::App*> commands_of(const CLI::App& app);
+
+/// What is said to a name that is none of theirs: with the nearest one.
+std::string no_command(const CLI::App& app, const std::string& name);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);

@@ -1,6 +1,7 @@
 // axistool compare: how well a model predicts records, and where it fails.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -9,7 +10,11 @@
 #include "host/axistool/json_output.hpp"
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/model_comparison.hpp"
+#include "host/compare/tracking_error.hpp"
 #include "host/model/model_file.hpp"
+#include "host/output_target.hpp"
+#include "host/record/channel_checks.hpp"
+#include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/report/text_format.hpp"
 
@@ -35,8 +40,38 @@ std::string predictions_path(const CompareArguments& arguments, std::size_t inde
       .string();
 }
 
+/// The records, where none of them holds an effort: the gate is for those that can be held against a model.
+std::vector<host::Record> records_of_tracking(const CompareArguments& arguments, const sim::DataSheet& data) {
+  std::vector<host::Record> records;
+  for (const std::string& path : arguments.records) {
+    records.push_back(host::read_record(path));
+    if (!host::has_reference_only(records.back())) return {};
+    host::adapt_to(records.back(), data);
+  }
+  return records;
+}
+
+/// Records without any effort: what position and reference say.
+void run_tracking(const CompareArguments& arguments, const std::vector<host::Record>& records) {
+  if (!arguments.predictions.empty() || !arguments.report.empty())
+    throw host::Failure(
+        host::ExitCode::bad_input,
+        "no effort was recorded (u_V or i_A), so that there is nothing to predict and no page to write: "
+        "leave out --predictions and --report");
+  std::vector<host::TrackingError> errors;
+  for (const host::Record& record : records) errors.push_back(host::tracking_error(record));
+  if (!arguments.json.empty()) write_json(host::tracking_json(errors), arguments.json);
+  if (arguments.json != "-") fmt::print("{}", host::tracking_text(errors));
+}
+
 void run(const CompareArguments& arguments) {
+  if (!arguments.predictions.empty())
+    for (std::size_t r = 0; r < arguments.records.size(); ++r) host::output_target(predictions_path(arguments, r));
   const sim::DriveDescription read = host::read_model(arguments.model);
+  if (std::vector<host::Record> tracks = records_of_tracking(arguments, read.data); !tracks.empty()) {
+    run_tracking(arguments, tracks);
+    return;
+  }
   const host::GateOptions as_logged{.accepted = arguments.accepted, .as_logged = true};
   const host::Measurements measured = host::MeasurementGate(read, as_logged).read(arguments.records);
   const std::vector<host::Record>& records = measured.training();
@@ -64,13 +99,13 @@ void run(const CompareArguments& arguments) {
 void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "how well a model predicts records, and where it fails");
-  command->add_option("MODEL", arguments->model, "model of the drive (axis-model/1)")->required();
-  command->add_option("RECORD", arguments->records, "records of the drive (axis-record/1)")->required();
+  add_input(*command, "MODEL", arguments->model, "model of the drive (axis-model/1)")->required();
+  add_input(*command, "RECORD", arguments->records, "records of the drive (axis-record/1)")->required();
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
-  command->add_option("--report", arguments->report, "write an HTML page with plots to this file");
-  command->add_option("--predictions", arguments->predictions,
-                      "write measured and predicted rows as CSV; with several records one file each: FILE-1-NAME.csv");
+  add_output(*command, "--report", arguments->report, "write an HTML page with plots to this file");
+  add_output(*command, "--predictions", arguments->predictions,
+             "write measured and predicted rows as CSV; with several records one file each: FILE-1-NAME.csv");
   command
       ->add_option("--window", arguments->window_s,
                    "length of a prediction, s; it restarts from the smoothed measured state")

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/demo/demonstration.hpp"
 #include "host/report/terminal.hpp"
@@ -52,7 +53,8 @@ void add_demo(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
   CLI::App* command =
       app.add_subcommand("demo", "identify a shipped record, control the paper's axes, report with plots");
-  command->add_option("-o,--output", arguments->output, "folder for the report, index.html")->required();
+  add_output(*command, "-o,--output", arguments->output, "folder for the report, index.html", FileRole::output_folder)
+      ->required();
   command->add_option("--emps", arguments->emps, "folder with DATA_EMPS.mat and DATA_EMPS_PULSES.mat")
       ->check(CLI::ExistingDirectory);
   command->add_option("--data", arguments->data, "folder of the shipped record")->capture_default_str();

@@ -8,6 +8,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/identify/design_json.hpp"
+#include "host/identify/plausibility.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/board_parameters.hpp"
 #include "host/parameters/compensation_parameters.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 struct DesignArguments {
   std::string model, output, json;
+  std::vector<std::string> accepted;
   host::DesignOptions options;
 };
 
@@ -54,7 +56,8 @@ void print_compensation(const sim::DriveDescription& model) {
 }
 
 void run(const DesignArguments& arguments) {
-  const sim::DriveDescription model = host::read_model(arguments.model);
+  const sim::DriveDescription model = host::read_model(arguments.model, host::Bounds::examined_later);
+  host::require_plausible(model, arguments.accepted);
   const host::AxisDesign design = host::design_axis(model, arguments.options);
   if (!arguments.output.empty()) {
     host::write_file_atomically(arguments.output,
@@ -72,8 +75,8 @@ void run(const DesignArguments& arguments) {
 void add_design(CLI::App& app) {
   auto arguments = std::make_shared<DesignArguments>();
   CLI::App* command = app.add_subcommand("design", "Kalman gain and state feedback from a model -> board parameters");
-  command->add_option("MODEL", arguments->model, "model file (axis-model/1)")->required();
-  command->add_option("-o,--output", arguments->output, "file for the board parameters (axis-params/1)");
+  add_input(*command, "MODEL", arguments->model, "model file (axis-model/1)")->required();
+  add_output(*command, "-o,--output", arguments->output, "file for the board parameters (axis-params/1)");
   command->add_option("--rw", arguments->options.tach_variance,
                       "tachometer variance, rad^2/s^2 (default 0.05) or m^2/s^2 (default: the model's own)");
   command->add_option("--rwd", arguments->options.disturbance_variance, "disturbance variance, V^2")
@@ -83,6 +86,9 @@ void add_design(CLI::App& app) {
   command->add_option("--fc", arguments->options.bandwidth_Hz, "natural frequency of the closed loop, Hz")
       ->capture_default_str();
   command->add_option("--zeta", arguments->options.damping, "damping ratio of the closed loop")->capture_default_str();
+  command->add_option("--accept", arguments->accepted,
+                      "design although the values of this effect (inertia, viscous, coulomb, …) are none that a drive "
+                      "has or that its records determine");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
@@ -92,7 +98,7 @@ void add_design(CLI::App& app) {
       "resonance limits it; keep it well below the observer's fn. The file also switches on what the board can\n"
       "compensate of the model's effects (cogging, presliding, friction along the travel, backlash, tachometer): "
       "after\n"
-      "`improve`, design again and set-params once.");
+      "`improve`, design again and set-params once. Exit code 8: the model's values are none that a drive can have.");
   command->callback([arguments] { run(*arguments); });
 }
 

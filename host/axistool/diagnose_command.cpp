@@ -60,7 +60,7 @@ void add_diagnose(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("diagnose", "which physical effect is missing from a model, and how sure is that");
   arguments->add_to(*command);
-  command->add_option("--report", arguments->report, "write a self-contained HTML report to this file");
+  add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   command->footer(
       "Example:\n  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
       "Exit code 0 whatever the verdict; 9 for a bad file.");

@@ -94,8 +94,8 @@ void clear_faults(const FaultArguments& arguments) {
 void add_faults(CLI::App& app) {
   auto arguments = std::make_shared<FaultArguments>();
   CLI::App* command = app.add_subcommand("faults", "Faults of a board: cause, remedy, and what happened just before");
-  command->add_option("--record", arguments->record,
-                      "write what the axis kept of the time before its fault to this file");
+  add_output(*command, "--record", arguments->record,
+             "write what the axis kept of the time before its fault to this file");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   add_device_options(*command, *arguments);
   command->footer("Examples:\n  axistool faults\n  axistool faults --record last.csv\nExit code 6: there is a fault.");

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "hal/linux/gpio_line.hpp"
+#include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/device/image_file.hpp"
 #include "host/device/run_command.hpp"
@@ -118,7 +119,7 @@ void run(const FlashArguments& arguments) {
 void add_flash(CLI::App& app) {
   auto arguments = std::make_shared<FlashArguments>();
   CLI::App* command = app.add_subcommand("flash", "write an image onto a board and verify it");
-  command->add_option("IMAGE", arguments->image, "image file (.bin)")->capture_default_str();
+  add_input(*command, "IMAGE", arguments->image, "image file (.bin)")->capture_default_str();
   command->add_option("--board", arguments->board, "the board that is connected")->capture_default_str();
   CLI::Option* chip = command->add_option("--gpiochip", arguments->gpiochip, "GPIO chip wired to BOOT0 and NRST");
   CLI::Option* boot0 = command->add_option("--boot0", arguments->boot0, "its line at BOOT0")->needs(chip);

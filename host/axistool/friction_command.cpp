@@ -95,10 +95,11 @@ void run(const FrictionArguments& arguments) {
 void add_friction(CLI::App& app) {
   auto arguments = std::make_shared<FrictionArguments>();
   CLI::App* command = app.add_subcommand("friction", "friction curve from jogs at constant speeds -> model");
-  command->add_option("RECORD", arguments->records, "records with jogs both ways; constant speeds are found in them")
+  add_input(*command, "RECORD", arguments->records, "records with jogs both ways; constant speeds are found in them")
       ->required();
+  // Not an input in the sense of add_input(): the model may be written again under its own name.
   command->add_option("--model", arguments->model, "model with inertia (and a first viscous friction)")->required();
-  command->add_option("-o,--output", arguments->output, "model to write, with the friction curve");
+  add_output(*command, "-o,--output", arguments->output, "model to write, with the friction curve");
   command
       ->add_option("--method", arguments->method,
                    "joint: one fit of B', Coulomb, static, omega1, omega2 to the mean control signal; paper: as "

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +24,22 @@ struct HilArguments {
   bool fault_page = false;
 };
 
+std::string stem_of(const std::string& scenario, const std::string& folder) {
+  return (std::filesystem::path(folder) / std::filesystem::path(scenario).stem()).string();
+}
+
+/// The files of a scenario are named after it: two of one name would overwrite each other's.
+void check_names(const HilArguments& arguments) {
+  std::map<std::string, std::string> taken;
+  for (const std::string& path : arguments.scenarios) {
+    const auto [other, is_new] = taken.emplace(stem_of(path, arguments.output), path);
+    if (!is_new)
+      throw host::Failure(host::ExitCode::usage,
+                          fmt::format("{} and {} would write files of one name into {}: run them one at a time",
+                                      other->second, path, arguments.output));
+  }
+}
+
 void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, const std::string& folder) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
@@ -30,12 +47,12 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
     throw host::Failure(host::ExitCode::bad_input,
                         fmt::format("{}: cannot make this folder: {}", folder, fault.message()));
   }
-  const auto stem = std::filesystem::path(folder) / std::filesystem::path(scenario.path).stem();
+  const std::string stem = stem_of(scenario.path, folder);
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
-    host::write_record(run.records[i], fmt::format("{}-{}.csv", stem.string(), host::kAxisNames[i]));
-    host::write_model(run.believed[i], fmt::format("{}-{}.toml", stem.string(), host::kAxisNames[i]));
+    host::write_record(run.records[i], fmt::format("{}-{}.csv", stem, host::kAxisNames[i]));
+    host::write_model(run.believed[i], fmt::format("{}-{}.toml", stem, host::kAxisNames[i]));
   }
-  host::scenario_report(scenario, run).write(stem.string() + ".html");
+  host::scenario_report(scenario, run).write(stem + ".html");
 }
 
 /// "x=FILE": what the controller of this axis is told in place of what the scenario says.
@@ -55,6 +72,7 @@ void run(const HilArguments& arguments) {
   }
   if (arguments.scenarios.empty())
     throw host::Failure(host::ExitCode::usage, "no scenario is named; the shipped ones are in host/hil/scenarios");
+  if (!arguments.output.empty()) check_names(arguments);
   nlohmann::json all = nlohmann::json::array();
   bool holds = true;
   for (const std::string& path : arguments.scenarios) {
@@ -80,12 +98,12 @@ void run(const HilArguments& arguments) {
 void add_hil(CLI::App& app) {
   auto arguments = std::make_shared<HilArguments>();
   CLI::App* command = app.add_subcommand("hil", "run scenarios: the board's firmware around simulated drives");
-  command->add_option("SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1)")->check(CLI::ExistingFile);
-  command->add_option("-o,--output", arguments->output,
-                      "folder for records (x, y), the controllers' models, and an HTML report of each scenario");
-  command
-      ->add_option("--model", arguments->models,
-                   "x=FILE or y=FILE: design this axis's controller from this model instead")
+  add_input(*command, "SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1)")->check(CLI::ExistingFile);
+  add_output(*command, "-o,--output", arguments->output,
+             "folder for records (x, y), the controllers' models, and an HTML report of each scenario",
+             FileRole::output_folder);
+  add_input(*command, "--model", arguments->models,
+            "x=FILE or y=FILE: design this axis's controller from this model instead")
       ->take_all();
   add_json_option(*command, arguments->json);
   command->add_flag("--fault-page", arguments->fault_page,

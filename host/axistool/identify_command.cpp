@@ -114,10 +114,10 @@ void run(const IdentifyArguments& arguments) {
 void add_identify(CLI::App& app) {
   auto arguments = std::make_shared<IdentifyArguments>();
   CLI::App* command = app.add_subcommand("identify", "inertia, viscous and Coulomb friction from records -> model");
-  command->add_option("RECORD", arguments->records, "records of one drive (axis-record/1); several are stacked")
+  add_input(*command, "RECORD", arguments->records, "records of one drive (axis-record/1); several are stacked")
       ->required();
-  command->add_option("-o,--output", arguments->output, "model to write (axis-model/1)");
-  command->add_option("--drive", arguments->drive, "data sheet of the drive: a model file, with or without effects");
+  add_output(*command, "-o,--output", arguments->output, "model to write (axis-model/1)");
+  add_input(*command, "--drive", arguments->drive, "data sheet of the drive: a model file, with or without effects");
   command
       ->add_option("--method", arguments->method,
                    "ls: friction left out; unbiased-ls: the paper's, with Coulomb friction; sliding-ls: inverse model "

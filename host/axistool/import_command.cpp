@@ -96,9 +96,8 @@ void run(const Options& options) {
 void add_import(CLI::App& app) {
   CLI::App* command = app.add_subcommand("import", "Make a record of a MATLAB file or of any table");
   const auto options = std::make_shared<Options>();
-  command
-      ->add_option("file", options->file,
-                   "the log: .mat (v4, v5, v7.3) or a table with commas, semicolons, tabs or blanks")
+  add_input(*command, "file", options->file,
+            "the log: .mat (v4, v5, v7.3) or a table with commas, semicolons, tabs or blanks")
       ->required();
   command->add_option("--map", options->map, "column=variable[*factor][+shift], … (see below)");
   command
@@ -107,7 +106,7 @@ void add_import(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--drive", options->drive, "name of the drive, for the record's header");
   CLI::Option* list = command->add_flag("--list", options->list, "show what the log holds, and write nothing");
-  CLI::Option* output = command->add_option("-o,--output", options->output, "the record to write");
+  CLI::Option* output = add_output(*command, "-o,--output", options->output, "the record to write");
   output->excludes(list);
   add_json_option(*command, options->json);
   command->footer(kFooter);

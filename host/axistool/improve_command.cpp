@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <memory>
 
 #include "host/axistool/commands.hpp"
@@ -9,17 +10,23 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/identify/plausibility.hpp"
 #include "host/report/terminal.hpp"
 
 namespace axistool {
 
 namespace {
 
+void print_doubts(const sim::DriveDescription& model) {
+  for (const std::string& warning : host::messages_of(host::doubts_of(model))) fmt::print("warning: {}\n", warning);
+}
+
 void print(const host::Improvement& improvement, const std::string& output) {
   print_log(improvement.first.log);
   fmt::print("{}", host::terminal_bars(host::ladder_chart(improvement), host::terminal_of(stdout)));
   fmt::print("Stopped because {}.\n", improvement.stopped_because);
   fmt::print("Last verdict: {}. {}\n", host::status_name(improvement.verdict.status), improvement.verdict.explanation);
+  print_doubts(improvement.model);
   fmt::print("Model written to {}\n", output);
 }
 
@@ -32,7 +39,11 @@ void run_improve(const InsightArguments& arguments) {
   }
   host::write_model(improvement.model, arguments.output);
   if (!arguments.report.empty()) host::write_improvement_report(improvement, arguments.model, arguments.report);
-  if (!arguments.json.empty()) write_json(host::to_json(improvement, arguments.output), arguments.json);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::to_json(improvement, arguments.output);
+    document["warnings"] = host::messages_of(host::doubts_of(improvement.model));
+    write_json(document, arguments.json);
+  }
   if (arguments.json != "-") print(improvement, arguments.output);
 }
 
@@ -40,6 +51,11 @@ void run_add(const InsightArguments& arguments, const std::string& kind) {
   const InsightRecords records(arguments);
   const host::Addition addition = host::add_effect(records.model, kind, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;
+  if (!(judged.before > 0.0) || !std::isfinite(judged.before) || !std::isfinite(judged.after))
+    throw host::Failure(host::ExitCode::refused,
+                        fmt::format("{}: nothing was fitted: no stretch of these records judges it (error over floor "
+                                    "{:.3f} -> {:.3f}); record longer, or give --validate. No model is written",
+                                    kind, judged.before, judged.after));
   host::write_model(judged.model, arguments.output);
   if (!arguments.json.empty()) {
     nlohmann::json estimates = nlohmann::json::array();
@@ -59,6 +75,7 @@ void run_add(const InsightArguments& arguments, const std::string& kind) {
                 {"held_back", addition.held_back},
                 {"parameters", estimates},
                 {"log", host::log_faults_json(records.measurements.log())},
+                {"warnings", host::messages_of(host::doubts_of(judged.model))},
                 {"model", arguments.output}},
                arguments.json);
   }
@@ -74,6 +91,7 @@ void run_add(const InsightArguments& arguments, const std::string& kind) {
                    ? ""
                    : fmt::format("  moves with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
   }
+  print_doubts(judged.model);
   fmt::print("Model written to {}\n", arguments.output);
 }
 
@@ -83,8 +101,8 @@ void add_improve(CLI::App& app) {
   auto arguments = std::make_shared<InsightArguments>();
   CLI::App* command = app.add_subcommand("improve", "diagnose and add effects until nothing earns its place");
   arguments->add_to(*command);
-  command->add_option("-o,--output", arguments->output, "the improved model")->required();
-  command->add_option("--report", arguments->report, "write a self-contained HTML report to this file");
+  add_output(*command, "-o,--output", arguments->output, "the improved model")->required();
+  add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   command->footer("Example:\n  axistool improve x.toml --train steps.csv jog.csv --validate other.csv -o better.toml");
   command->callback(
       [arguments] { with_log_of_failure(arguments->json, "axis-improvement/1", [&] { run_improve(*arguments); }); });
@@ -94,11 +112,11 @@ void add_add(CLI::App& app) {
   auto arguments = std::make_shared<InsightArguments>();
   auto kind = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("add", "add one effect to a model and fit all parameters again");
-  command->add_option("model", arguments->model, "model file (axis-model/1)")->required();
+  add_input(*command, "model", arguments->model, "model file (axis-model/1)")->required();
   command->add_option("kind", *kind, "the effect; axistool effects lists them")->required();
-  command->add_option("--train", arguments->train, "records that the fit may see")->required();
-  command->add_option("--validate", arguments->validate, "records that judge");
-  command->add_option("-o,--output", arguments->output, "the new model")->required();
+  add_input(*command, "--train", arguments->train, "records that the fit may see")->required();
+  add_input(*command, "--validate", arguments->validate, "records that judge");
+  add_output(*command, "-o,--output", arguments->output, "the new model")->required();
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");

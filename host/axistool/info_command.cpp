@@ -54,7 +54,7 @@ void describe_board(const InfoArguments& arguments) {
 void add_info(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand("info", "What a board, or a firmware image, says about itself");
-  command->add_option("IMAGE", arguments->image, "image file (.bin); without it, the board");
+  add_input(*command, "IMAGE", arguments->image, "image file (.bin); without it, the board");
   add_device_options(*command, *arguments);
   command->footer(
       "Examples:\n"

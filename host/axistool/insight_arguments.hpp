@@ -18,10 +18,10 @@ struct InsightArguments {
   std::vector<std::string> train, validate, accepted;
 
   void add_to(CLI::App& command) {
-    command.add_option("model", model, "model file (axis-model/1)")->required();
-    command.add_option("--train", train, "records that the fit may see")->required();
-    command.add_option("--validate", validate,
-                       "records that judge; without them blocks of the training data are kept back");
+    add_input(command, "model", model, "model file (axis-model/1)")->required();
+    add_input(command, "--train", train, "records that the fit may see")->required();
+    add_input(command, "--validate", validate,
+              "records that judge; without them blocks of the training data are kept back");
     add_accept_option(command, accepted);
     add_json_option(command, json);
   }

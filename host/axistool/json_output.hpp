@@ -2,23 +2,23 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "host/atomic_file.hpp"
+#include "host/axistool/command_options.hpp"
 
 namespace axistool {
 
 inline void add_json_option(CLI::App& command, std::string& destination) {
-  command.add_option("--json", destination, "write the result as JSON to this file; - is standard output, alone");
+  add_output(command, "--json", destination, "write the result as JSON to this file; - is standard output, alone");
 }
 
 /// "-" prints the one document on standard output; anything else is a file, replaced as a whole.
 inline void write_json(const nlohmann::json& document, const std::string& destination) {
   const std::string text = document.dump(2) + "\n";
   if (destination == "-") {
-    std::fputs(text.c_str(), stdout);
+    host::write_standard_output(text);
   } else {
     host::write_file_atomically(destination, text);
   }

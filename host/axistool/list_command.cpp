@@ -24,17 +24,22 @@ bool simulated_board_listens() {
 
 void run(const DeviceArguments& arguments) {
   nlohmann::json boards = nlohmann::json::array();
+  const auto add = [&](const std::string& device, const std::string& product, const std::string& path) {
+    if (arguments.device.empty() || arguments.device == device)
+      boards.push_back({{"device", device}, {"product", product}, {"path", path}});
+  };
   for (const host::UsbBoard& board : host::find_usb_boards())
-    boards.push_back({{"device", "usb:" + board.serial_number}, {"product", board.product}, {"path", board.path}});
-  if (simulated_board_listens())
-    boards.push_back({{"device", "sim"}, {"product", "simulated board"}, {"path", host::default_socket_path()}});
+    add("usb:" + board.serial_number, board.product, board.path);
+  if (simulated_board_listens()) add("sim", "simulated board", host::default_socket_path());
   if (boards.empty()) end_with(host::ExitCode::no_such_device);
   if (!arguments.json.empty()) write_json({{"format", "axis-board-list/1"}, {"boards", boards}}, arguments.json);
   if (!talks(arguments)) return;
   for (const nlohmann::json& board : boards)
     fmt::print("{:<32} {:<20} {}\n", board["device"].get<std::string>(), board["product"].get<std::string>(),
                board["path"].get<std::string>());
-  if (boards.empty()) fmt::print("no board on USB, and no simulated one: plug one in, or start `axistool sim`\n");
+  if (boards.empty())
+    fmt::print("{}: plug one in, or start `axistool sim`\n",
+               arguments.device.empty() ? "no board on USB, and no simulated one" : arguments.device + " is not there");
 }
 
 }  // namespace
@@ -42,6 +47,7 @@ void run(const DeviceArguments& arguments) {
 void add_list(CLI::App& app) {
   auto arguments = std::make_shared<DeviceArguments>();
   CLI::App* command = app.add_subcommand("list", "Boards that are plugged in, and the simulated one");
+  command->add_option("--device", arguments->device, "only this one: usb:SERIAL or sim");
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool list --json -\nExit code 3: there is none.");
   command->callback([arguments] { run(*arguments); });

@@ -5,20 +5,23 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "host/atomic_file.hpp"
+#include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/exit_codes.hpp"
 
-int main(int argc, char** argv) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs steps that it tried in vain
-  CLI::App app{"Identify feed drives, compare models with measurements, and find the physical effect that is missing."};
-  app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done; 1 the answer is no; 2 usage; 3 no such device; 4 permission; 5 protocol or CRC;\n"
-      "6 the device reports a fault; 7 time-out; 8 refused for safety or for want of excitation; 9 bad input file.");
-  axistool::add_all_commands(app);
+namespace {
+
+/// Parses and runs; failures of the user's making come back as exit codes.
+int run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::string first = argc > 1 ? argv[1] : "";
+    if (error.get_exit_code() != 0 && app.get_subcommands().empty() && !first.empty() && !first.starts_with('-')) {
+      std::fprintf(stderr, "axistool: %s\n", axistool::no_command(app, first).c_str());
+      return static_cast<int>(host::ExitCode::usage);
+    }
     const int code = app.exit(error);
     return code == 0 ? 0 : static_cast<int>(host::ExitCode::usage);
   } catch (const host::Failure& failure) {
@@ -29,4 +32,25 @@ int main(int argc, char** argv) {
     return static_cast<int>(host::ExitCode::bad_input);
   }
   return axistool::exit_status();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs steps that it tried in vain
+  CLI::App app{"Identify feed drives, compare models with measurements, and find the physical effect that is missing."};
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done; 1 the answer is no; 2 usage; 3 no such device; 4 permission; 5 protocol or CRC;\n"
+      "6 the device reports a fault; 7 time-out; 8 refused for safety or for want of excitation; 9 bad input file.");
+  axistool::add_all_commands(app);
+  app.parse_complete_callback([&app] { axistool::check_options(app); });
+  const int status = run(app, argc, argv);
+  try {
+    host::finish_standard_output();
+  } catch (const host::Failure& failure) {
+    std::fprintf(stderr, "axistool: %s\n", failure.what());
+    return status != 0 ? status : static_cast<int>(failure.code);
+  }
+  return status;
 }

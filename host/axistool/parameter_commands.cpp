@@ -165,7 +165,7 @@ void add_get_params(CLI::App& app) {
 void add_set_params(CLI::App& app) {
   auto arguments = std::make_shared<ParameterArguments>();
   CLI::App* command = app.add_subcommand("set-params", "Give a board parameters: all of them, or none if one is wrong");
-  command->add_option("FILE|NAME=VALUE", arguments->sources, "files (axis-params/1) and single values, in this order")
+  add_input(*command, "FILE|NAME=VALUE", arguments->sources, "files (axis-params/1) and single values, in this order")
       ->required();
   command->add_option("--axis", arguments->axis, "axis of the board that a file's one axis is meant for: x, y …");
   command->add_flag("--save", arguments->save, "save them too, as `axistool save` does");
@@ -183,7 +183,7 @@ void add_set_params(CLI::App& app) {
 void add_diff_params(CLI::App& app) {
   auto arguments = std::make_shared<ParameterArguments>();
   CLI::App* command = app.add_subcommand("diff-params", "Where a board's parameters differ from a file, bit by bit");
-  command->add_option("FILE", arguments->sources, "file of parameters; what it does not name is not compared");
+  add_input(*command, "FILE", arguments->sources, "file of parameters; what it does not name is not compared");
   command->add_flag("--defaults", arguments->defaults, "compare with the initial values");
   command->add_option("--axis", arguments->axis, "axis of the board that the file's one axis is meant for: x, y …");
   add_device_options(*command, *arguments);

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "firmware/app/parameters/parameter_values.hpp"
+#include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/device/socket_board.hpp"
 #include "host/device/usb_board.hpp"
@@ -37,6 +38,17 @@ std::string default_flash_file() {
   return std::string(home != nullptr ? home : "/tmp") + "/.local/state/axis/simulated-flash.bin";
 }
 
+void make_folder_of(const std::string& flash_file) {
+  const auto folder = std::filesystem::path(flash_file).parent_path();
+  std::error_code fault;
+  if (!folder.empty()) std::filesystem::create_directories(folder, fault);
+  if (fault)
+    throw host::Failure(host::ExitCode::permission,
+                        fmt::format("{}: cannot make the folder of the board's parameters: {}; --flash FILE keeps them "
+                                    "elsewhere, --forget nowhere",
+                                    folder.string(), fault.message()));
+}
+
 /// Where no model is given the paper's two axes take turns.
 host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
   return {file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_model(file)};
@@ -56,8 +68,7 @@ void run(SimArguments arguments) {
     options.drives.push_back(drive(arguments.models[axis], axis));
   if (!arguments.forget) {
     options.flash_file = arguments.flash.empty() ? default_flash_file() : arguments.flash;
-    if (const auto folder = std::filesystem::path(options.flash_file).parent_path(); !folder.empty())
-      std::filesystem::create_directories(folder);
+    make_folder_of(options.flash_file);
   }
   host::SimulatedDevice device(options);
   std::signal(SIGINT, [](int) { stop = true; });
@@ -72,7 +83,7 @@ void run(SimArguments arguments) {
   tell("at " + arguments.socket, options.flash_file,
        arguments.socket == host::default_socket_path() ? "sim" : "socket:" + arguments.socket);
   host::serve_simulated_device(device, listener, stop);
-  std::filesystem::remove(arguments.socket);
+  host::remove_socket(arguments.socket);
 }
 
 }  // namespace
@@ -92,9 +103,9 @@ void add_sim(CLI::App& app) {
       ->check(CLI::Range(std::size_t{1}, hal::kMostAxes))
       ->capture_default_str();
   for (std::size_t axis = 0; axis < hal::kMostAxes; ++axis)
-    command->add_option(fmt::format("--{}", firmware::kAxisNames[axis]), arguments->models[axis],
-                        axis == 0 ? "model of the drive on axis x (axis-model/1); default: the paper's x axis"
-                                  : "likewise of the next axis, if there is one");
+    add_input(*command, fmt::format("--{}", firmware::kAxisNames[axis]), arguments->models[axis],
+              axis == 0 ? "model of the drive on axis x (axis-model/1); default: the paper's x axis"
+                        : "likewise of the next axis, if there is one");
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();

@@ -8,7 +8,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/parameter_commands.hpp"
-#include "host/parameters/parameter_file.hpp"
+#include "host/parameters/backup_file.hpp"
 
 namespace axistool {
 
@@ -49,7 +49,7 @@ void backup(const StoreArguments& arguments) {
                      firmware::ValueProblem::none;
     if (!fits) foreign.push_back(entry);
   }
-  host::write_file_atomically(arguments.file, host::format_parameter_file(values, foreign));
+  host::write_file_atomically(arguments.file, host::format_backup(values, foreign));
   if (!arguments.json.empty())
     write_json({{"format", "axis-backup/1"},
                 {"file", arguments.file},
@@ -63,7 +63,7 @@ void backup(const StoreArguments& arguments) {
 }
 
 void restore(const StoreArguments& arguments) {
-  const std::vector<host::Assignment> list = host::read_parameter_file(arguments.file);
+  const std::vector<host::Assignment> list = host::read_backup(arguments.file);
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
   const firmware::ParameterValues before = board.read_values();
@@ -103,7 +103,7 @@ void add_save(CLI::App& app) {
 void add_backup(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
   CLI::App* command = app.add_subcommand("backup", "Write all parameters of a board to a file");
-  command->add_option("FILE", arguments->file, "file to write (axis-params/1)")->required();
+  add_output(*command, "FILE", arguments->file, "file to write (axis-params/1)")->required();
   add_device_options(*command, *arguments);
   command->footer("Example:\n  axistool backup machine-7.toml");
   command->callback([arguments] { backup(*arguments); });
@@ -112,7 +112,7 @@ void add_backup(CLI::App& app) {
 void add_restore(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
   CLI::App* command = app.add_subcommand("restore", "Give a board exactly the parameters of a backup, and save them");
-  command->add_option("FILE", arguments->file, "file that backup wrote")->required();
+  add_input(*command, "FILE", arguments->file, "file that backup wrote")->required();
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer("Example:\n  axistool restore machine-7.toml --yes");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -71,6 +72,20 @@ int connect(const OwnedDescriptor& socket, const sockaddr_un& address) {
   return ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
 }
 
+bool is_socket(const std::string& path) {
+  struct stat found {};
+  return ::lstat(path.c_str(), &found) == 0 && S_ISSOCK(found.st_mode);
+}
+
+/// What a board that has gone left behind may be removed; nothing else may.
+void require_no_other_file(const std::string& path) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) != 0 || S_ISSOCK(found.st_mode)) return;
+  throw Failure(
+      ExitCode::usage,
+      fmt::format("{}: a file that is no socket is there, and it stays: --socket PATH chooses another", path));
+}
+
 }  // namespace
 
 OwnedDescriptor::~OwnedDescriptor() {
@@ -95,11 +110,16 @@ std::string default_socket_path() {
   return fmt::format("/tmp/axis-sim-{}.socket", ::getuid());
 }
 
+void remove_socket(const std::string& path) {
+  if (is_socket(path)) ::unlink(path.c_str());
+}
+
 OwnedDescriptor listen_at_socket(const std::string& path) {
   const sockaddr_un address = address_of(path);
   if (connect(new_socket(), address) == 0)
     throw Failure(ExitCode::refused,
                   fmt::format("a simulated board is running at {} already; --socket PATH chooses another", path));
+  require_no_other_file(path);
   ::unlink(path.c_str());
   OwnedDescriptor socket = new_socket();
   if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||

@@ -33,7 +33,10 @@ std::unique_ptr<ReportLink> connect_to_socket(const std::string& path);
 std::string default_socket_path();
 
 /// A listening socket; one that a program left behind at `path` is replaced. Throws Failure(refused) when another
-/// simulated board listens there.
+/// simulated board listens there, Failure(usage) where another kind of file is.
 OwnedDescriptor listen_at_socket(const std::string& path);
+
+/// Removes the socket at `path`; leaves any other kind of file.
+void remove_socket(const std::string& path);
 
 }  // namespace host

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "host/read_file.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
 #include "tests/host/temporary_folder.hpp"
 
@@ -73,6 +75,31 @@ TEST_F(Compare, SeveralRecordsGetAFileEach) {
       0);
   EXPECT_EQ(lines_of(folder.path("p-1-validate.csv")).size(), lines_of(record).size());
   EXPECT_EQ(lines_of(folder.path("p-2-train-jog.csv")).size(), lines_of(jog).size());
+}
+
+/// The rows behind the last whole window are predicted too; what reaches back before a window needs weights there.
+TEST_F(Compare, PredictionsEndWithWhatIsLeftOfAWindow) {
+  const auto lines = lines_of(record);
+  std::string cut = "# format: axis-record/1\n# sample_period_s: 0.001\n";
+  for (std::size_t k = 0; k < 1533; ++k) cut += lines[k] + "\n";
+  const std::string delayed = folder.write(
+      "delayed.toml",
+      host::read_file(model) + "\n[[effect]]\nkind = \"input_delay\"\ndelay_s = 0.002\n" +
+          "[[effect]]\nkind = \"encoder_cyclic_error\"\ncosine_mm = 0.01\nsine_mm = 0.0\nperiod_mm = 2.0\n");
+  const std::string predictions = folder.path("p.csv");
+  const ProgramRun run =
+      run_axistool("compare " + delayed + " " + folder.write("cut.csv", cut) + " --predictions " + predictions);
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_EQ(lines_of(predictions).size(), 1533u);
+}
+
+/// A first capture is often one: nothing slides, so nothing can be asked of a regression.
+TEST_F(Compare, ARecordAtRestIsSaidToBeOne) {
+  std::string rest = "# format: axis-record/1\n# sample_period_s: 0.001\nt_s,u_V,x_mm,w_rad_s\n";
+  for (int k = 0; k < 1500; ++k)
+    rest += fmt::format("{:.3f},{:.2f},5.0,{:.3f}\n", 0.001 * k, 0.01 * (k % 7), 0.01 * ((k * 7919) % 11 - 5));
+  const ProgramRun run = run_axistool("compare " + model + " " + folder.write("rest.csv", rest));
+  EXPECT_THAT(run.exit_code, testing::AnyOf(0, 8)) << run.output;
 }
 
 TEST_F(Compare, FailsAboveTheLimitThatIsGiven) {

@@ -1,0 +1,30 @@
+// Options that name files, and what holds for the options of all commands: checked after parsing, before anything runs.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace axistool {
+
+enum class FileRole { input, output, output_folder };
+
+void note_role(const CLI::Option& option, FileRole role);
+
+/// An option or positional for files that the command reads: no output may take the place of one. (The one exception,
+/// declared without it, is a model that a command reads in order to write it again.)
+template <typename T>
+CLI::Option* add_input(CLI::App& command, const std::string& name, T& destination, const std::string& help) {
+  CLI::Option* const option = command.add_option(name, destination, help);
+  note_role(*option, FileRole::input);
+  return option;
+}
+
+/// An option for a file or, by its role, a folder to write; "-" is standard output.
+CLI::Option* add_output(CLI::App& command, const std::string& name, std::string& destination, const std::string& help,
+                        FileRole role = FileRole::output);
+
+/// Inputs are protected, outputs can be written and are not each other's, numbers are finite (option parsers take "nan"
+/// as lying within any range). Throws host::Failure.
+void check_options(const CLI::App& program);
+
+}  // namespace axistool
