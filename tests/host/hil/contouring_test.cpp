@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/exit_codes.hpp"
 #include "host/hil/commissioning.hpp"
 #include "host/identify/paper_drives.hpp"
 
