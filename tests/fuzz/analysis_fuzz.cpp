@@ -3,10 +3,10 @@
 #include <string_view>
 
 #include "host/compare/model_comparison.hpp"
+#include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/identification.hpp"
 #include "host/model/model_file.hpp"
-#include "host/record/channel_checks.hpp"
 #include "host/record/read_record.hpp"
 
 namespace {
@@ -50,14 +50,14 @@ sine_mm = 0.0
 period_mm = 2.0
 )";
 
-void try_out(const host::Record& record, const sim::DriveDescription& model) {
+void try_out(const host::Measurements& measured, const sim::DriveDescription& model) {
   try {
-    host::identify_drive({record}, model, host::default_method({record}));
+    host::identify_drive(measured, model, host::default_method(measured.training()));
   } catch (const host::Failure&) {
   }
   try {
-    const host::RecordSet set = host::compare_on({&record}, model);
-    host::compare_model(model, {record}, set, host::kWindow_s);
+    const host::RecordSet set = host::compare_on(measured.training_records(), model);
+    host::compare_model(model, measured, set, host::kWindow_s);
     host::predictions_csv(model, set.records.front().prepared);
   } catch (const host::Failure&) {
   }
@@ -70,10 +70,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size > kLongest) return 0;
   static const sim::DriveDescription model = host::parse_model(kModel, "model.toml");
   try {
-    host::Record record = host::parse_record({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
-    host::adapt_to(record, model.data);
-    host::check_units(record, model.data);
-    try_out(record, model);
+    const host::GateOptions as_logged{.accepted = {}, .as_logged = true};
+    std::vector<host::Record> records{host::parse_record({reinterpret_cast<const char*>(data), size}, "fuzz.csv")};
+    try_out(host::MeasurementGate(model, as_logged).admit(std::move(records)), model);
   } catch (const host::Failure&) {
   }
   return 0;
