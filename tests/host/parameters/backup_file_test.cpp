@@ -30,8 +30,7 @@ TEST(Backup, ReadsBackEveryBit) {
   firmware::ParameterValues read;
   for (const host::Assignment& one : host::parse_backup(host::format_backup(values), "b.toml"))
     read.set(one.place, one.value);
-  for (std::size_t place = 0; place < values.size(); ++place)
-    EXPECT_EQ(read.at(place), values.at(place)) << place;
+  for (std::size_t place = 0; place < values.size(); ++place) EXPECT_EQ(read.at(place), values.at(place)) << place;
 }
 
 TEST(Backup, CutAnywhereIsRefused) {
