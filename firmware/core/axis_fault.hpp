@@ -33,6 +33,7 @@ enum class AxisFault : std::uint8_t {
   other_axis_stopped = 23,
   command_without_motion = 24,
   limit_cycle = 25,
+  converter_not_as_set = 26,
 };
 
 }  // namespace firmware

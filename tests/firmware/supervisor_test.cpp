@@ -35,7 +35,8 @@ TEST(FaultTable, NumbersAreFrozen) {
   EXPECT_EQ(static_cast<int>(AxisFault::other_axis_stopped), 23);
   EXPECT_EQ(static_cast<int>(AxisFault::command_without_motion), 24);
   EXPECT_EQ(static_cast<int>(AxisFault::limit_cycle), 25);
-  EXPECT_EQ(firmware::kFaults.size(), 26u) << "a new fault takes the next number; freeze it here too";
+  EXPECT_EQ(static_cast<int>(AxisFault::converter_not_as_set), 26);
+  EXPECT_EQ(firmware::kFaults.size(), 27u) << "a new fault takes the next number; freeze it here too";
 }
 
 TEST(StateTable, IsWhatTheDocumentationSays) {

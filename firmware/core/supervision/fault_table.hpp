@@ -24,7 +24,7 @@ struct FaultInfo {
 };
 
 /// In the order of their numbers.
-inline constexpr std::array<FaultInfo, 26> kFaults{{
+inline constexpr std::array<FaultInfo, 27> kFaults{{
     {AxisFault::none, "none", "no fault", "", FaultReaction::none},
     {AxisFault::encoder_invalid, "encoder_invalid",
      "the encoder's input reports a broken wire, an illegal edge or a bus error",
@@ -98,6 +98,12 @@ inline constexpr std::array<FaultInfo, 26> kFaults{{
      "the feedback swings the command to and fro without motion that asks for it: the loop is unstable or nearly so",
      "design the gains again with less bandwidth; check inertia, delay and resonances; raise the limit only if the "
      "tachometer's noise is what swings",
+     FaultReaction::drop_enable},
+    {AxisFault::converter_not_as_set, "converter_not_as_set",
+     "the D/A converter, read back, is not as it was set: its supply broke down, an output is shorted, it is too hot, "
+     "or a "
+     "wire to it is broken",
+     "look at the report on the service port; check the converter's supplies, the cable to the amplifier and its load",
      FaultReaction::drop_enable},
 }};
 

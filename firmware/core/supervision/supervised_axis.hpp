@@ -161,6 +161,7 @@ class SupervisedAxis {
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
     if (hal_.drive_enable().is_faulted()) return AxisFault::drive_fault;
+    if (!hal_.dac().is_healthy()) return AxisFault::converter_not_as_set;
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return sensors;
     if (!seen.enabled) return monitors_.watch_rest(seen);
