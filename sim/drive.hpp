@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/coupling.hpp"
 #include "sim/drive_description.hpp"
 
 namespace sim {
@@ -31,6 +32,9 @@ struct FrictionPoint {
 struct SlidingCurve {
   double coulomb, breakaway, viscous;
   double rate1, rate2;  ///< 1/omega, s/rad or s/m; 0 where omega is 0
+
+  /// Eq. (19) without its viscous term, at speed >= 0, with so many times the static friction.
+  FrictionPoint dry(double speed, double breakaway_factor = 1.0) const;
 };
 
 /// What an asymmetry multiplies the friction of one direction by.
@@ -45,28 +49,24 @@ struct Bristles {
   double damping = 0.0;    ///< sigma1, Nm s/rad or N s/m
 };
 
-/// A load on a spring, with or without a gap between motor and table.
-struct SecondMass {
-  double load_fraction = 0.0;  ///< part of the inertia that sits behind the spring, 0..1
-  double resonance_Hz = 0.0;   ///< of both masses on the spring, free to move
-  double damping_ratio = 0.0;
-  double gap = 0.0;  ///< free travel, mm or m
-};
-
-/// Everything of the drive that moves or remembers. Speeds in rad/s or m/s, travel in mm or m.
-struct DriveState {
+/// Everything of the drive that moves or remembers, but for the commands of its dead time. Speeds in rad/s or m/s,
+/// travel in mm or m.
+struct DriveMotion {
   double x = 0.0;       ///< travel of the motor side
   double w = 0.0;       ///< speed of the motor
   double load_x = 0.0;  ///< travel of the table, where it is a mass of its own
   double load_w = 0.0;
-  double bristle = 0.0;                ///< deflection of the contact, rad or m
-  double friction_speed = 0.0;         ///< the speed that the friction remembers
-  double rest_s = 0.0;                 ///< time at rest
-  double restuck = 0.0;                ///< evidence that an unseen stop has taken the rest's gain away, -1..1
-  double slide_s = 0.0;                ///< time since the last rest, while following a known motion
-  double breakaway_gain = 0.0;         ///< what the last rest added to the static friction, relative
-  double effort = 0.0;                 ///< what the current loop delivers, Nm or N
-  double tach = 0.0;                   ///< what the tachometer's filter holds
+  double bristle = 0.0;         ///< deflection of the contact, rad or m
+  double friction_speed = 0.0;  ///< the speed that the friction remembers
+  double rest_s = 0.0;          ///< time at rest
+  double restuck = 0.0;         ///< evidence that an unseen stop has taken the rest's gain away, -1..1
+  double slide_s = 0.0;         ///< time since the last rest, while following a known motion
+  double breakaway_gain = 0.0;  ///< what the last rest added to the static friction, relative
+  double effort = 0.0;          ///< what the current loop delivers, Nm or N
+  double tach = 0.0;            ///< what the tachometer's filter holds
+};
+
+struct DriveState : DriveMotion {
   std::array<double, 128> past_u_V{};  ///< commands before the present one, latest first (only kept for a delay)
 };
 
@@ -106,6 +106,8 @@ class Drive {
   /// Whether anything but friction adds to or takes from the effort that the command asks for.
   bool shapes_effort() const;
   bool has_second_mass() const { return second_mass.has_value(); }
+  /// `friction`, forward and backward, as the motion uses it.
+  const std::array<SlidingCurve, 2>& curves() const { return curves_; }
 
   // The places where an effect can act. Effects fill them; an empty one costs nothing.
   double effort_per_volt = 0.0;
@@ -140,22 +142,37 @@ class Drive {
   double finest_period = std::numeric_limits<double>::infinity();
 
  private:
+  /// What the contact asks of the friction law; the cheapest form that the effects allow is simulated.
+  enum class ContactForm { coulomb, stribeck, rich };
+
   void settle();
   double command_effort(double u_V, double w) const;
-  double deliver(DriveState& state, double u_V, double w, double duration_s) const;
-  double limiting_speed(const DriveState& state, double u_V, double t_s, double duration_s) const;
-  void hold(DriveState& state, double u_V, double t_s, double duration_s) const;
-  void move(DriveState& state, double effort, double t_s, double duration_s) const;
+  double deliver(DriveMotion& motion, double u_V, double w, double duration_s) const;
+  int parts_of(double duration_s, double w) const;
+  template <typename Contact>
+  void step_on(DriveState& state, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void hold(DriveMotion& motion, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void move(DriveMotion& motion, double effort, double t_s, double duration_s) const;
+  template <typename Contact>
+  void move_masses(DriveMotion& motion, double effort, double duration_s, int parts, Contact& contact) const;
+  template <typename Contact>
+  double limiting_speed(const DriveMotion& motion, double u_V, double t_s, double duration_s) const;
   void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;
-  void follow_rest(DriveState& state, double w0, double w1, double effort, double duration_s) const;
-  void filter_tach(DriveState& state, double w_before, double duration_s) const;
+  void follow_rest(DriveMotion& motion, double w0, double w1, double effort, double duration_s) const;
+  void filter_tach(DriveMotion& motion, double w_before, double duration_s) const;
   std::size_t whole_periods_of_delay(double period_s) const;
   void remember_command(DriveState& state, double u_V, std::size_t whole) const;
 
   double mobility_ = 0.0;                 ///< 1/inertia
   std::array<SlidingCurve, 2> curves_{};  ///< of `friction`
-  bool plain_ = false;                    ///< nothing acts but inertia and the friction of eq. (19)
-  bool stribeck_ = false;                 ///< friction depends on speed by more than its viscous term
+  ContactForm contact_form_ = ContactForm::rich;
+  bool plain_ = false;             ///< nothing acts but inertia and the friction of eq. (19)
+  bool bare_ = false;              ///< the command's effort acts alone, and on nothing but masses and their contact
+  double parts_per_s_ = 0.0;       ///< that the masses need at least
+  double parts_per_travel_ = 0.0;  ///< per mm or m
+  std::optional<Coupling> coupling_;
 };
 
 }  // namespace sim

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sim/decay.hpp"
+
 namespace sim {
 
 /// What a step of length h needs at z = lambda h: phi1 = (e^z - 1)/z and phi2 = (phi1 - 1)/z.
@@ -12,18 +14,25 @@ struct ExponentialFactors {
 };
 
 inline ExponentialFactors exponential_factors(double z) {
-  // Below 1/8 the first missing term of the series, z^6/40320, is under 1e-10. Terms in pairs: shorter chains.
+  // Below 1/8 the first missing term of the series, z^6/40320, is under 1e-10. Terms in groups: shorter chains.
   if (std::abs(z) > 0.125) {
     const double phi1 = std::expm1(z) / z;
     return {phi1, (phi1 - 1.0) / z};
   }
-  const double zz = z * z;
-  const double phi2 =
-      (1.0 / 2 + z * (1.0 / 6)) + zz * ((1.0 / 24 + z * (1.0 / 120)) + zz * (1.0 / 720 + z * (1.0 / 5040)));
-  return {1.0 + z * phi2, phi2};
+  const double zz = z * z, zzzz = zz * zz;
+  return {(1.0 + z * (1.0 / 2)) + zz * (1.0 / 6 + z * (1.0 / 24)) +
+              zzzz * ((1.0 / 120 + z * (1.0 / 720)) + zz * (1.0 / 5040)),
+          (1.0 / 2 + z * (1.0 / 6)) + zz * (1.0 / 24 + z * (1.0 / 120)) + zzzz * (1.0 / 720 + z * (1.0 / 5040))};
 }
 
-inline double phi1(double z) { return exponential_factors(z).phi1; }
+/// Exact mean over `duration` of a first-order lag that starts at `value` and follows a constant `target`; moves
+/// `value`.
+inline double lag_mean(double& value, double target, double time_constant, double duration) {
+  const double z = duration / time_constant;
+  const double gap = value - target, left = decay(z);
+  value = target + gap * left;
+  return target + gap * (z > 0.125 ? (1.0 - left) / z : exponential_factors(-z).phi1);
+}
 
 /// Time at which v0 + t phi1(lambda t) f reaches zero, for v0 > 0 and f < 0; +infinity where it never does.
 inline double time_to_zero(double v0, double f, double lambda) {

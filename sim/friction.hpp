@@ -2,6 +2,7 @@
 // of zero speed is found inside the step.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/drive.hpp"
@@ -11,13 +12,20 @@ namespace sim {
 
 /// Eq. (19) without its viscous term, at speed >= 0, with static friction `breakaway`. Omega = 0 means exp(-w/0) = 0.
 inline FrictionPoint stribeck_curve(const FrictionSide& side, double breakaway, double speed) {
-  const double fading = side.omega1 > 0.0 ? std::exp(-speed / side.omega1) : 0.0;
-  const double rising =
-      side.omega2 == side.omega1 ? fading : (side.omega2 > 0.0 ? std::exp(-speed / side.omega2) : 0.0);
+  const double fading = side.omega1 > 0.0 ? decay(speed / side.omega1) : 0.0;
+  const double rising = side.omega2 == side.omega1 ? fading : (side.omega2 > 0.0 ? decay(speed / side.omega2) : 0.0);
   double slope = 0.0;
   if (side.omega1 > 0.0) slope -= breakaway * fading / side.omega1;
   if (side.omega2 > 0.0) slope += side.coulomb * rising / side.omega2;
   return {breakaway * fading + side.coulomb * (1.0 - rising), slope};
+}
+
+inline FrictionPoint SlidingCurve::dry(double speed, double breakaway_factor) const {
+  const double fading = rate1 > 0.0 ? decay(speed * rate1) : 0.0;
+  const double rising = rate1 == rate2 ? fading : (rate2 > 0.0 ? decay(speed * rate2) : 0.0);
+  const double all_static = breakaway_factor * breakaway;
+  return {coulomb + (all_static * fading - coulomb * rising),
+          (coulomb * rate2) * rising - (all_static * rate1) * fading};
 }
 
 /// One mass while its friction acts.
@@ -28,14 +36,25 @@ struct SlidingMass {
   double lead;
 };
 
-/// Moves a mass for `duration_s` under a constant effort. `Contact` tells its friction:
-///   FrictionPoint sliding(int side, double speed)   magnitude while moving forward (side 0) or backward (side 1)
-///   double breakaway(int side)                      level that the effort must pass at standstill
-///   void broke_away(), came_to_rest(), rested(double duration_s)
-/// The step linearises friction at its start and solves the linear equation exactly (order 2; exact where friction is
-/// Coulomb and viscous). Bounded: a contact can stop and start at most a few times in a step.
+/// A step in one direction: friction linearised at its start, the linear equation solved exactly.
+struct SmoothStep {
+  double acceleration;  ///< at the start, in the direction of motion
+  double lambda;        ///< its slope over speed, 1/s
+
+  SmoothStep(double push, const FrictionPoint& friction, double mobility)
+      : acceleration((push - friction.effort) * mobility), lambda(-friction.slope * mobility) {}
+
+  double speed_after(double speed, double duration_s, const ExponentialFactors& factors) const {
+    return speed + factors.phi1 * (duration_s * acceleration);
+  }
+  double way_after(double speed, double duration_s, const ExponentialFactors& factors) const {
+    return duration_s * (speed + duration_s * factors.phi2 * acceleration);
+  }
+};
+
+/// `slide` in full, with the stops and starts on the way.
 template <typename Contact>
-inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& contact) {
+[[gnu::noinline]] void slide_through_stops(SlidingMass& mass, double effort, double duration_s, Contact& contact) {
   constexpr int kMostEvents = 8;
   double left = duration_s;
   for (int event = 0; event < kMostEvents && left > 0.0; ++event) {
@@ -49,48 +68,47 @@ inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& 
       contact.broke_away();
     }
     const double speed = std::abs(mass.w);
-    const FrictionPoint friction = contact.sliding(direction > 0.0 ? 0 : 1, speed);
-    const double acceleration = (direction * effort - friction.effort) * mass.mobility;
-    const double lambda = -friction.slope * mass.mobility;
-    if (speed == 0.0 && acceleration <= 0.0) {  // breakaway level and curve agree at zero speed, up to rounding
+    const SmoothStep step(direction * effort, contact.sliding(direction > 0.0 ? 0 : 1, speed), mass.mobility);
+    if (speed == 0.0 && step.acceleration <= 0.0) {  // breakaway and curve agree at zero speed, up to rounding
       contact.rested(left);
       return;
     }
     double duration = left;
-    ExponentialFactors factors = exponential_factors(lambda * duration);
-    double end = speed + duration * factors.phi1 * acceleration;
+    ExponentialFactors factors = exponential_factors(step.lambda * duration);
+    double end = step.speed_after(speed, duration, factors);
     const bool stops = speed > 0.0 && end <= 0.0;
     if (stops) {
-      duration = std::min(left, time_to_zero(speed, acceleration, lambda));
-      factors = exponential_factors(lambda * duration);
+      duration = std::min(left, time_to_zero(speed, step.acceleration, step.lambda));
+      factors = exponential_factors(step.lambda * duration);
       end = 0.0;
     }
-    mass.x += mass.lead * direction * duration * (speed + duration * factors.phi2 * acceleration);
+    mass.x += mass.lead * direction * step.way_after(speed, duration, factors);
     mass.w = direction * end;
     if (stops) contact.came_to_rest();
     left -= duration;
   }
 }
 
-/// The contact of a drive that has nothing but eq. (19): the predictor's innermost loop.
-template <bool kStribeck>
-struct PlainContact {
-  const std::array<SlidingCurve, 2>& sides;
-
-  FrictionPoint sliding(int side, double speed) const {
-    const SlidingCurve& curve = sides[static_cast<std::size_t>(side)];
-    if constexpr (!kStribeck) return {curve.coulomb + curve.viscous * speed, curve.viscous};
-    const double fading = curve.rate1 > 0.0 ? std::exp(-speed * curve.rate1) : 0.0;
-    const double rising =
-        curve.rate1 == curve.rate2 ? fading : (curve.rate2 > 0.0 ? std::exp(-speed * curve.rate2) : 0.0);
-    const double static_part = curve.breakaway * fading, missing = curve.coulomb * rising;
-    return {static_part + curve.coulomb - missing + curve.viscous * speed,
-            missing * curve.rate2 - static_part * curve.rate1 + curve.viscous};
+/// Moves a mass for `duration_s` under a constant effort. `Contact` tells its friction:
+///   FrictionPoint sliding(int side, double speed)   magnitude while moving forward (side 0) or backward (side 1)
+///   double breakaway(int side)                      level that the effort must pass at standstill
+///   void broke_away(), came_to_rest(), rested(double duration_s)
+/// The step linearises friction at its start and solves the linear equation exactly (order 2; exact where friction is
+/// Coulomb and viscous). Bounded: a contact can stop and start at most a few times in a step.
+template <typename Contact>
+inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& contact) {
+  const double direction = mass.w > 0.0 ? 1.0 : -1.0, speed = std::abs(mass.w);
+  if (speed > 0.0) {
+    const SmoothStep step(direction * effort, contact.sliding(direction > 0.0 ? 0 : 1, speed), mass.mobility);
+    const ExponentialFactors factors = exponential_factors(step.lambda * duration_s);
+    const double end = step.speed_after(speed, duration_s, factors);
+    if (end > 0.0) {
+      mass.x += mass.lead * direction * step.way_after(speed, duration_s, factors);
+      mass.w = direction * end;
+      return;
+    }
   }
-  double breakaway(int side) const { return sides[static_cast<std::size_t>(side)].breakaway; }
-  void broke_away() const {}
-  void came_to_rest() const {}
-  void rested(double) const {}
-};
+  slide_through_stops(mass, effort, duration_s, contact);
+}
 
 }  // namespace sim

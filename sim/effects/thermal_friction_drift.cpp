@@ -1,6 +1,5 @@
 // Friction that drifts as the drive warms up.
-#include <cmath>
-
+#include "sim/decay.hpp"
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 
@@ -10,8 +9,8 @@ namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double tau = entry.at("time_constant"), b = entry.at("viscous_change"), c = entry.at("coulomb_change");
-  drive.level_factor.push_back([=](double t_s, double) { return 1.0 - c * std::expm1(-t_s / tau); });
-  drive.viscous_factor.push_back([=](double t_s) { return 1.0 - b * std::expm1(-t_s / tau); });
+  drive.level_factor.push_back([=](double t_s, double) { return 1.0 + c * (1.0 - decay(t_s / tau)); });
+  drive.viscous_factor.push_back([=](double t_s) { return 1.0 + b * (1.0 - decay(t_s / tau)); });
 }
 
 }  // namespace

@@ -1,0 +1,106 @@
+// The contact of a drive as its motion meets it: what `slide` and its kin ask of a `Contact`.
+#pragma once
+
+#include <cmath>
+
+#include "sim/drive.hpp"
+#include "sim/exponential_step.hpp"
+#include "sim/friction.hpp"
+
+namespace sim {
+
+template <typename Factors, typename... Arguments>
+double product(const Factors& factors, Arguments... arguments) {
+  double value = 1.0;
+  for (const auto& factor : factors) value *= factor(arguments...);
+  return value;
+}
+
+template <typename Terms>
+double sum_at(const Terms& terms, double x) {
+  double value = 0.0;
+  for (const auto& term : terms) value += term(x);
+  return value;
+}
+
+/// A drive that has nothing but eq. (19), with or without the Stribeck effect: the predictor's innermost loop.
+template <bool kStribeck>
+struct PlainContact {
+  const std::array<SlidingCurve, 2>& sides;
+
+  explicit PlainContact(const std::array<SlidingCurve, 2>& curves) : sides(curves) {}
+  PlainContact(const Drive& drive, const DriveMotion&, double /*t_s*/, double /*x*/, double /*motor*/)
+      : sides(drive.curves()) {}
+
+  FrictionPoint sliding(int side, double speed) const {
+    const FrictionPoint level = dry(side, speed), fluid = viscous(side, speed);
+    return {level.effort + fluid.effort, level.slope + fluid.slope};
+  }
+  FrictionPoint dry(int side, double speed) const {
+    const SlidingCurve& curve = sides[static_cast<std::size_t>(side)];
+    if constexpr (!kStribeck) return {curve.coulomb, 0.0};
+    return curve.dry(speed);
+  }
+  FrictionPoint viscous(int side, double speed) const {
+    const double coefficient = sides[static_cast<std::size_t>(side)].viscous;
+    return {coefficient * speed, coefficient};
+  }
+  double breakaway(int side) const { return sides[static_cast<std::size_t>(side)].breakaway; }
+  void broke_away() const {}
+  void came_to_rest() const {}
+  void rested(double) const {}
+};
+
+/// A contact on which further effects act; `motion` keeps what it remembers.
+struct RichContact {
+  const Drive& drive;
+  DriveMotion& motion;
+  double level;      ///< factor on Coulomb and static friction
+  double viscosity;  ///< factor on viscous friction
+  double carried;    ///< friction from the transmitted effort
+
+  RichContact(const Drive& of_drive, DriveMotion& of_motion, double t_s, double x, double motor)
+      : drive(of_drive),
+        motion(of_motion),
+        level(product(drive.level_factor, t_s, x)),
+        viscosity(product(drive.viscous_factor, t_s)),
+        carried(drive.transmitted_share * std::abs(motor)) {}
+
+  FrictionPoint sliding(int side, double speed) const {
+    const FrictionPoint part = dry(side, speed), fluid = viscous(side, speed);
+    if (part.effort + fluid.effort < 0.0) return {0.0, 0.0};  // friction never drives, whatever a fit tries
+    return {part.effort + fluid.effort, part.slope + fluid.slope};
+  }
+
+  FrictionPoint dry(int side, double speed) const {
+    const SlidingCurve& curve = drive.curves()[static_cast<std::size_t>(side)];
+    const bool remembers = drive.friction_memory_s > 0.0;
+    const FrictionPoint point = curve.dry(remembers ? motion.friction_speed : speed, 1.0 + motion.breakaway_gain);
+    return {level * point.effort + carried, remembers ? 0.0 : level * point.slope};
+  }
+
+  /// The part that fluid and not the contact carries.
+  FrictionPoint viscous(int side, double speed) const {
+    const double coefficient = viscosity * drive.curves()[static_cast<std::size_t>(side)].viscous;
+    FrictionPoint all{coefficient * speed, coefficient};
+    for (const auto& further : drive.sliding_friction) {
+      const FrictionPoint part = further(speed);
+      all.effort += part.effort;
+      all.slope += part.slope;
+    }
+    return all;
+  }
+
+  double breakaway(int side) const {
+    const double gain = drive.dwell_gain > 0.0 ? 1.0 + dwell_gain() : 1.0;
+    return level * drive.curves()[static_cast<std::size_t>(side)].breakaway * gain + carried;
+  }
+  double dwell_gain() const { return drive.dwell_gain * -std::expm1(-motion.rest_s / drive.dwell_time_s); }
+  void broke_away() const {
+    if (drive.dwell_gain > 0.0) motion.breakaway_gain = dwell_gain();
+  }
+  void came_to_rest() const { motion.rest_s = 0.0; }
+  void rested(double duration_s) const { motion.rest_s += duration_s; }
+};
+
+}  // namespace sim
