@@ -286,12 +286,8 @@ void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double effort
   if (motion.slide_s > 2.0 * kAveraging_s && motion.restuck > 0.25) motion.breakaway_gain = 0.0;
 }
 
-double Drive::encoder(const DriveState& state) const { return state.x + encoder_error_at(state.x); }
-
 double Drive::encoder_error_at(double x) const { return sum_at(encoder_error, x); }
 
-double Drive::tachometer(const DriveState& state) const {
-  return tach_gain * state.tach * (1.0 + sum_at(tach_ripple, state.x)) + tach_offset;
-}
+double Drive::tach_ripple_at(double x) const { return 1.0 + sum_at(tach_ripple, x); }
 
 }  // namespace sim

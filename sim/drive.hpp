@@ -89,13 +89,17 @@ class Drive {
   double sliding_effort(DriveState& state, double effort, double t_s) const;
 
   /// What an ideal encoder reads, with the errors that belong to the drive but without quantisation.
-  double encoder(const DriveState& state) const;
+  double encoder(const DriveMotion& motion) const {
+    return encoder_error.empty() ? motion.x : motion.x + encoder_error_at(motion.x);
+  }
 
   /// What the encoder's reading adds to the true travel.
   double encoder_error_at(double x) const;
 
   /// What the tachometer reads without its noise.
-  double tachometer(const DriveState& state) const;
+  double tachometer(const DriveMotion& motion) const {
+    return tach_gain * motion.tach * (tach_ripple.empty() ? 1.0 : tach_ripple_at(motion.x)) + tach_offset;
+  }
 
   /// The mean effort that the motor is given over an interval with `u_V` held, Nm or N; moves what the command path
   /// remembers (dead time, current loop).
@@ -146,6 +150,7 @@ class Drive {
   enum class ContactForm { coulomb, stribeck, rich };
 
   void settle();
+  double tach_ripple_at(double x) const;
   double command_effort(double u_V, double w) const;
   double deliver(DriveMotion& motion, double u_V, double w, double duration_s) const;
   int parts_of(double duration_s, double w) const;

@@ -24,6 +24,9 @@ void print(const host::Diagnosis& diagnosis) {
     fmt::print("  Base parameters that were off: {}\n", fmt::join(verdict.parameters, ", "));
   fmt::print("  Next: {}\n\n", verdict.next_experiment);
   if (diagnosis.held_back) fmt::print("No --validate: every fourth block of 2 s of the training data was kept back.\n");
+  if (!diagnosis.not_searched.empty())
+    fmt::print("Not searched to the end, their fits used up what a fit may simulate: {}\n",
+               fmt::join(diagnosis.not_searched, ", "));
   fmt::print("Error over floor (1 is perfect)      train  validation\n");
   fmt::print("  model as given                {:10.3f} {:10.3f}\n", diagnosis.given_train, diagnosis.given_validate);
   fmt::print("  base parameters re-fitted     {:10.3f} {:10.3f}\n", diagnosis.before_train, diagnosis.before_validate);

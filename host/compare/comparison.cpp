@@ -17,6 +17,18 @@ std::vector<const PreparedRecord*> prepared_records(const RecordSet& set) {
   return prepared;
 }
 
+double steps_of(const sim::Drive& drive, const RecordSet& set) {
+  double steps = 0.0;
+  for (const ComparedRecord& compared : set.records) {
+    const PreparedRecord& prepared = compared.prepared;
+    std::size_t samples = set.measure == Measure::effort ? prepared.u_V.size() : 0;
+    if (set.measure == Measure::motion)
+      for (std::size_t k = 0; k < prepared.windows.size(); k += set.stride) samples += prepared.windows[k].length;
+    steps += static_cast<double>(samples) * std::max(1.0, std::ceil(prepared.period_s / drive.max_step_s));
+  }
+  return steps;
+}
+
 RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference, double window_s,
                      Measure measure) {
   RecordSet set;
@@ -93,7 +105,8 @@ void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
   const sim::Drive drive(reference);
   std::vector<double> squares;
   if (set.measure == Measure::motion)
-    for (ComparedRecord& compared : set.records) compared.floor = error_floor(drive, reference.data, compared.prepared);
+    for (ComparedRecord& compared : set.records)
+      renew_floor(compared.floor, drive, reference.data, compared.prepared, set.stride);
   for (const WindowScore& score : error_of(drive, set).windows)
     for (const double square : {score.x, score.w, score.effort})
       if (square > 0.0) squares.push_back(square);

@@ -40,6 +40,10 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
+/// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses swing
+/// within a sample.
+double steps_of(const sim::Drive& drive, const RecordSet& set);
+
 /// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
 /// By effort, only windows remain in which the axis slides throughout.
 RecordSet compare_on(const std::vector<const Record*>& records, const sim::DriveDescription& reference,
@@ -48,8 +52,9 @@ RecordSet compare_on(const std::vector<const Record*>& records, const sim::Drive
 /// The same windows, compared by their motion.
 RecordSet by_motion(const RecordSet& set, const sim::DriveDescription& reference);
 
-/// Computes the floors again with a better model, and with them what is common: where most windows of `reference` lie
-/// far above their floors, as those of a real machine may, three times their median error counts as common.
+/// Computes the floors of the windows in use again with a better model, and with them what is common: where most
+/// windows of `reference` lie far above their floors, as those of a real machine may, three times their median error
+/// counts as common.
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference);
 
 /// Mean over the windows and channels of (error/floor)^2 of one window.

@@ -1,5 +1,6 @@
 #include "host/compare/error_floor.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace host {
@@ -8,18 +9,21 @@ namespace {
 
 struct Channels {
   std::vector<double> x, w;
+
+  WindowRun run(const Window& window, const sim::DriveState& start) {
+    x.resize(window.length);
+    w.resize(window.length);
+    return {&window, start, x.data(), w.data()};
+  }
 };
 
-void run_window(const sim::Drive& drive, const PreparedRecord& prepared, const Window& window, sim::DriveState state,
-                Channels& out) {
-  out.x.resize(window.length);
-  out.w.resize(window.length);
-  for (std::size_t k = 0; k < window.length; ++k) {
-    const std::size_t row = window.begin + k;
-    drive.step(state, prepared.u_V[row], prepared.record->t_s[row], prepared.period_s);
-    out.x[k] = drive.encoder(state);
-    out.w[k] = drive.tachometer(state);
-  }
+/// The start with another speed, and the travel that goes with it.
+sim::DriveState changed(sim::DriveState state, double w, double x) {
+  state.w += w;
+  state.x += x;
+  state.load_w += w;
+  state.load_x += x;
+  return state;
 }
 
 double mean_square_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -30,40 +34,37 @@ double mean_square_difference(const std::vector<double>& a, const std::vector<do
 
 }  // namespace
 
-ErrorFloor error_floor(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared) {
+void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared,
+                 std::size_t stride) {
   const double x_noise = data.encoder_resolution * data.encoder_resolution / 12.0;  // eq. (12)
   const double w_noise = data.tach_noise_variance.value_or(0.0);                    // eq. (46)
   const SmoothedMotion& motion = prepared.motion();
-  const std::vector<sim::DriveState> states = restart_states(drive, prepared);
-  ErrorFloor floor;
-  Channels nominal, disturbed;
-  for (std::size_t index = 0; index < states.size(); ++index) {
+  const std::vector<sim::DriveState> states = restart_states(drive, prepared, stride);
+  if (prepared.record->has_position()) floor.x.resize(prepared.windows.size());
+  if (prepared.record->has_speed()) floor.w.resize(prepared.windows.size());
+  Channels nominal, slower, faster;
+  for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
-    const sim::DriveState& start = states[index];
+    const sim::DriveState& start = states[index / stride];
     // The two independent parts of the restart's error: of the speed with the travel that goes with it, and of the
     // travel alone. Each is tried up and down, since friction turns small errors into different motions.
     const double speed_variance = motion.w_variance[window.begin];
     const double slant = speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;
     double x_variance = motion.x_variance[window.begin] - slant * slant * speed_variance;
     double w_variance = 0.0;
-    run_window(drive, prepared, window, start, nominal);
     if (speed_variance > 0.0) {
       const double deviation = std::sqrt(speed_variance);
-      for (const double change : {-deviation, deviation}) {
-        sim::DriveState state = start;
-        state.w += change;
-        state.x += slant * change;
-        state.load_w += change;
-        state.load_x += slant * change;
-        run_window(drive, prepared, window, state, disturbed);
-        x_variance += 0.5 * mean_square_difference(disturbed.x, nominal.x);
-        w_variance += 0.5 * mean_square_difference(disturbed.w, nominal.w);
+      std::array runs{nominal.run(window, start), slower.run(window, changed(start, -deviation, -slant * deviation)),
+                      faster.run(window, changed(start, deviation, slant * deviation))};
+      run_side_by_side(drive, prepared, runs);
+      for (const Channels* disturbed : {&slower, &faster}) {
+        x_variance += 0.5 * mean_square_difference(disturbed->x, nominal.x);
+        w_variance += 0.5 * mean_square_difference(disturbed->w, nominal.w);
       }
     }
-    if (prepared.record->has_position()) floor.x.push_back(std::sqrt(x_noise + x_variance));
-    if (prepared.record->has_speed()) floor.w.push_back(std::sqrt(w_noise + w_variance));
+    if (prepared.record->has_position()) floor.x[index] = std::sqrt(x_noise + x_variance);
+    if (prepared.record->has_speed()) floor.w[index] = std::sqrt(w_noise + w_variance);
   }
-  return floor;
 }
 
 }  // namespace host

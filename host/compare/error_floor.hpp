@@ -15,6 +15,8 @@ struct ErrorFloor {
   std::vector<double> w;
 };
 
-ErrorFloor error_floor(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared);
+/// Computes the floors of every `stride`-th window; those of the others stay as they are, 0 where there were none.
+void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared,
+                 std::size_t stride = 1);
 
 }  // namespace host

@@ -100,27 +100,41 @@ class Restarts {
 
 }  // namespace
 
-std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared) {
+std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared,
+                                            std::size_t stride) {
   std::vector<sim::DriveState> states;
-  states.reserve(prepared.windows.size());
+  states.reserve(prepared.windows.size() / stride + 1);
   Restarts restarts(drive, prepared);
-  for (const Window& window : prepared.windows) states.push_back(restarts.at(window));
+  for (std::size_t index = 0; index < prepared.windows.size(); index += stride)
+    states.push_back(restarts.at(prepared.windows[index]));
   return states;
+}
+
+void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, std::span<WindowRun> runs) {
+  std::size_t longest = 0;
+  for (const WindowRun& run : runs) longest = std::max(longest, run.window->length);
+  for (std::size_t k = 0; k < longest; ++k) {
+    for (WindowRun& run : runs) {
+      if (k >= run.window->length) continue;
+      const std::size_t row = run.window->begin + k;
+      drive.step(run.state, prepared.u_V[row], prepared.record->t_s[row], prepared.period_s);
+      run.x[k] = drive.encoder(run.state);
+      run.w[k] = drive.tachometer(run.state);
+    }
+  }
 }
 
 void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction& out, std::size_t stride) {
   out.x.resize(prepared.record->size());
   out.w.resize(prepared.record->size());
-  const std::vector<double>& t_s = prepared.record->t_s;
   Restarts restarts(drive, prepared);
+  std::vector<WindowRun> runs;
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
-    sim::DriveState state = restarts.at(window);
-    for (std::size_t k = window.begin; k < window.begin + window.length; ++k) {
-      drive.step(state, prepared.u_V[k], t_s[k], prepared.period_s);
-      out.x[k + 1] = drive.encoder(state);
-      out.w[k + 1] = drive.tachometer(state);
-    }
+    runs.push_back({&window, restarts.at(window), &out.x[window.begin + 1], &out.w[window.begin + 1]});
+    if (runs.size() < kSideBySide && index + stride < prepared.windows.size()) continue;
+    run_side_by_side(drive, prepared, runs);
+    runs.clear();
   }
 }
 

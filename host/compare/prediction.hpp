@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "host/evidence/prepared_record.hpp"
@@ -19,7 +20,24 @@ struct Prediction {
 /// Predicts every `stride`-th window. `out` is resized when needed, so that it can be used again.
 void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction& out, std::size_t stride = 1);
 
-/// The restart states of all windows: hidden states follow the record's motion from its start.
-std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared);
+/// The restart states of every `stride`-th window: hidden states follow the record's motion from its start.
+std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const PreparedRecord& prepared,
+                                            std::size_t stride = 1);
+
+/// One window that a drive runs through from a state of its own. What the sensors would read goes to `x` and `w`, which
+/// have room for the window's length.
+struct WindowRun {
+  const Window* window;
+  sim::DriveState state;
+  double* x;
+  double* w;
+};
+
+/// Runs do not wait for one another: the processor works on several at once where one alone would wait for its own last
+/// result, which makes them twice as fast.
+inline constexpr std::size_t kSideBySide = 4;
+
+/// Carries out some runs, up to kSideBySide of them, of the same record.
+void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, std::span<WindowRun> runs);
 
 }  // namespace host

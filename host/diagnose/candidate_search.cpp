@@ -32,9 +32,13 @@ constexpr double kOpenRace = 1.25;
 /// A spectrum sees an effect along the travel at the right place but weakened by smoothing, and a base that was bent to
 /// make up for its absence would hold it down: its amplitude comes first, alone.
 constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
-constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3};
-constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4};
-constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5};
+/// Budgets of some ten times what a drive of one step a sample needs: resonances up to their bound and contacts of
+/// machines fit in; all fits of a search together then take less than half a minute on one core.
+constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 5e6};
+constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 15e6};
+constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 40e6};
+/// Passes that a budget must hold for a fit to get anywhere: six slopes of some eight parameters.
+constexpr double kLeastPasses = 50.0;
 
 /// The set with about so many windows in use, evenly spread over the records.
 RecordSet thinned(const RecordSet& set, std::size_t windows) {
@@ -44,11 +48,29 @@ RecordSet thinned(const RecordSet& set, std::size_t windows) {
   return thin;
 }
 
+/// The set with so few windows in use that a fit's budget holds the passes it needs; not fewer than ten.
+RecordSet affordable(const RecordSet& set, const sim::DriveDescription& model, const FitOptions& options) {
+  constexpr std::size_t kLeastWindows = 10;
+  const double share = kLeastPasses * steps_of(sim::Drive(model), set) / options.most_steps;
+  RecordSet thin = set;
+  if (share > 1.0)
+    thin.stride = std::clamp(static_cast<std::size_t>(std::ceil(share * static_cast<double>(set.stride))), set.stride,
+                             std::max(set.stride, set.stride * set.used_windows() / kLeastWindows));
+  return thin;
+}
+
 struct Start {
   const sim::EffectInfo* info;
   sim::DriveDescription model;
   double error = HUGE_VAL;  ///< what is left of the base's error
   bool scanned = false;     ///< one of many starts, of which a scan has found it the best
+  bool cut_short = false;   ///< a fit ended at its budget
+
+  /// Takes over what a fit has reached.
+  void take(const FitResult& fit) {
+    model = fit.model;
+    cut_short = cut_short || fit.cut_short;
+  }
 };
 
 /// Floors suit the model that they are propagated through. Motion on a contact (bristles, a second mass, a gap) spreads
@@ -68,15 +90,16 @@ RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared)
 /// Fits a start on a set and notes what is left of the base's error there.
 void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
                const FitOptions& options) {
-  if (!needs_own_floors(start.model) || needs_own_floors(base)) {
-    const FitResult fit = fit_model(start.model, shared, options);
-    start.model = fit.model;
+  const RecordSet set = affordable(shared, start.model, options);
+  if (set.stride == shared.stride && (!needs_own_floors(start.model) || needs_own_floors(base))) {
+    const FitResult fit = fit_model(start.model, set, options);
+    start.take(fit);
     start.error = fit.robust / base_error;
     return;
   }
-  const RecordSet own = suited_to(start.model, shared);
+  const RecordSet own = suited_to(start.model, set);
   const FitResult fit = fit_model(start.model, own, options);
-  start.model = fit.model;
+  start.take(fit);
   start.error = fit.robust / error_of(sim::Drive(base), own).robust;
 }
 
@@ -101,7 +124,9 @@ void scan(std::vector<Start>& starts, const sim::DriveDescription& base, const R
   std::ranges::stable_sort(starts, {}, &Start::error);
   starts.resize(kBestOfScan, starts.front());
   std::erase_if(starts, [](const Start& start) { return start.error > kWorstOfScan; });
-  for (Start& start : starts) start.model = pattern_search(start.model, suited_to(start.model, set));
+  for (Start& start : starts)
+    start.model = pattern_search(start.model, suited_to(start.model, affordable(set, start.model, kSeriousFit)),
+                                 kSeriousFit.most_steps);
 }
 
 }  // namespace
@@ -129,9 +154,12 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
   const double window_s = training.records.front().prepared.window_s();
   const RecordSet thin = thinned(training, SearchEffort{}.over(window_s).medium_windows);
   std::vector<FitResult> results(starts.size());
-  for_each_in_parallel(starts.size(), [&](std::size_t k) { results[k] = fit_model(starts[k], thin, kSeriousFit); });
+  for_each_in_parallel(starts.size(), [&](std::size_t k) {
+    results[k] = fit_model(starts[k], affordable(thin, starts[k], kSeriousFit), kSeriousFit);
+  });
   const FitResult& best = *std::ranges::min_element(results, {}, &FitResult::robust);
-  return fit_model(best.model, training, kLastWord).model;
+  const RecordSet last = thinned(training, SearchEffort{}.over(window_s).final_windows);
+  return fit_model(best.model, affordable(last, best.model, kLastWord), kLastWord).model;
 }
 
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
@@ -219,7 +247,9 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     const double base_error = fit_model(model, set, options).robust;
     for_each_in_parallel(list.size(), [&](std::size_t k) {
       // What needed a scan on many windows would be lost on a few.
-      fit_start(list[k], model, list[k].scanned ? medium : set, base_error, options);
+      FitOptions own = options;
+      if (list[k].scanned) own.most_steps = std::max(own.most_steps, kSeriousFit.most_steps);
+      fit_start(list[k], model, list[k].scanned ? medium : set, base_error, own);
       report();
     });
     std::ranges::stable_sort(list, {}, &Start::error);
@@ -244,7 +274,8 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
 
   std::vector<Candidate> candidates(finalists.size());
   if (!finalists.empty()) {
-    const RecordSet own = suited_to(finalists.front().model, medium);
+    const sim::DriveDescription& first = finalists.front().model;
+    const RecordSet own = suited_to(first, affordable(medium, first, kSeriousFit));
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
   }
   const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
@@ -255,6 +286,11 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     candidates[k] = judged(all, finalists[k].model, model, training, validation);
   });
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
+  if (effort.cut_short != nullptr)
+    for (const std::vector<Start>* list : {&starts, &race, &finalists})
+      for (const Start& start : *list)
+        if (start.cut_short && std::ranges::find(*effort.cut_short, start.info->kind) == effort.cut_short->end())
+          effort.cut_short->emplace_back(start.info->kind);
   return candidates;
 }
 

@@ -76,6 +76,7 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
   if (progress) progress(0.05);
   SearchEffort effort = SearchEffort{}.over(window_s);
   effort.nominal = &model;
+  effort.cut_short = &result.not_searched;
   Findings found;
   found.singles =
       search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5), effort);

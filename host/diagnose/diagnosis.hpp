@@ -58,6 +58,7 @@ struct Diagnosis : PreparedSets {
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
   std::vector<JudgedCandidate> candidates;           ///< best first
+  std::vector<std::string> not_searched;             ///< kinds of which a fit ended at its budget, not at its best
   DiagnosisVerdict verdict;
   sim::DriveDescription best;  ///< with the effects of the verdict; the base where there are none
 };

@@ -67,6 +67,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
           {"log", log_faults_json(diagnosis.log)},
           {"where", error_regions_json(diagnosis.where)},
           {"candidates", candidates},
+          {"search", {{"not_searched", diagnosis.not_searched}}},
           {"verdict", verdict_json(diagnosis.verdict)}};
 }
 

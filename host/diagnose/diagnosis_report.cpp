@@ -27,7 +27,8 @@ Units units_of(const sim::DriveDescription& model) {
   return {"m", "m/s", "N", "m/s²"};
 }
 
-Verdict verdict_block(const DiagnosisVerdict& verdict, const std::vector<LogFault>& log) {
+Verdict verdict_block(const Diagnosis& diagnosis) {
+  const DiagnosisVerdict& verdict = diagnosis.verdict;
   Verdict block;
   const bool good = verdict.status == Status::adequate;
   const bool known = verdict.status == Status::missing || verdict.status == Status::parameters;
@@ -60,10 +61,13 @@ Verdict verdict_block(const DiagnosisVerdict& verdict, const std::vector<LogFaul
       block.headline = "The axis moved too little to say anything";
       break;
   }
-  for (const LogFault& fault : log)
+  for (const LogFault& fault : diagnosis.log)
     block.sentences.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
   block.sentences.push_back(verdict.explanation);
   block.sentences.push_back("Next: " + verdict.next_experiment);
+  if (!diagnosis.not_searched.empty())
+    block.sentences.push_back(fmt::format("Not searched to the end, their fits used up what a fit may simulate: {}.",
+                                          fmt::join(diagnosis.not_searched, ", ")));
   if (!verdict.effects.empty())
     block.sentences.push_back("What to do about it: " + std::string(sim::find_effect(verdict.effects.front())->remedy));
   return block;
@@ -255,7 +259,7 @@ BarChart ladder_chart(const Improvement& improvement) {
 
 void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name, const std::string& path) {
   Report report("Diagnosis of " + model_name, "Which physical effect is missing from the model");
-  report.verdict(verdict_block(diagnosis.verdict, diagnosis.log));
+  report.verdict(verdict_block(diagnosis));
   report.section("How large the error is", "");
   add_errors(report, diagnosis);
   if (!diagnosis.candidates.empty()) report.add(candidate_chart(diagnosis));
@@ -266,7 +270,7 @@ void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model
 
 void write_improvement_report(const Improvement& improvement, const std::string& model_name, const std::string& path) {
   Report report("Improvement of " + model_name, "Effects added until nothing more earns its place");
-  report.verdict(verdict_block(improvement.first.verdict, improvement.first.log));
+  report.verdict(verdict_block(improvement.first));
   report.section("The error falls", "Stopped because " + improvement.stopped_because + ".");
   report.add(ladder_chart(improvement));
   if (!improvement.first.candidates.empty()) report.add(candidate_chart(improvement.first));

@@ -43,6 +43,8 @@ class WindowResiduals : public ceres::CostFunction {
     return jacobian.allFinite();
   }
 
+  double steps() const { return steps_; }
+
  private:
   void evaluate(const Eigen::VectorXd& scaled, double* out) const {
     sim::DriveDescription model = model_;
@@ -50,13 +52,30 @@ class WindowResiduals : public ceres::CostFunction {
     for (Eigen::Index k = 0; k < scaled.size(); ++k)
       values(k) = scaled(k) * vector_.parameters()[static_cast<std::size_t>(k)].scale;
     vector_.write(values, model);
-    residuals_of(sim::Drive(model), set_, out);
+    const sim::Drive drive(model);
+    steps_ += steps_of(drive, set_);
+    residuals_of(drive, set_, out);
   }
 
   const sim::DriveDescription& model_;
   const ParameterVector& vector_;
   const RecordSet& set_;
   Eigen::Index rows_;
+  mutable double steps_ = 0.0;
+};
+
+class Budget : public ceres::IterationCallback {
+ public:
+  Budget(const WindowResiduals& residuals, double most_steps) : residuals_(residuals), most_steps_(most_steps) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return spent() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+  bool spent() const { return residuals_.steps() >= most_steps_; }
+
+ private:
+  const WindowResiduals& residuals_;
+  double most_steps_;
 };
 
 }  // namespace
@@ -69,7 +88,8 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
     scaled(k) = initial(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
 
   ceres::Problem problem;
-  problem.AddResidualBlock(new WindowResiduals(start, vector, training), nullptr, scaled.data());
+  auto* residuals = new WindowResiduals(start, vector, training);  // the problem owns it
+  problem.AddResidualBlock(residuals, nullptr, scaled.data());
   for (std::size_t k = 0; k < vector.size(); ++k) {
     const FreeParameter& free = vector.parameters()[k];
     problem.SetParameterLowerBound(scaled.data(), static_cast<int>(k), free.lower / free.scale);
@@ -83,6 +103,8 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   solver.max_num_line_search_step_size_iterations = 6;  // a step that is still bad at a hundredth is bad
   solver.logging_type = ceres::SILENT;
   solver.num_threads = 1;  // candidates are fitted side by side
+  Budget budget(*residuals, options.most_steps);
+  solver.callbacks.push_back(&budget);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 
@@ -94,6 +116,8 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   vector.write(values, result.model);
   result.robust = summary.IsSolutionUsable() ? std::sqrt(2.0 * summary.final_cost) : HUGE_VAL;
   result.iterations = static_cast<int>(summary.iterations.size());
+  result.steps = residuals->steps();
+  result.cut_short = summary.termination_type == ceres::USER_SUCCESS;
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,16 @@ struct FitOptions {
   int most_iterations = 25;
   double least_gain = 1e-4;  ///< relative gain of the squared error under which a step is the last one
   Freedom freedom = Freedom::everything;
+  /// Steps of the integrator after which a fit ends with what it has: no clock, so that every machine finds the same.
+  double most_steps = HUGE_VAL;
 };
 
 struct FitResult {
   sim::DriveDescription model;
   double robust = 0.0;  ///< SetError::robust of the training set at the solution
   int iterations = 0;
+  double steps = 0.0;      ///< of the integrator
+  bool cut_short = false;  ///< ended because they were used up
 };
 
 /// Levenberg-Marquardt (Ceres) within the catalogue's bounds, from the model's present values.

@@ -1,11 +1,13 @@
 // Speed of the simulated drive as a multiple of real time, on one core.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "firmware/core/axis.hpp"
 #include "hal/pc/simulated_axis.hpp"
+#include "host/compare/prediction.hpp"
 #include "tests/firmware/friction_drive.hpp"
 
 namespace {
@@ -49,24 +51,29 @@ std::vector<double> command_with_reversals() {
   return u_V;
 }
 
+/// The windows of a record, each restarted, as `predict` simulates them: some side by side, or one after the other.
+template <std::size_t kTogether = host::kSideBySide>
 void predict(benchmark::State& state, const sim::DriveDescription& description) {
   const sim::Drive drive(description);
   const std::vector<double> u_V = command_with_reversals();
+  const std::size_t length = u_V.size() / kTogether;
   int reversals = 0;
   for (auto _ : state) {
-    sim::DriveState motion = drive.at(0.0, 0.0);
+    std::array<sim::DriveState, kTogether> motions;
+    motions.fill(drive.at(0.0, 0.0));
     reversals = 0;
-    double t_s = 0.0;
-    for (const double command : u_V) {
-      const double before = motion.w;
-      drive.step(motion, command, t_s, kSamplePeriod_s);
-      reversals += before * motion.w < 0.0 || (motion.w == 0.0 && before != 0.0);
-      t_s += kSamplePeriod_s;
+    for (std::size_t k = 0; k < length; ++k) {
+      for (std::size_t run = 0; run < kTogether; ++run) {
+        sim::DriveState& motion = motions[run];
+        const double before = motion.w;
+        drive.step(motion, u_V[run * length + k], kSamplePeriod_s * static_cast<double>(k), kSamplePeriod_s);
+        reversals += before * motion.w < 0.0 || (motion.w == 0.0 && before != 0.0);
+      }
     }
-    benchmark::DoNotOptimize(motion.x);
+    benchmark::DoNotOptimize(motions.back().x);
   }
   state.counters["stops"] = reversals;
-  report(state, static_cast<double>(u_V.size()) * kSamplePeriod_s);
+  report(state, static_cast<double>(length * kTogether) * kSamplePeriod_s);
 }
 
 void predictor_with_coulomb_sticking(benchmark::State& state) {
@@ -80,6 +87,11 @@ void predictor_with_stribeck_friction(benchmark::State& state) {
   predict(state, firmware_test::friction_drive(kPaperX));
 }
 BENCHMARK(predictor_with_stribeck_friction)->Unit(benchmark::kMicrosecond);
+
+void one_run_alone_with_stribeck_friction(benchmark::State& state) {
+  predict<1>(state, firmware_test::friction_drive(kPaperX));
+}
+BENCHMARK(one_run_alone_with_stribeck_friction)->Unit(benchmark::kMicrosecond);
 
 /// What a diagnosis simulates again and again: one more effect on the drive.
 void predictor_with_one_effect(benchmark::State& state, const char* kind, std::map<std::string, double> parameters) {
@@ -97,6 +109,15 @@ BENCHMARK_CAPTURE(predictor_with_one_effect, presliding, "presliding", Parameter
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(predictor_with_one_effect, compliance, "compliance",
                   Parameters{{"resonance", 80.0}, {"damping_ratio", 0.05}, {"load_fraction", 0.35}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(predictor_with_one_effect, backlash, "backlash",
+                  Parameters{{"gap", 0.05}, {"resonance", 80.0}, {"damping_ratio", 0.05}, {"load_fraction", 0.35}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(predictor_with_one_effect, nonlinear_viscous, "nonlinear_viscous",
+                  Parameters{{"coefficient", 0.1}, {"exponent", 0.6}})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(predictor_with_one_effect, dwell_stiction, "dwell_stiction",
+                  Parameters{{"gain", 0.3}, {"time_constant", 0.3}})
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
