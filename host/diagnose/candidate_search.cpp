@@ -32,11 +32,12 @@ constexpr double kOpenRace = 1.25;
 /// A spectrum sees an effect along the travel at the right place but weakened by smoothing, and a base that was bent to
 /// make up for its absence would hold it down: its amplitude comes first, alone.
 constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
-/// Budgets of some ten times what a drive of one step a sample needs: resonances up to their bound and contacts of
-/// machines fit in; all fits of a search together then take less than half a minute on one core.
-constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 5e6};
-constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 15e6};
-constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 40e6};
+/// Budgets of at least three times what a drive of one step a sample needs, so that a resonance of 200 Hz at 1 kHz
+/// (five steps) still gets as many passes as most fits take; all fits of a search together are some 400 million steps
+/// at most.
+constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
+constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
+constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
 /// Passes that a budget must hold for a fit to get anywhere: six slopes of some eight parameters.
 constexpr double kLeastPasses = 50.0;
 
@@ -195,14 +196,21 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
     for (sim::EffectEntry& entry : starts.back().effects)
       if (const sim::EffectEntry* original = nominal->find(entry.kind)) entry = *original;
   }
-  for (const auto& [id, value] : model.effects.back().parameters) {
-    for (const double factor : {0.55, 1.8}) {
-      const sim::ParameterInfo& info = *sim::find_effect(model.effects.back().kind)->parameter(id);
-      const bool from_spectrum = id == "period" || id == "cosine" || id == "sine";
-      if (finalist.scanned || from_spectrum) continue;
-      starts.push_back(model);
-      starts.back().effects.back().parameters[id] = std::clamp(factor * value, info.lower, info.upper);
+  std::vector<std::string> ids;
+  for (const auto& [id, value] : model.effects.back().parameters)
+    if (!finalist.scanned && id != "period" && id != "cosine" && id != "sine") ids.push_back(id);
+  const auto start_from = [&](const std::vector<std::string>& moved, double factor) {
+    starts.push_back(model);
+    sim::EffectEntry& entry = starts.back().effects.back();
+    for (const std::string& id : moved) {
+      const sim::ParameterInfo& info = *sim::find_effect(entry.kind)->parameter(id);
+      entry.parameters[id] = std::clamp(factor * entry.at(id), info.lower, info.upper);
     }
+  };
+  for (const double factor : {0.55, 1.8}) {
+    for (const std::string& id : ids) start_from({id}, factor);
+    // And all together: a size and the time over which it grows may trade against each other.
+    if (ids.size() > 1) start_from(ids, factor);
   }
   std::vector<FitResult> fits(starts.size());
   for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], set, kSeriousFit); });

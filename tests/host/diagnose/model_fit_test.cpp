@@ -1,0 +1,51 @@
+// The budget of a fit, in steps of the integrator.
+#include "host/diagnose/model_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/host/evidence/hand_made_record.hpp"
+
+namespace {
+
+sim::DriveDescription heavier(sim::DriveDescription model) {
+  model.find("inertia")->parameters["J"] *= 1.3;
+  return model;
+}
+
+TEST(FitBudget, EndsAFitThatHasUsedItUpAndNoOther) {
+  const host::Record record = HandMade::record(3.0);
+  const sim::DriveDescription model = heavier(HandMade::model());
+  const host::RecordSet set = host::compare_on({&record}, model);
+  const double pass = host::steps_of(sim::Drive(model), set);
+  const host::FitResult free = host::fit_model(model, set);
+  ASSERT_FALSE(free.cut_short);
+  ASSERT_GT(free.iterations, 2) << "something to cut";
+
+  // One look at the errors and one at the slopes are under way when the budget is noticed.
+  const double slopes = static_cast<double>(host::ParameterVector(model, host::Freedom::everything).size()) + 1.0;
+  const host::FitResult cut = host::fit_model(model, set, {.most_steps = 2.0 * pass});
+  EXPECT_TRUE(cut.cut_short);
+  EXPECT_LE(cut.steps, (2.0 + 2.0 * slopes) * pass);
+  EXPECT_LT(cut.steps, free.steps);
+  EXPECT_GE(cut.robust, free.robust);
+  EXPECT_EQ(cut.model.find("inertia")->at("J"),
+            host::fit_model(model, set, {.most_steps = 2.0 * pass}).model.find("inertia")->at("J"))
+      << "no clock has a say";
+}
+
+TEST(FitBudget, CountsTheStepsInsideASample) {
+  const host::Record record = HandMade::record(3.0);
+  sim::DriveDescription model = HandMade::model();
+  const host::RecordSet set = host::compare_on({&record}, model);
+  const double samples = static_cast<double>(set.used_windows() * set.records.front().prepared.windows.front().length);
+  EXPECT_EQ(host::steps_of(sim::Drive(model), set), samples);
+  // 0.27 radian a step: 2 pi 200 Hz 1 ms / 0.27 = 4.7.
+  model.effects.push_back(
+      {"compliance", {{"resonance", 200.0}, {"damping_ratio", 0.05}, {"load_fraction", 0.3}}, {}, {}});
+  EXPECT_EQ(host::steps_of(sim::Drive(model), set), 5.0 * samples);
+  host::RecordSet thin = set;
+  thin.stride = set.used_windows();
+  EXPECT_EQ(host::steps_of(sim::Drive(model), thin) * static_cast<double>(set.used_windows()), 5.0 * samples);
+}
+
+}  // namespace
