@@ -40,8 +40,8 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
-/// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses swing
-/// within a sample.
+/// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses
+/// swing within a sample.
 double steps_of(const sim::Drive& drive, const RecordSet& set);
 
 /// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
