@@ -186,7 +186,7 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 namespace {
 
 /// Fits the last effect again from both sides of each of its parameters (a scan has looked there already): an effect
-/// that acts at breakaway or on impact leaves valleys side by side. And once from the base as it was given, since a
+/// that acts at breakaway or on impact leaves valleys side by side. All that from the base as it was given too, since a
 /// re-fit without the effect may have bent the base so far that it does not come back.
 sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
   const sim::DriveDescription& model = finalist.model;
@@ -199,12 +199,15 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   std::vector<std::string> ids;
   for (const auto& [id, value] : model.effects.back().parameters)
     if (!finalist.scanned && id != "period" && id != "cosine" && id != "sine") ids.push_back(id);
+  const std::vector<sim::DriveDescription> bases = starts;
   const auto start_from = [&](const std::vector<std::string>& moved, double factor) {
-    starts.push_back(model);
-    sim::EffectEntry& entry = starts.back().effects.back();
-    for (const std::string& id : moved) {
-      const sim::ParameterInfo& info = *sim::find_effect(entry.kind)->parameter(id);
-      entry.parameters[id] = std::clamp(factor * entry.at(id), info.lower, info.upper);
+    for (const sim::DriveDescription& base : bases) {
+      starts.push_back(base);
+      sim::EffectEntry& entry = starts.back().effects.back();
+      for (const std::string& id : moved) {
+        const sim::ParameterInfo& info = *sim::find_effect(entry.kind)->parameter(id);
+        entry.parameters[id] = std::clamp(factor * entry.at(id), info.lower, info.upper);
+      }
     }
   };
   for (const double factor : {0.55, 1.8}) {
