@@ -87,6 +87,13 @@ hil: ## Run the scenarios: the firmware around simulated drives (SCENARIO=files;
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	$(BUILD)/bin/axistool hil $(or $(SCENARIO),host/hil/scenarios/*.toml) -o $(BUILD)/hil
 
+.PHONY: soak
+soak: ## The long form of the fault tests: 20000 trials of one fault and of two, in every order (TRIALS=n)
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) test_host_hil
+	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
+
 .PHONY: hidden-effect
 hidden-effect: ## Worked example: a circle spoilt by an effect that the model lacks; find it, compensate it, run again
 	$(NEED) build

@@ -105,12 +105,17 @@ class BoardApplication {
   // Motion, from the host.
   bool is_fitted(std::size_t axis) const { return active_.axis(axis).template get<"drive.fitted">(); }
 
-  Status enable(std::size_t axis) {
-    if (!store_is_usable()) return Status::device_fault;
-    if (!is_fitted(axis)) return Status::not_fitted;
+  /// All axes of the mask or none of them; `refused` is the axis that cannot be enabled.
+  Status enable(unsigned mask, std::size_t& refused) {
+    for (refused = 0; refused < Axes::kAxes; ++refused) {
+      if ((mask >> refused & 1u) == 0) continue;
+      if (!store_is_usable()) return Status::device_fault;
+      if (!is_fitted(refused)) return Status::not_fitted;
+    }
     const typename Board::ControlShutOut guard;
-    if (axes_[axis].enable() || axes_[axis].state() == SupervisorState::enabled) return Status::ok;
-    return refusal(axis);
+    refused = axes_.enable(mask);
+    if (refused == Axes::kAxes) return Status::ok;
+    return axes_[refused].state() == SupervisorState::ready ? Status::not_standing : refusal(refused);
   }
 
   /// An orderly stop; the enable drops at standstill.
@@ -129,6 +134,8 @@ class BoardApplication {
     if (!ScalarTraits<float>::is_finite(velocity)) return Status::malformed;
     const Scalar wanted = in_core_units(axis, velocity);
     const typename Board::ControlShutOut guard;
+    if (axes_[axis].state() == SupervisorState::enabled && !axes_[axis].has_room_towards(wanted))
+      return Status::outside_travel;
     if (!axes_[axis].jog(wanted)) return refusal(axis);
     axes_.board().host_commands(true);
     return Status::ok;
@@ -141,11 +148,26 @@ class BoardApplication {
     }
     // At rest the reference stands still, and only this background can change that.
     const MovePlanResult planned = axes_[axis].plan_move_to(CountPosition::at(target_counts));
+    if (planned.error == MovePlanError::outside_travel) return Status::outside_travel;
     if (planned.error != MovePlanError::none) return Status::unreachable;
     const typename Board::ControlShutOut guard;
     if (!axes_[axis].start(planned.plan)) return refusal(axis);
     axes_.board().host_commands(true);
     return Status::ok;
+  }
+
+  /// The limit of travel on one side of an axis.
+  ProblemPayload limit_of_travel(std::size_t axis, bool positive) const {
+    using parameter_check::id_of;
+    const AxisValues values = active_.axis(axis);
+    const std::uint16_t id = positive ? id_of<"monitor.travel_max">() : id_of<"monitor.travel_min">();
+    const float limit = positive ? values.get<"monitor.travel_max">() : values.get<"monitor.travel_min">();
+    return {ParameterKey::of_axis(axis, id).code, 0, 0, std::bit_cast<std::uint32_t>(limit)};
+  }
+  /// On which side of where an axis is a target lies.
+  bool is_ahead(std::size_t axis, std::int64_t target_counts) {
+    const typename Board::ControlShutOut guard;
+    return target_counts > axes_[axis].telemetry().encoder_counts;
   }
 
   void clear_faults() {
@@ -187,6 +209,7 @@ class BoardApplication {
     status.velocity = velocity_of_drive(axis, seen.estimate.velocity);
     status.state = static_cast<std::uint8_t>(axes_[axis].state());
     status.fault = static_cast<std::uint8_t>(axes_[axis].fault());
+    status.second_fault = static_cast<std::uint8_t>(axes_[axis].second_fault());
     const LimitingReasons limiting = axes_[axis].limiting();
     status.flags = static_cast<std::uint8_t>(
         (is_fitted(axis) ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |

@@ -12,6 +12,7 @@
 #include "firmware/core/kalman_estimator.hpp"
 #include "firmware/core/reference_generator.hpp"
 #include "firmware/core/reference_preview.hpp"
+#include "firmware/core/stopping_distance.hpp"
 #include "hal/axis_hal.hpp"
 
 namespace firmware {
@@ -51,6 +52,9 @@ class Axis {
                             parameters.sample_period_s);
     backlash_.configure(parameters.compensation.backlash);
     generator_.configure(limits_);
+    stopping_.configure(limits_);
+    const auto longest_run_out = static_cast<std::int32_t>(limits_.acceleration / limits_.jerk) + 1 + kPreviewSamples;
+    farthest_stop_ = stopping_.counts(limits_.velocity, longest_run_out);
     dac_.configure(parameters.dac_resolution_V, parameters.dac_limit_V);
     is_configured_ = true;
     is_synchronised_ = false;
@@ -89,6 +93,18 @@ class Axis {
     if (velocity < Scalar(0) - limit) velocity = Scalar(0) - limit;
     generator_.jog(ScalarTraits<Scalar>::to_increment(velocity * counts_per_sample_per_velocity_));
     return true;
+  }
+
+  /// Stops a jog in time to stand within these counts: before each step(). Moves are planned to end inside.
+  constexpr void keep_inside(std::int64_t min_counts, std::int64_t max_counts) {
+    if (generator_.mode() != MotionMode::jog) return;
+    const Increment velocity = generator_.jog_profile().run_out_velocity();
+    if (velocity == 0) return;
+    const std::int64_t here = preview_.position().counts;
+    const std::int64_t room = velocity > 0 ? max_counts - here : here - min_counts;
+    if (room > farthest_stop_) return;  // nearly always
+    const std::int32_t delay = generator_.jog_profile().run_out_samples() + kPreviewSamples;
+    if (room <= stopping_.counts(velocity, delay)) generator_.jog(0);
   }
 
   /// Slows down to standstill within the limits.
@@ -249,6 +265,8 @@ class Axis {
   Scalar counts_per_sample_per_velocity_{};
   KalmanEstimator<Scalar> estimator_;
   ReferenceGenerator generator_;
+  StoppingDistance stopping_;
+  std::int64_t farthest_stop_ = 0;  ///< counts, from the velocity limit
   ReferencePreview<Scalar> preview_;
   ReferenceFeedforward<Scalar> feedforward_{};
   DacConversion<Scalar> dac_;

@@ -61,6 +61,7 @@ constexpr Increment motion(Scalar limit, Scalar count_length, Scalar sample_peri
 
 template <typename Scalar>
 constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
+  if (p.motion.velocity != 0 || p.motion.acceleration != 0 || p.motion.jerk != 0) return p.motion;
   using parameter_check::motion;
   return {motion(p.velocity_limit, p.encoder_resolution, p.sample_period_s, 1),
           motion(p.acceleration_limit, p.encoder_resolution, p.sample_period_s, 2),
@@ -112,22 +113,75 @@ constexpr ParameterError check(const AxisParameters<Scalar>& p) {
   return ParameterError::none;
 }
 
-/// Likewise for the monitors; every one of them must have a threshold.
+/// Beyond these a monitor would not protect: what an axis at full command, from standstill, does in the times below, or
+/// what a moving one needs if that is more.
+namespace monitor_ceilings {
+
+inline constexpr float kFollowing_s = 0.05f, kDisagreement_s = 0.05f, kJump_s = 0.1f, kOverspeed_s = 0.25f;
+inline constexpr float kFollowingTime_s = 0.1f;  ///< of the velocity limit, and of any speed
+inline constexpr float kSaturation_s = 1.0f;
+inline constexpr float kCommandShare = 0.9f, kOscillationShare = 0.7f;  ///< of the converter's limit
+
+/// Comparisons are multiplied by a sample's share of kLoadTime_s: so they stay within the range of fixed point.
+template <typename Scalar>
+struct Scaled {
+  Scalar share, full_change, fastest, count;
+
+  explicit constexpr Scaled(const AxisParameters<Scalar>& p)
+      : share(p.monitors.load_share),
+        full_change(p.drive.Bd2 * p.dac_limit_V),
+        fastest(p.velocity_limit / p.lead),
+        count(p.encoder_resolution / (p.lead * p.sample_period_s)) {}
+
+  /// `speed` is at most what full command reaches in `time_s`, or `times` the velocity limit, or some `counts` a
+  /// sample.
+  constexpr bool is_speed_below(Scalar speed, float time_s, int times, int counts) const {
+    return speed * share <= full_change * Scalar(time_s / kLoadTime_s) || speed <= fastest * Scalar(times) ||
+           speed <= count * Scalar(counts);
+  }
+};
+
+template <typename Scalar>
+constexpr bool is_following_error_below(const AxisParameters<Scalar>& p, const Scaled<Scalar>& scaled) {
+  const Scalar travel = p.lead * p.sample_period_s;
+  constexpr float kTimes = kFollowing_s / kLoadTime_s;
+  const Scalar by_full_command = scaled.full_change * travel * Scalar(0.5f * kTimes * kTimes) / scaled.share;
+  const Scalar by_velocity = p.velocity_limit * p.sample_period_s * Scalar(kFollowingTime_s / kLoadTime_s);
+  const Scalar floor = p.monitors.following_error_floor * scaled.share;
+  return (floor <= by_full_command || floor <= by_velocity) &&
+         p.monitors.following_error_per_velocity * scaled.share <= travel * Scalar(kFollowingTime_s / kLoadTime_s);
+}
+
+}  // namespace monitor_ceilings
+
+/// Likewise for the monitors; every one of them must have a threshold, and none so high that it would not protect.
 template <typename Scalar>
 constexpr ParameterError check_monitors(const AxisParameters<Scalar>& p) {
+  namespace ceiling = monitor_ceilings;
   using parameter_check::is_positive;
+  using Traits = ScalarTraits<Scalar>;
   const MonitorLimits<Scalar>& m = p.monitors;
-  const auto is_share = [](Scalar value) { return value >= Scalar(0) && ScalarTraits<Scalar>::is_finite(value); };
-  if (!is_positive(m.following_error_floor) || !is_share(m.following_error_per_velocity))
+  const ceiling::Scaled<Scalar> scaled(p);
+  const auto is_share = [](Scalar value) { return value >= Scalar(0) && Traits::is_finite(value); };
+  if (!is_positive(m.following_error_floor) || !is_share(m.following_error_per_velocity) ||
+      !ceiling::is_following_error_below(p, scaled))
     return ParameterError::following_error;
   if (!is_positive(m.disagreement_floor) || !is_share(m.disagreement_share) || m.disagreement_share > Scalar(1) ||
-      !is_positive(m.encoder_jump) || !(m.encoder_jump > m.disagreement_floor))
+      !is_positive(m.encoder_jump) || !(m.encoder_jump > m.disagreement_floor) ||
+      !scaled.is_speed_below(m.disagreement_floor, ceiling::kDisagreement_s, 1, 8) ||
+      !scaled.is_speed_below(m.encoder_jump, ceiling::kJump_s, 2, 32))
     return ParameterError::disagreement;
-  if (!is_positive(m.overspeed) || !(m.overspeed > p.velocity_limit / p.lead)) return ParameterError::overspeed;
-  if (!is_positive(m.polarity_command_V)) return ParameterError::polarity_command;
-  if (!is_positive(m.oscillation_V)) return ParameterError::oscillation;
+  if (!is_positive(m.overspeed) || !(m.overspeed > scaled.fastest + scaled.count) ||
+      !scaled.is_speed_below(m.overspeed, ceiling::kOverspeed_s, 3, 8))
+    return ParameterError::overspeed;
+  if (!is_positive(m.polarity_command_V) || m.polarity_command_V > p.dac_limit_V * Scalar(ceiling::kCommandShare))
+    return ParameterError::polarity_command;
+  if (!is_positive(m.oscillation_V) || m.oscillation_V > p.dac_limit_V * Scalar(ceiling::kOscillationShare))
+    return ParameterError::oscillation;
   if (m.travel_min_counts >= m.travel_max_counts) return ParameterError::travel;
-  if (m.saturation_samples <= 0 || m.capture_stride <= 0) return ParameterError::saturation_time;
+  if (m.saturation_samples <= 0 || m.capture_stride <= 0 ||
+      Traits::times(m.saturation_samples, scaled.share) > Scalar(ceiling::kSaturation_s / kLoadTime_s))
+    return ParameterError::saturation_time;
   return ParameterError::none;
 }
 

@@ -7,6 +7,7 @@
 #include "firmware/core/discrete_drive.hpp"
 #include "firmware/core/friction_feedforward.hpp"
 #include "firmware/core/kalman_estimator.hpp"
+#include "firmware/core/motion_limits.hpp"
 #include "firmware/core/reference_feedforward.hpp"
 #include "firmware/core/supervision/monitor_limits.hpp"
 
@@ -39,6 +40,9 @@ struct AxisParameters {
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
   Scalar jerk_limit{};          ///< mm/s^3 (m/s^3)
+  /// The three as increments, where the scalar cannot hold them closely enough: fixed point at a fast control rate has
+  /// a few steps for a jerk limit. Zero: made of the scalars.
+  MotionLimits motion{};
 
   CompensationParameters<Scalar> compensation{};  ///< last: no control period reads it here
 };
@@ -61,18 +65,20 @@ enum class ParameterError : std::uint8_t {
   jerk_limit = 14,             ///< likewise
   jerk_time = 15,              ///< acceleration limit / jerk limit too long
   controller_is_enabled = 16,  ///< parameters change only while the axis is disabled
-  following_error = 17,        ///< floor not above 0, or share below 0
-  disagreement = 18,           ///< floor not above 0, share outside 0..1, or jump not above the floor
-  overspeed = 19,              ///< not above the velocity limit
-  polarity_command = 20,       ///< not above 0
+  following_error = 17,        ///< floor not above 0, or share below 0; either above its ceiling (axis_check.hpp)
+  disagreement = 18,           ///< floor not above 0, share outside 0..1, or jump not above the floor; ceilings
+  overspeed = 19,              ///< not above the velocity limit and the encoder's steps, or above its ceiling
+  polarity_command = 20,       ///< not above 0, or above what the converter can put out, less a tenth
   travel = 21,                 ///< minimum not below maximum
-  saturation_time = 22,        ///< or the capture's stride not above 0
+  saturation_time = 22,        ///< not above 0 or above 1 s; or the capture's stride not above 0
   cogging = 23,                ///< on, and an amplitude not finite, or a period not above two counts
   position_friction = 24,      ///< likewise
   presliding = 25,             ///< on, and the stiffness not above 0 or the damping below 0
   backlash = 26,               ///< on, and the gap not above 0 or gap or wind-up of 2^10 counts and more
   backlash_crossing = 27,      ///< on, and not 1..4096 samples
-  oscillation = 28,            ///< not above 0
+  oscillation = 28,            ///< not above 0, or so much that an unstable loop would pass
+  estimator_poles = 29,        ///< unstable, undamped or slow (pole_check.hpp)
+  loop_poles = 30,             ///< likewise
 };
 
 }  // namespace firmware

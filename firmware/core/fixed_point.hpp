@@ -117,6 +117,10 @@ struct ScalarTraits<Fixed<fraction_bits>> {
     return static_cast<std::int32_t>(product < 0 ? -magnitude : magnitude);
   }
 
+  static constexpr float to_float(Scalar value) {
+    return static_cast<float>(value.raw()) / static_cast<float>(std::int32_t{1} << fraction_bits);
+  }
+
   static constexpr std::int32_t truncate(Scalar value) { return value.raw() / (std::int32_t{1} << fraction_bits); }
 
   static constexpr bool is_nan(Scalar) { return false; }

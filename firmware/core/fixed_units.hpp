@@ -1,7 +1,7 @@
 // The units in which fixed point computes: every state is of the order of one, whatever the machine.
 #pragma once
 
-#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/axis_check.hpp"
 #include "firmware/core/fixed_point.hpp"
 
 namespace firmware {
@@ -15,10 +15,10 @@ namespace firmware {
 ///   any voltage         saturates at 1024 units (1280 V with steps of 0.3 mV); the converter's limit is 8
 ///   gains               Kobs, Kc, drive model in these units: below 1024
 ///   zero phase          its weights are exact to 1e-6 / (2 Bd1) relatively: use it where Bd1 is above 0.1 counts a
-///   unit encoder, reference  unlimited: they are integers, 64 bits and more, as in float parameters          rounded
-///   to 2.4e-7 of their unit: those of the order of 1 relatively to 2.4e-7, jerk limits (some
-///                       0.02 counts a sample^3) to 1e-5, a tachometer's gain (some 0.01 counts a sample a code) to
-///                       3e-5
+///                       unit
+///   encoder, reference  unlimited: they are integers, 64 bits and more, as in float; so are the references' limits
+///   parameters          rounded to 2.4e-7 of their unit: those of the order of 1 relatively to 2.4e-7, a tachometer's
+///                       gain (some 0.01 counts a sample a code) to 3e-5
 template <typename Real>
 struct FixedUnits {
   Real length;  ///< mm (m)
@@ -97,6 +97,7 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
   q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);
   q.jerk_limit = fixed(p.jerk_limit / unit.travel_velocity * unit.time_s * unit.time_s);
+  q.motion = motion_limits(p);
   return q;
 }
 

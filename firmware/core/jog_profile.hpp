@@ -72,6 +72,9 @@ class JogProfile {
   constexpr bool at_rest() const { return velocity_ == 0 && target_ == 0 && step_ == 0 && !settling_; }
   constexpr bool at_target() const { return velocity_ == target_ && step_ == 0 && !settling_; }
   constexpr Increment velocity() const { return velocity_; }
+  /// What the velocity becomes while the present acceleration runs out, and the samples that this takes.
+  constexpr Increment run_out_velocity() const { return velocity_ + (upward_ ? run_out_ : -run_out_); }
+  constexpr std::int32_t run_out_samples() const { return step_; }
 
  private:
   constexpr void level() {

@@ -23,8 +23,8 @@ enum class MotionLimitError : std::uint8_t {
 };
 
 inline constexpr Increment kMostMotion = Increment{1} << (kFractionBits + 14);
-/// Plans round up to this many units; a limit must leave room for them.
-inline constexpr Increment kLeastMotion = 16;
+/// Plans take up to four units off a limit, and a conversion cuts one: a limit of so many units is kept to 1 %.
+inline constexpr Increment kLeastMotion = 512;
 
 constexpr MotionLimitError check(const MotionLimits& limits) {
   const auto in_range = [](Increment value) { return value >= kLeastMotion && value <= kMostMotion; };

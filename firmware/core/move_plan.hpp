@@ -26,7 +26,8 @@ struct MovePlan {
 
 enum class MovePlanError : std::uint8_t {
   none,
-  too_long,  ///< would last more than 2^30 samples: raise the velocity limit or split the move
+  too_long,        ///< would last more than 2^30 samples: raise the velocity limit or split the move
+  outside_travel,  ///< the target is beyond a limit of travel
 };
 
 struct MovePlanResult {

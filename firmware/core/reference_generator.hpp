@@ -81,6 +81,7 @@ class ReferenceGenerator {
     return mode_ == MotionMode::jog ? jog_.at_rest() : mode_ == MotionMode::move && move_.is_done();
   }
   constexpr MotionMode mode() const { return mode_; }
+  constexpr const JogProfile& jog_profile() const { return jog_; }
 
  private:
   MotionMode mode_ = MotionMode::jog;

@@ -33,6 +33,8 @@ struct ScalarTraits<Real> {
     return truncate(product < Real(0) ? product - kHalf : product + kHalf);
   }
 
+  static constexpr float to_float(Real value) { return static_cast<float>(value); }
+
   /// Toward zero. |value| < 2^31; outside that range machines differ, so callers limit first.
   static constexpr std::int32_t truncate(Real value) { return static_cast<std::int32_t>(value); }
 

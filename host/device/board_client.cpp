@@ -40,6 +40,26 @@ constexpr milliseconds kSavePatience{5000};
   fail(ExitCode::bad_input, describe(key, problem.kind, std::bit_cast<float>(problem.bits)));
 }
 
+[[noreturn]] void throw_outside_travel(const Message& reply) {
+  firmware::ProblemPayload limit;
+  if (!reply.get(limit)) fail(ExitCode::refused, "the motion would leave the axis's travel");
+  const firmware::ParameterKey key{limit.key};
+  const auto place = firmware::place_of(key);
+  const float value = std::bit_cast<float>(limit.bits);
+  fail(ExitCode::refused,
+       fmt::format("the motion would lead beyond {} = {}: choose a target inside, or move the limit if the machine has "
+                   "the room",
+                   full_name(key), place ? value_text(info_at(*place), value) : fmt::format("{}", value)));
+}
+
+/// "axis y: " where the reply names the axis that refuses.
+std::string refusing_axis(const Message& reply) {
+  firmware::RefusedAxisPayload refused;
+  const bool is_named = reply.type == firmware::reply_to(MessageType::enable) && reply.get(refused) &&
+                        refused.axis < firmware::kAxisNames.size();
+  return is_named ? fmt::format("axis {}: ", firmware::kAxisNames[refused.axis]) : "";
+}
+
 /// Throws what a status other than ok means.
 void require_ok(const Message& reply) {
   switch (reply.status) {
@@ -53,11 +73,17 @@ void require_ok(const Message& reply) {
       fail(ExitCode::refused, "refused while a drive is enabled: `axistool disable` first");
     case Status::wrong_state:
       fail(ExitCode::refused,
-           "the axis is not in a state that allows this: `axistool info` shows it; enable it first, and let it come to "
-           "rest");
+           refusing_axis(reply) +
+               "the axis is not in a state that allows this: `axistool info` shows it; enable it first, and let it "
+               "come to rest");
+    case Status::not_standing:
+      fail(ExitCode::refused, refusing_axis(reply) + "it moves: let it come to rest, then enable it");
+    case Status::outside_travel:
+      throw_outside_travel(reply);
     case Status::not_fitted:
       fail(ExitCode::refused,
-           "the axis is not fitted: give it the parameters of a design (axistool design, axistool set-params)");
+           refusing_axis(reply) +
+               "the axis is not fitted: give it the parameters of a design (axistool design, axistool set-params)");
     case Status::others_motion:
       fail(ExitCode::refused,
            "another program moves the axes: wait until they rest, stop them (`axistool disable`), or take the motion "
@@ -67,7 +93,8 @@ void require_ok(const Message& reply) {
     case Status::unreachable:
       fail(ExitCode::refused, "the move would last too long: raise limits.velocity, or split it");
     case Status::device_fault:
-      fail(ExitCode::device_fault, "the board reports a fault: `axistool faults` tells cause and remedy");
+      fail(ExitCode::device_fault,
+           refusing_axis(reply) + "the board reports a fault: `axistool faults` tells cause and remedy");
     case Status::flash_failed:
       fail(ExitCode::device_fault, "the flash does not take the parameters; what was saved before still holds");
     case Status::not_verified:

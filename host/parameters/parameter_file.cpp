@@ -11,6 +11,7 @@
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "host/exit_codes.hpp"
 #include "host/parameters/parameter_names.hpp"
+#include "host/parameters/set_refusal.hpp"
 #include "host/read_file.hpp"
 #include "host/toml_text.hpp"
 
@@ -143,7 +144,9 @@ void require_fitting_set(const firmware::ParameterValues& values) {
   const firmware::SetProblem problem = firmware::check<float>(values);
   if (problem.kind == firmware::SetProblemKind::none) return;
   const float value = values.at(firmware::place_of(problem.key).value());
-  throw Failure(ExitCode::bad_input, describe(problem.key, static_cast<std::uint8_t>(problem.kind), value));
+  const std::string why = why_refused(values, problem);
+  throw Failure(ExitCode::bad_input, describe(problem.key, static_cast<std::uint8_t>(problem.kind), value) +
+                                         (why.empty() ? "" : ": " + why));
 }
 
 }  // namespace host

@@ -149,6 +149,7 @@ AxisParameters<double> as_double(const AxisParameters<FixedPoint>& q) {
   p.velocity_limit = real(q.velocity_limit);
   p.acceleration_limit = real(q.acceleration_limit);
   p.jerk_limit = real(q.jerk_limit);
+  p.motion = q.motion;
   return p;
 }
 

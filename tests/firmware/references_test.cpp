@@ -235,7 +235,8 @@ TEST(MotionLimits, AreCheckedOneByOne) {
   EXPECT_EQ(check({(kOneCount << 14) + 1, good.acceleration, good.jerk}), MotionLimitError::velocity_out_of_range);
   EXPECT_EQ(check({good.velocity, -5, good.jerk}), MotionLimitError::acceleration_out_of_range);
   EXPECT_EQ(check({good.velocity, good.acceleration, 15}), MotionLimitError::jerk_out_of_range);
-  EXPECT_EQ(check({good.velocity, good.acceleration, 16}), MotionLimitError::jerk_time_out_of_range);
+  EXPECT_EQ(check({good.velocity, good.acceleration, firmware::kLeastMotion}),
+            MotionLimitError::jerk_time_out_of_range);
 }
 
 TEST(CountPosition, AddsWithoutLossOverManySamples) {

@@ -3,6 +3,7 @@
 
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/axis_check.hpp"
+#include "firmware/core/pole_check.hpp"
 
 namespace firmware {
 
@@ -20,7 +21,8 @@ enum class SetProblemKind : std::uint8_t {
 struct SetProblem {
   SetProblemKind kind = SetProblemKind::none;
   ParameterKey key{};
-  constexpr bool operator==(const SetProblem&) const = default;
+  ParameterError refusal = ParameterError::none;  ///< the core's own, for refused_by_core
+  constexpr bool operator==(const SetProblem& other) const { return kind == other.kind && key == other.key; }
 };
 
 namespace parameter_check {
@@ -68,6 +70,10 @@ constexpr std::uint16_t id_behind(ParameterError error) {
       return id_of<"monitor.overspeed">();
     case ParameterError::polarity_command:
       return id_of<"monitor.polarity_command">();
+    case ParameterError::estimator_poles:
+      return id_of<"kalman.k11">();
+    case ParameterError::loop_poles:
+      return id_of<"feedback.k1">();
     case ParameterError::oscillation:
       return id_of<"monitor.oscillation">();
     case ParameterError::travel:
@@ -106,8 +112,9 @@ constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis)
   const AxisParameters<Scalar> parameters = axis_parameters<Scalar>(v);
   ParameterError error = check(parameters);
   if (error == ParameterError::none) error = check_monitors(parameters);
+  if (error == ParameterError::none) error = check_poles(parameters);
   if (error == ParameterError::none) return {};
-  return {SetProblemKind::refused_by_core, ParameterKey::of_axis(axis, id_behind(error))};
+  return {SetProblemKind::refused_by_core, ParameterKey::of_axis(axis, id_behind(error)), error};
 }
 
 }  // namespace parameter_check

@@ -65,6 +65,8 @@ enum class Status : std::uint8_t {
   no_such_row = 15,
   others_motion = 16,  ///< another client moves the axes: wait, stop them, or take over
   restarting = 17,
+  outside_travel = 18,  ///< a move or a jog beyond a limit of travel; ProblemPayload says which limit
+  not_standing = 19,    ///< an axis that is to be enabled moves
 };
 
 struct IdentityPayload {
@@ -84,8 +86,8 @@ struct AxisStatus {
   float velocity = 0;  ///< estimated, rad/s (m/s)
   std::uint8_t state = 0;
   std::uint8_t fault = 0;
-  std::uint8_t flags = 0;  ///< kAxis…
-  std::uint8_t reserved = 0;
+  std::uint8_t flags = 0;         ///< kAxis…
+  std::uint8_t second_fault = 0;  ///< what went wrong besides while the fault brought the axis to a stop
 
   constexpr std::int64_t counts() const {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
@@ -173,6 +175,12 @@ struct ProblemPayload {
   std::uint8_t kind = 0;  ///< SetProblemKind
   std::uint8_t reserved = 0;
   std::uint32_t bits = 0;
+};
+
+/// Beside the status of an `enable` that is refused: then none of the axes is enabled.
+struct RefusedAxisPayload {
+  std::uint8_t axis = 0;
+  std::array<std::uint8_t, 3> reserved{};
 };
 
 struct AxesRequest {

@@ -142,7 +142,7 @@ class ProtocolServer {
   Status handle_motion(const Message& request, Message& reply) {
     switch (request.type) {
       case MessageType::enable:
-        return with<AxesRequest>(request, [&](const AxesRequest& r) { return enable(r); });
+        return with<AxesRequest>(request, [&](const AxesRequest& r) { return enable(r, reply); });
       case MessageType::disable:
         return with<AxesRequest>(request, [&](const AxesRequest& r) { return disable(r); });
       case MessageType::stop:
@@ -150,11 +150,18 @@ class ProtocolServer {
         return Status::ok;
       case MessageType::jog:
         return with<JogRequest>(request, [&](const JogRequest& r) {
-          return r.axis < kAxes ? app_.jog(r.axis, r.velocity) : Status::malformed;
+          if (r.axis >= kAxes) return Status::malformed;
+          const Status status = app_.jog(r.axis, r.velocity);
+          if (status == Status::outside_travel) reply.put(app_.limit_of_travel(r.axis, r.velocity > 0));
+          return status;
         });
       case MessageType::move:
         return with<MoveRequest>(request, [&](const MoveRequest& r) {
-          return r.axis < kAxes ? app_.move(r.axis, r.counts()) : Status::malformed;
+          if (r.axis >= kAxes) return Status::malformed;
+          const Status status = app_.move(r.axis, r.counts());
+          if (status == Status::outside_travel)
+            reply.put(app_.limit_of_travel(r.axis, app_.is_ahead(r.axis, r.counts())));
+          return status;
         });
       case MessageType::clear_faults:
         app_.clear_faults();
@@ -289,14 +296,12 @@ class ProtocolServer {
     return status;
   }
 
-  Status enable(const AxesRequest& request) {
+  Status enable(const AxesRequest& request, Message& reply) {
     if (!names_axes(request)) return Status::malformed;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      if ((request.mask >> axis & 1) == 0) continue;
-      const Status status = app_.enable(axis);
-      if (status != Status::ok) return status;
-    }
-    return Status::ok;
+    std::size_t refused = 0;
+    const Status status = app_.enable(request.mask, refused);
+    if (status != Status::ok) reply.put(RefusedAxisPayload{static_cast<std::uint8_t>(refused), {}});
+    return status;
   }
 
   Status disable(const AxesRequest& request) {

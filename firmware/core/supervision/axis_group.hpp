@@ -41,6 +41,17 @@ class AxisGroup {
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer)); });
   }
 
+  /// Enables all axes of the mask or none of them; returns the first that refuses, or kAxes. An axis that is enabled
+  /// already does not refuse.
+  constexpr std::size_t enable(unsigned mask) {
+    const auto is_named = [mask](std::size_t i) { return (mask >> i & 1u) != 0; };
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if (is_named(i) && axes_[i].state() != SupervisorState::enabled && !axes_[i].may_be_enabled()) return i;
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if (is_named(i)) axes_[i].enable();
+    return kAxes;
+  }
+
   constexpr bool outputs_on() const {
     for (const BoardAxis& axis : axes_)
       if (outputs_are_on(axis.state())) return true;

@@ -85,7 +85,8 @@ class AxisMonitors {
   constexpr Scalar high_water() const { return high_water_; }
   constexpr void forget_high_water() { high_water_ = Scalar(0); }
 
-  const EffortMonitor<Scalar>& effort() const { return effort_; }
+  constexpr const TravelMonitor<Scalar>& travel() const { return travel_; }
+  constexpr const EffortMonitor<Scalar>& effort() const { return effort_; }
 
  private:
   using Traits = ScalarTraits<Scalar>;

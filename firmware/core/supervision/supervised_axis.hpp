@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/axis.hpp"
+#include "firmware/core/pole_check.hpp"
 #include "firmware/core/supervision/axis_monitors.hpp"
 #include "firmware/core/supervision/capture_ring.hpp"
 #include "firmware/core/supervision/fault_table.hpp"
@@ -32,7 +33,9 @@ class SupervisedAxis {
   /// off.
   constexpr ParameterError configure(const AxisParameters<Scalar>& parameters) {
     if (outputs_are_on(state_)) return ParameterError::controller_is_enabled;
-    ParameterError error = check_monitors(parameters);
+    ParameterError error = check(parameters);
+    if (error == ParameterError::none) error = check_monitors(parameters);
+    if (error == ParameterError::none) error = check_poles(parameters);
     if (error == ParameterError::none) error = axis_.configure(parameters);
     if (error != ParameterError::none) return error;
     monitors_.configure(parameters);
@@ -47,7 +50,10 @@ class SupervisedAxis {
   }
 
   // What comes of a request shows in the next control period. False where the state does not allow it.
-  constexpr bool enable() { return state_ == SupervisorState::ready && request(SupervisorEvent::enable_request); }
+  constexpr bool enable() { return may_be_enabled() && request(SupervisorEvent::enable_request); }
+  /// Ready, and the encoder has stood for a while: a loop that closes on a moving axis would jerk it to a stop.
+  constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands(); }
+  constexpr bool stands() const { return still_samples_ >= kStandingSamples; }
   /// Slows down, then drops the enable.
   constexpr bool disable() { return state_ == SupervisorState::enabled && request(SupervisorEvent::disable_request); }
   /// Forgets fault and capture; the self-test decides what comes next.
@@ -63,7 +69,7 @@ class SupervisedAxis {
 
   /// As of Axis, while the state is enabled; false otherwise.
   constexpr bool jog(Scalar velocity) {
-    if (state_ != SupervisorState::enabled) return false;
+    if (state_ != SupervisorState::enabled || !has_room_towards(velocity)) return false;
     limiting_.velocity_limited =
         velocity > axis_.parameters().velocity_limit || velocity < Scalar(0) - axis_.parameters().velocity_limit;
     is_interpolated_ = false;
@@ -73,7 +79,15 @@ class SupervisedAxis {
     is_interpolated_ = false;
     return state_ == SupervisorState::enabled && axis_.start(plan);
   }
-  constexpr MovePlanResult plan_move_to(const CountPosition& target) const { return axis_.plan_move_to(target); }
+  constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
+    if (!monitors_.travel().is_inside(target.counts)) return {{}, MovePlanError::outside_travel};
+    return axis_.plan_move_to(target);
+  }
+  /// False at a limit of travel that a jog of this velocity would pass.
+  constexpr bool has_room_towards(Scalar velocity) const {
+    return velocity == Scalar(0) ||
+           monitors_.travel().has_room(axis_.telemetry().reference.counts, velocity > Scalar(0));
+  }
   constexpr void stop() { axis_.stop(); }
 
   /// As of Axis: the encoder's reading for the step that follows.
@@ -81,6 +95,7 @@ class SupervisedAxis {
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) {
+    if (state_ == SupervisorState::enabled) keep_inside();
     axis_.step();
     supervise(outer);
   }
@@ -120,6 +135,23 @@ class SupervisedAxis {
  private:
   static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
   static constexpr std::int32_t kStandingSamples = 20;
+
+  /// A jog ends where the play of a loop that holds its place does not reach beyond the limit.
+  constexpr void keep_inside() {
+    const TravelMonitor<Scalar>& travel = monitors_.travel();
+    axis_.keep_inside(travel.min_counts() + travel.play(), travel.max_counts() - travel.play());
+  }
+
+  /// Within the play of a loop that holds its place, an axis stands.
+  constexpr void watch_standstill(const AxisTelemetry<Scalar>& seen) {
+    const std::int64_t way = seen.encoder_counts - still_at_;
+    const std::int64_t play = monitors_.travel().play();
+    ++still_samples_;
+    if (still_samples_ > kStandingSamples) still_samples_ = kStandingSamples;
+    if (way <= play && way >= -play) return;
+    still_at_ = seen.encoder_counts;
+    still_samples_ = 0;
+  }
 
   /// Twice the time that a stop from a path's highest speed takes, samples: no stop lasts longer, whatever happens.
   static constexpr std::int32_t longest_ramp(const MotionLimits& limits) {
@@ -164,7 +196,10 @@ class SupervisedAxis {
     if (!hal_.dac().is_healthy()) return AxisFault::converter_not_as_set;
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return sensors;
-    if (!seen.enabled) return monitors_.watch_rest(seen);
+    if (!seen.enabled) {
+      watch_standstill(seen);
+      return monitors_.watch_rest(seen);
+    }
     const AxisFault motion = monitors_.watch_motion(seen);
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
   }
@@ -249,6 +284,8 @@ class SupervisedAxis {
   std::int32_t settling_samples_ = 0;
   std::int32_t standing_samples_ = 0;
   std::int32_t stopping_samples_ = 0;
+  std::int32_t still_samples_ = 0;
+  std::int64_t still_at_ = 0;
   std::int32_t longest_stop_ = 0;
   Axis<Scalar, Hal> axis_;  // the large tables come last: a load reaches no farther than 1 to 4 kB
   CaptureRing<Scalar> capture_;

@@ -30,6 +30,15 @@ class TravelMonitor {
     return 2 + ScalarTraits<Scalar>::truncate(counts < kMost ? counts * Scalar(0.25f) : kMost * Scalar(0.25f));
   }
 
+  /// A target, or a place to go on from in this direction.
+  constexpr bool is_inside(std::int64_t counts) const { return counts >= min_counts_ && counts <= max_counts_; }
+  constexpr bool has_room(std::int64_t counts, bool forward) const {
+    return forward ? counts + play_ < max_counts_ : counts - play_ > min_counts_;
+  }
+  constexpr std::int64_t play() const { return play_; }
+  constexpr std::int64_t min_counts() const { return min_counts_; }
+  constexpr std::int64_t max_counts() const { return max_counts_; }
+
   constexpr void restart() {
     upper_bound_ = std::numeric_limits<std::int64_t>::max();
     lower_bound_ = std::numeric_limits<std::int64_t>::min();

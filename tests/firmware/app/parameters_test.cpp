@@ -97,6 +97,8 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   ParameterValues values = paper_values();
   set(values, "x.limits.velocity", 80);   // reached by the jogs
   set(values, "x.drive.dac_limit", 3.0);  // reached while they accelerate
+  set(values, "x.monitor.polarity_command", 2.0);
+  set(values, "x.monitor.oscillation", 1.5);
   const auto before = behaviour<TypeParam>(values);
   ASSERT_EQ(before.first, SetProblem{});
   ParameterValues compensated = values;  // presliding takes the place of friction.blend

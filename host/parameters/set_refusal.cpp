@@ -1,0 +1,105 @@
+#include "host/parameters/set_refusal.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "host/parameters/parameter_names.hpp"
+
+namespace host {
+
+namespace {
+
+using firmware::ParameterError;
+using firmware::PoleProblem;
+namespace ceilings = firmware::monitor_ceilings;
+
+template <typename Matrix>
+std::string eigenvalues_text(const Matrix& matrix) {
+  std::string text;
+  for (const auto& z : matrix.eigenvalues()) {
+    if (z.imag() < 0.0) continue;  // its conjugate stands for both
+    text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", z.real());
+    if (z.imag() > 0.0) text += fmt::format(" +- {:.4g}i", z.imag());
+  }
+  return text;
+}
+
+const char* words(PoleProblem problem) {
+  switch (problem) {
+    case PoleProblem::unstable:
+      return "unstable: a pole lies on or outside the unit circle";
+    case PoleProblem::undamped:
+      return "undamped: it would ring";
+    case PoleProblem::slow:
+      return "too slow: a mode takes longer than 2 s";
+    case PoleProblem::none:
+      break;
+  }
+  return "sound here, but not as the board rounds them";
+}
+
+}  // namespace
+
+std::string estimator_poles_text(const firmware::AxisParameters<float>& p) {
+  Eigen::Matrix3f A;
+  A << 1, p.drive.Ad12, -p.drive.Bd1, 0, p.drive.Ad22, -p.drive.Bd2, 0, 0, 1;
+  Eigen::Matrix<float, 3, 2> K;
+  for (int row = 0; row < 3; ++row) {
+    const auto& gains = p.Kobs[static_cast<std::size_t>(row)];
+    K.row(row) << gains[0], p.tachometer_fitted ? gains[1] : 0.0F;
+  }
+  const Eigen::Matrix3d closed =
+      ((Eigen::Matrix3f::Identity() - K * Eigen::Matrix<float, 2, 3>::Identity()) * A).cast<double>();
+  return eigenvalues_text(closed);
+}
+
+std::string loop_poles_text(const firmware::AxisParameters<float>& p) {
+  Eigen::Matrix2f closed;
+  closed << 1 - p.drive.Bd1 * p.Kc[0], p.drive.Ad12 - p.drive.Bd1 * p.Kc[1], -p.drive.Bd2 * p.Kc[0],
+      p.drive.Ad22 - p.drive.Bd2 * p.Kc[1];
+  return eigenvalues_text(Eigen::Matrix2d(closed.cast<double>()));
+}
+
+std::string why_refused(const firmware::ParameterValues& values, const firmware::SetProblem& problem) {
+  if (problem.kind != firmware::SetProblemKind::refused_by_core || problem.key.owner() == 0) return "";
+  const auto p = firmware::axis_parameters<float>(values.axis(problem.key.owner() - 1));
+  switch (problem.refusal) {
+    case ParameterError::estimator_poles:
+      return fmt::format("with these Kalman gains the estimator is {}; its poles are {}. Design the gains again",
+                         words(firmware::estimator_problem(p)), estimator_poles_text(p));
+    case ParameterError::loop_poles:
+      return fmt::format("with feedback.k1 and feedback.k2 the loop is {}; its poles are {}. Design the gains again",
+                         words(firmware::loop_problem(p)), loop_poles_text(p));
+    case ParameterError::following_error:
+      return fmt::format(
+          "it must be above 0, and at most what full command moves the axis in {:g} s or {:g} s of limits.velocity; "
+          "per speed at most {:g} s; more would not protect",
+          ceilings::kFollowing_s, ceilings::kFollowingTime_s, ceilings::kFollowingTime_s);
+    case ParameterError::disagreement:
+      return fmt::format(
+          "it must be below monitor.encoder_jump, and both at most the speed that full command reaches in {:g} s and "
+          "{:g} s, or once and twice limits.velocity; more would not protect",
+          ceilings::kDisagreement_s, ceilings::kJump_s);
+    case ParameterError::overspeed:
+      return fmt::format(
+          "it must be above limits.velocity and a count a sample, and at most three times that limit or the speed that "
+          "full command reaches in {:g} s; more would not protect",
+          ceilings::kOverspeed_s);
+    case ParameterError::polarity_command:
+      return fmt::format("above {:g} of drive.dac_limit, {:.4g} V, no command would reach it", ceilings::kCommandShare,
+                         ceilings::kCommandShare * p.dac_limit_V);
+    case ParameterError::oscillation:
+      return fmt::format("above {:g} of drive.dac_limit, {:.4g} V, no swing would reach it",
+                         ceilings::kOscillationShare, ceilings::kOscillationShare * p.dac_limit_V);
+    case ParameterError::saturation_time:
+      return fmt::format("above {:g} s it would not protect", ceilings::kSaturation_s);
+    case ParameterError::travel:
+      return "monitor.travel_min must be below monitor.travel_max";
+    default:
+      return "";
+  }
+}
+
+}  // namespace host

@@ -1,0 +1,18 @@
+// Why a set of parameters is refused, in words: which relation does not hold, and with which figures.
+#pragma once
+
+#include <string>
+
+#include "firmware/app/parameters/parameter_check.hpp"
+
+namespace host {
+
+/// Continues "x.feedback.k1 = ... does not go with the other parameters of its axis: "; empty where the line of
+/// documentation says it all.
+std::string why_refused(const firmware::ParameterValues& values, const firmware::SetProblem& problem);
+
+/// Of the sampled estimator and of the sampled loop, in the plane of z: "0.678, 0.694 +- 0.286i".
+std::string estimator_poles_text(const firmware::AxisParameters<float>& p);
+std::string loop_poles_text(const firmware::AxisParameters<float>& p);
+
+}  // namespace host

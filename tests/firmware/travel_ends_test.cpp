@@ -1,0 +1,168 @@
+// Motion ends inside the limits of travel: jogs by themselves, moves by being refused; enabling is all or nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "firmware/boards/pil/value_axis.hpp"
+#include "firmware/core/fixed_units.hpp"
+#include "firmware/core/supervision/axis_group.hpp"
+#include "tests/firmware/paper_axes.hpp"
+
+namespace {
+
+using firmware::AxisFault;
+using firmware::CountPosition;
+using firmware::SupervisorState;
+using firmware::boards::ValueAxis;
+
+/// An axis with the paper's drive, eq. (7), and without friction.
+class DrivenAxis {
+ public:
+  explicit DrivenAxis(const firmware::AxisParameters<float>& parameters) {
+    io.encoder().reading = {0, true};
+    io.tachometer().reading = {0, true};
+    EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
+    for (int k = 0; k < firmware::kSelfTestSamples + 1; ++k) axis.step();
+    EXPECT_TRUE(axis.enable());
+    step();
+  }
+  void step() {
+    axis.step();
+    const firmware_test::PaperAxis& drive = firmware_test::kPaperX;
+    const double u_V = io.dac().code * firmware_test::kDacResolution_V;
+    x_mm_ += drive.Ad12 * w_rad_s_ + drive.Bd1 * u_V;
+    w_rad_s_ = drive.Ad22 * w_rad_s_ + drive.Bd2 * u_V;
+    const double counts = std::floor(x_mm_ / firmware_test::kEncoderResolution_mm);
+    io.encoder().reading.counts = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts));
+    io.tachometer().reading.code = static_cast<std::int32_t>(std::lround(64.0 * w_rad_s_));
+  }
+  double at_mm() const { return x_mm_; }
+
+  ValueAxis io;
+  firmware::SupervisedAxis<float, ValueAxis> axis{io};
+
+ private:
+  double x_mm_ = 0.0, w_rad_s_ = 0.0;
+};
+
+firmware::AxisParameters<float> parameters(double travel_max_mm, float acceleration = 2000.0f, float jerk = 50000.0f) {
+  auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
+  p.monitors.travel_max_counts = std::llround(travel_max_mm / firmware_test::kEncoderResolution_mm);
+  p.monitors.travel_min_counts = -p.monitors.travel_max_counts;
+  p.acceleration_limit = acceleration;
+  p.jerk_limit = jerk;
+  return p;
+}
+
+struct Jog {
+  float speed, acceleration, jerk;
+};
+
+class JogToTheEnd : public testing::TestWithParam<Jog> {};
+INSTANTIATE_TEST_SUITE_P(Limits, JogToTheEnd,
+                         testing::Values(Jog{250.0f, 2000.0f, 50000.0f}, Jog{250.0f, 100.0f, 50000.0f},
+                                         Jog{10.0f, 2000.0f, 50000.0f}, Jog{100.0f, 2000.0f, 20000.0f},
+                                         Jog{250.0f, 2000.0f, 1e6f}));
+
+TEST_P(JogToTheEnd, StandsInsideAndNotFarFromIt) {
+  const Jog& jog = GetParam();
+  constexpr double kEnd_mm = 100.0;
+  for (const int start : {1, 60}) {  // from standstill, and retargeted while it accelerates
+    DrivenAxis axis(parameters(kEnd_mm, jog.acceleration, jog.jerk));
+    ASSERT_TRUE(axis.axis.jog(jog.speed / static_cast<float>(start)));
+    for (int k = 0; k < start; ++k) axis.step();
+    ASSERT_TRUE(axis.axis.jog(jog.speed));
+    for (int k = 0; k < 60'000; ++k) axis.step();
+    EXPECT_EQ(axis.axis.fault(), AxisFault::none);
+    EXPECT_TRUE(axis.axis.is_at_rest());
+    EXPECT_LT(axis.at_mm(), kEnd_mm);
+    EXPECT_GT(axis.at_mm(), kEnd_mm - 2.0 - 0.05 * static_cast<double>(jog.speed)) << "it stops far too early";
+  }
+}
+
+TEST(EndsOfTravel, FromTheEndAJogLeadsBackOnly) {
+  DrivenAxis axis(parameters(10.0));
+  ASSERT_TRUE(axis.axis.jog(50.0f));
+  for (int k = 0; k < 2000; ++k) axis.step();
+  for (int again = 0; again < 20; ++again) {
+    axis.axis.jog(50.0f);
+    for (int k = 0; k < 100; ++k) axis.step();
+  }
+  EXPECT_LT(axis.at_mm(), 10.0) << "creeps out, a little with each request";
+  EXPECT_EQ(axis.axis.fault(), AxisFault::none);
+  EXPECT_TRUE(axis.axis.jog(-50.0f));
+}
+
+TEST(EndsOfTravel, AMoveBeyondIsRefusedBeforeItStarts) {
+  DrivenAxis axis(parameters(10.0));
+  const auto target = [](double mm) {
+    return CountPosition::at(std::llround(mm / firmware_test::kEncoderResolution_mm));
+  };
+  EXPECT_EQ(axis.axis.plan_move_to(target(50.0)).error, firmware::MovePlanError::outside_travel);
+  EXPECT_EQ(axis.axis.plan_move_to(target(-10.1)).error, firmware::MovePlanError::outside_travel);
+  EXPECT_EQ(axis.axis.plan_move_to(target(9.9)).error, firmware::MovePlanError::none);
+}
+
+class TwoAxes : public testing::Test {
+ protected:
+  TwoAxes() {
+    for (std::size_t i = 0; i < 2; ++i) {
+      io[i].encoder().reading = {0, true};
+      io[i].tachometer().reading = {0, true};
+      EXPECT_EQ(axes[i].configure(parameters(1000.0)), firmware::ParameterError::none);
+    }
+    run(firmware::kSelfTestSamples + 1);
+  }
+  void run(int samples) {
+    for (int k = 0; k < samples; ++k) axes.step({now += 1000, false, false, false});
+  }
+  std::array<ValueAxis, 2> io;
+  firmware::AxisGroup<float, ValueAxis, 2> axes{io};
+  std::uint32_t now = 0;
+};
+
+TEST_F(TwoAxes, AreEnabledTogetherOrNotAtAll) {
+  io[1].drive_enable().faulted = true;
+  run(1);
+  EXPECT_EQ(axes.enable(3), 1u) << "the second refuses";
+  run(2);
+  EXPECT_EQ(axes[0].state(), SupervisorState::ready);
+  EXPECT_EQ(axes.enable(1), 2u);
+  run(1);
+  EXPECT_EQ(axes[0].state(), SupervisorState::enabled);
+}
+
+TEST_F(TwoAxes, AreNotEnabledWhileTheyMove) {
+  for (int k = 0; k < 40; ++k) {
+    io[0].encoder().reading.counts += 10;  // 24 mm/s
+    io[0].tachometer().reading.code = 64 * 15;
+    run(1);
+  }
+  EXPECT_EQ(axes.enable(3), 0u);
+  io[0].tachometer().reading.code = 0;
+  run(40);
+  EXPECT_EQ(axes.enable(3), 2u);
+}
+
+/// Limits as increments against double precision: at every rate, in float and in fixed point.
+TEST(MotionLimits, AreKeptToAHundredthAtEveryRate) {
+  int accepted = 0;
+  for (const double rate_Hz : {250.0, 1000.0, 4000.0, 10'000.0, 20'000.0}) {
+    for (const double jerk : {0.1, 5.0, 500.0, 5000.0, 50'000.0, 1e6}) {
+      auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
+      p.sample_period_s = static_cast<float>(1.0 / rate_Hz);
+      p.jerk_limit = static_cast<float>(jerk);
+      p.acceleration_limit = static_cast<float>(std::min(2000.0, jerk));
+      const double exact =
+          jerk / firmware_test::kEncoderResolution_mm / std::pow(rate_Hz, 3) * static_cast<double>(firmware::kOneCount);
+      const auto as_float = firmware::motion_limits(p), as_fixed = firmware::motion_limits(firmware::to_fixed(p));
+      EXPECT_EQ(as_fixed.jerk, as_float.jerk) << rate_Hz << ' ' << jerk;
+      if (firmware::check(as_fixed) != firmware::MotionLimitError::none) continue;
+      ++accepted;
+      EXPECT_NEAR(static_cast<double>(as_fixed.jerk) / exact, 1.0, 0.002) << rate_Hz << ' ' << jerk;
+    }
+  }
+  EXPECT_GT(accepted, 20);
+}
+
+}  // namespace
