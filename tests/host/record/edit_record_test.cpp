@@ -89,9 +89,9 @@ TEST(ShiftChannel, PartsOfASampleLieOnStraightLines) {
 TEST(ShiftChannel, AHeldCommandKeepsItsMean) {
   const host::Record shifted = host::shift_channel(sample(), "u_V", 0.0005);
   const auto row = static_cast<std::size_t>(std::lround((0.05 - shifted.t_s.front()) * 1000.0));
-  EXPECT_EQ(shifted.u_V[row - 1], 1.0);
+  EXPECT_NEAR(shifted.u_V[row - 1], 1.0, 1e-9);
   EXPECT_NEAR(shifted.u_V[row], 0.0, 1e-9);
-  EXPECT_EQ(shifted.u_V[row + 1], -1.0);
+  EXPECT_NEAR(shifted.u_V[row + 1], -1.0, 1e-9);
 }
 
 TEST(ShiftChannel, UnknownChannelsAndLongShiftsAreRefused) {
