@@ -35,13 +35,16 @@ void print(const host::Diagnosis& diagnosis) {
     fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g}, floor {:.4g}\n", channel.name, channel.before_validate,
                channel.after_validate, channel.floor_validate);
   if (diagnosis.candidates.empty()) return;
-  fmt::print("\n  {:<50} {:>9} {:>9} {:>11}\n", "candidate", "train", "validate", "confidence");
+  fmt::print("\n  {:<50} {:>9} {:>9} {:>11} {:>9}\n", "candidate", "train", "validate", "probability", "no luck");
   constexpr std::size_t kShown = 8;
   for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
     const host::JudgedCandidate& candidate = diagnosis.candidates[k];
-    fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
-               candidate.train_after, candidate.after, 100.0 * candidate.confidence);
+    fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}% {:8.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
+               candidate.train_after, candidate.after, 100.0 * candidate.probability, 100.0 * candidate.confidence);
   }
+  fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}%\n", "nothing is missing", diagnosis.before_train,
+             diagnosis.before_validate, 100.0 * verdict.probability_nothing);
+  fmt::print("  {:<50} {:>9} {:>9} {:10.1f}%\n", "something else", "", "", 100.0 * verdict.probability_other);
 }
 
 void run(const InsightArguments& arguments) {

@@ -32,8 +32,11 @@ struct JudgedCandidate {
   double before = 0.0;  ///< combined
   double after = 0.0;
   double train_after = 0.0;
-  double confidence = 0.0;  ///< that the improvement is no luck, 0..1
+  double confidence = 0.0;   ///< that the improvement is no luck, 0..1
+  double luck = 1.0;         ///< probability that the best of all that were tried gains as much by chance, 0..1
+  double probability = 0.0;  ///< of this mechanism given these records, 0..1
   sim::DriveDescription model;
+  std::vector<std::string> on_bound = {};  ///< parameters that ran to the end of their range
 };
 
 struct DiagnosisVerdict {
@@ -43,6 +46,10 @@ struct DiagnosisVerdict {
   std::vector<std::vector<std::string>> alternatives;  ///< groups that these data cannot tell apart
   std::string next_experiment;
   std::string explanation;
+  std::string coordinate;            ///< where unexplained: what carries most of what is left
+  std::string where;                 ///< where along it, in words
+  double probability_nothing = 0.0;  ///< that nothing is missing, 0..1
+  double probability_other = 0.0;    ///< that something is missing that is no candidate, 0..1
 };
 
 /// What it began with, and what came of it.
@@ -57,6 +64,7 @@ struct Diagnosis : PreparedSets {
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
+  std::size_t tried = 0;                             ///< candidates that the search began with
   std::vector<JudgedCandidate> candidates;           ///< best first
   std::vector<std::string> not_searched;             ///< kinds of which a fit ended at its budget, not at its best
   DiagnosisVerdict verdict;
@@ -75,10 +83,6 @@ bool is_rough(const SetError& error);
 /// `validation` may be empty.
 Measure rough_measure(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                       const std::vector<const Record*>& validation);
-
-/// A candidate on validation data, against the base's error there.
-JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
-                                const SetError& before);
 
 /// By the motion over windows of kWindow_s. Where the machine proves rough, again by the effort, in which what is
 /// missing shows before it adds up to a drift; and where that says nothing, by the motion over short windows. `before`:

@@ -36,17 +36,27 @@ nlohmann::json candidate_json(const JudgedCandidate& candidate) {
           {"train_after", candidate.train_after},
           {"parameters", candidate.kinds.size() == 1 ? parameters.begin().value() : parameters},
           {"confidence", candidate.confidence},
+          {"luck", candidate.luck},
+          {"probability", candidate.probability},
+          {"on_bound", candidate.on_bound},
           {"confused_with", std::vector<std::string>(info.confused_with.begin(), info.confused_with.end())},
           {"separate_by", std::string(info.separate_by)}};
 }
 
 nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
-  return {{"status", std::string(status_name(verdict.status))},
-          {"effects", verdict.effects},
-          {"parameters", verdict.parameters},
-          {"alternatives", verdict.alternatives},
-          {"next_experiment", verdict.next_experiment},
-          {"explanation", verdict.explanation}};
+  nlohmann::json document = {{"status", std::string(status_name(verdict.status))},
+                             {"effects", verdict.effects},
+                             {"parameters", verdict.parameters},
+                             {"alternatives", verdict.alternatives},
+                             {"probability_nothing", verdict.probability_nothing},
+                             {"probability_other", verdict.probability_other},
+                             {"next_experiment", verdict.next_experiment},
+                             {"explanation", verdict.explanation}};
+  if (!verdict.coordinate.empty()) {
+    document["coordinate"] = verdict.coordinate;
+    document["where"] = verdict.where;
+  }
+  return document;
 }
 
 }  // namespace

@@ -222,7 +222,7 @@ BarChart candidate_chart(const Diagnosis& diagnosis) {
     const JudgedCandidate& candidate = diagnosis.candidates[k];
     chart.rows.push_back({fmt::format("{}", fmt::join(candidate.kinds, " + ")),
                           {candidate.before, candidate.after},
-                          fmt::format("{:.0f} % sure", 100.0 * candidate.confidence)});
+                          fmt::format("{:.0f} % probable", 100.0 * candidate.probability)});
   }
   return chart;
 }

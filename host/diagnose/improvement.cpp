@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "host/diagnose/candidate_starts.hpp"
+#include "host/diagnose/judgement.hpp"
 #include "host/exit_codes.hpp"
 #include "sim/catalogue.hpp"
 
@@ -104,8 +105,8 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
   addition.held_back = sets.held_back;
   renew_floors(sets.training, found.front().model);
   renew_floors(sets.validation, found.front().model);
-  addition.judged =
-      judge_candidate(found.front(), sets.training, sets.validation, error_of(sim::Drive(sets.base), sets.validation));
+  addition.judged = judge_candidate(found.front(), sets.training, sets.validation,
+                                    error_of(sim::Drive(sets.base), sets.validation), 1);
   addition.estimates = document_fit(addition.judged.model, sets.training);
   return addition;
 }

@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/chance.hpp"
+#include "host/diagnose/claim.hpp"
+#include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/record/columns.hpp"
+#include "sim/catalogue.hpp"
 
 namespace host {
 
 namespace {
 
-std::size_t windows_per_second(const RecordSet& set) {
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(1.0 / set.records.front().prepared.window_s())));
+/// Windows of a set that follow one another within `span_s`.
+std::size_t windows_in(double span_s, const RecordSet& set) {
+  return std::max<std::size_t>(1,
+                               static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));
 }
 
 /// What a base and the best model leave on both sets.
@@ -40,18 +46,34 @@ RecordSet together(const RecordSet& training, const RecordSet& validation) {
   return all;
 }
 
+/// Effects that could be added to the base, and to the best single where pairs were tried.
+std::size_t candidates_tried(const sim::DriveDescription& base, const Findings& findings, const RecordSet& training) {
+  const auto applicable = [&](const sim::DriveDescription& model) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        sim::catalogue(), [&](const sim::EffectInfo* info) { return is_applicable(*info, model, training); }));
+  };
+  return applicable(base) + (findings.pairs.empty() ? 0 : applicable(findings.singles.front().model));
+}
+
 }  // namespace
 
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
-                                const SetError& before) {
+                                const SetError& before, std::size_t tried) {
+  constexpr double kBlock_s = 1.0;  // of the bootstrap
   const sim::Drive drive(candidate.model);
   const SetError after = error_of(drive, validation);
-  return {candidate.kinds,
-          before.combined,
-          after.combined,
-          error_of(drive, training).combined,
-          confidence_of_improvement(before, after, windows_per_second(validation), validation.common_square),
-          candidate.model};
+  JudgedCandidate judged;
+  judged.kinds = candidate.kinds;
+  judged.before = before.combined;
+  judged.after = after.combined;
+  judged.train_after = error_of(drive, training).combined;
+  judged.confidence =
+      confidence_of_improvement(before, after, windows_in(kBlock_s, validation), validation.common_square);
+  judged.luck =
+      probability_of_luck(before, after, tried, windows_in(kLuckBlock_s, validation), validation.common_square);
+  judged.model = candidate.model;
+  judged.on_bound = parameters_on_bound(candidate.model, candidate.kinds);
+  return judged;
 }
 
 const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings) {
@@ -66,9 +88,10 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   renew_floors(training, reference);
   renew_floors(validation, reference);
   const SetError before = error_of(sim::Drive(diagnosis.base), validation);
+  diagnosis.tried = candidates_tried(diagnosis.base, findings, training);
   for (const std::vector<Candidate>* list : {&findings.singles, &findings.pairs})
     for (const Candidate& candidate : *list)
-      diagnosis.candidates.push_back(judge_candidate(candidate, training, validation, before));
+      diagnosis.candidates.push_back(judge_candidate(candidate, training, validation, before, diagnosis.tried));
   std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
   diagnosis.before_train = error_of(sim::Drive(diagnosis.base), training).combined;
   diagnosis.before_validate = before.combined;
@@ -83,6 +106,7 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
                                             : error_of(sim::Drive(diagnosis.candidates.front().model), validation)) ||
       !moves || diagnosis.window_s < kWindow_s;
   diagnosis.verdict = reach_verdict(given, diagnosis);
+  assign_probabilities(diagnosis);
   diagnosis.best = diagnosis.base;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
     if (std::ranges::is_permutation(candidate.kinds, diagnosis.verdict.effects)) diagnosis.best = candidate.model;

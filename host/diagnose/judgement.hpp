@@ -14,6 +14,10 @@ struct Findings {
   std::vector<Candidate> pairs;    ///< a second one added to the best single
 };
 
+/// A candidate on validation data, against the base's error there, as the best of `tried`.
+JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
+                                const SetError& before, std::size_t tried);
+
 /// The reference that floors suit: the best model that a search found.
 const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings);
 

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "host/diagnose/all_clear.hpp"
+#include "host/diagnose/claim.hpp"
 #include "host/evidence/speed_coverage.hpp"
 #include "sim/catalogue.hpp"
 
@@ -13,16 +16,6 @@ namespace host {
 
 namespace {
 
-/// The luckiest of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5 %.
-constexpr double kLeastGain = 0.05;
-/// Of the bootstrap over blocks of validation windows: one in twenty, since gain and share below keep luck out (the
-/// luckiest candidate never came near them); on a rough machine, where share asks for little, one in a hundred.
-constexpr double kLeastConfidence = 0.95;
-constexpr double kLeastRoughConfidence = 0.99;
-/// Part of what there is to explain, (before^2 - after^2)/(before^2 - 1), below which an effect is no explanation.
-constexpr double kLeastShare = 0.35;
-/// The same on a rough machine, whose residual has many small causes.
-constexpr double kLeastRoughShare = 0.1;
 /// A further effect must take half of what the first leaves (on a rough machine it is enough that the two need each
 /// other), and a sixth of the error.
 constexpr double kLeastFurtherShare = 0.5;
@@ -31,11 +24,6 @@ constexpr double kLeastFurtherGain = 0.15;
 constexpr double kTie = 0.05;
 /// Base parameters that moved by more than this were off, relative.
 constexpr double kMoved = 0.05;
-
-double explained_share(double before, double after) {
-  const double there_is = before * before - 1.0;
-  return there_is > 0.0 ? (before * before - after * after) / there_is : 0.0;
-}
 
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
   const JudgedCandidate* best = nullptr;
@@ -47,9 +35,7 @@ const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size
 }
 
 bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  return candidate.after < (1.0 - kLeastGain) * candidate.before &&
-         candidate.confidence >= (diagnosis.rough ? kLeastRoughConfidence : kLeastConfidence) &&
-         explained_share(candidate.before, candidate.after) >= (diagnosis.rough ? kLeastRoughShare : kLeastShare);
+  return doubt_about(candidate, diagnosis) == Doubt::none;
 }
 
 /// Whether two effects do more together than what each does alone adds up to: judged one at a time, each hides the
@@ -144,6 +130,35 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
   return {};
 }
 
+double validation_s(const Diagnosis& diagnosis) {
+  return static_cast<double>(diagnosis.validation.used_windows()) * diagnosis.window_s;
+}
+
+std::string spaced(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+/// Why the closest candidate is not claimed, to follow a statement of the error.
+std::string doubt_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
+  const std::string what = fmt::format("; the closest, {}, leaves {:.2f} (training: {:.2f})",
+                                       fmt::join(closest.kinds, " + "), closest.after, closest.train_after);
+  switch (doubt_about(closest, diagnosis)) {
+    case Doubt::none:
+      return {};
+    case Doubt::no_gain:
+      return what;
+    case Doubt::on_bound:
+      return what + fmt::format(", and only with {} at the end of its range", fmt::join(closest.on_bound, ", "));
+    case Doubt::luck:
+      return what + fmt::format(", which with {} candidates tried may be luck on {:.1f} s of validation data",
+                                diagnosis.tried, validation_s(diagnosis));
+    case Doubt::leaves_much:
+      return what + ", too much for an effect that is really there: it makes up for something else";
+  }
+  return {};
+}
+
 }  // namespace
 
 DiagnosisVerdict insufficient_data(const sim::DriveDescription& model) {
@@ -209,17 +224,29 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }
-  if (before > 2.0 * kExplained) {
-    verdict.status = Status::unexplained;
-    verdict.explanation = fmt::format(
-        "The error on validation data is {:.2f} times the floor, and no effect of the catalogue accounts for it{}.",
-        before,
-        chosen == nullptr
-            ? std::string()
-            : fmt::format("; the closest, {}, leaves {:.2f}", fmt::join(chosen->kinds, " + "), chosen->after));
-    verdict.explanation += " What is left to explain: " + where_it_fails(diagnosis.where) + ".";
-    verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
-    verdict.next_experiment = "Look where the error lives, and record that motion alone, slowly and fast, both ways.";
+  const std::string closest = chosen == nullptr ? std::string() : doubt_in_words(*chosen, diagnosis);
+  if (chosen != nullptr && doubt_about(*chosen, diagnosis) == Doubt::luck) {
+    verdict.status = Status::insufficient_data;
+    verdict.explanation = fmt::format("The error on validation data is {:.2f} times the floor{}.", before, closest);
+    verdict.next_experiment = fmt::format(
+        "Record longer: of {} candidates the best may be lucky on so little; {:.1f} s of validation data (four times "
+        "as much in all, where it is kept back) in which the axis moves throughout can decide.",
+        diagnosis.tried, std::max(2.0 * validation_s(diagnosis), least_validation_s(diagnosis.tried)));
+    return verdict;
+  }
+  const ResidualTests tests = test_residuals(diagnosis.base, diagnosis.training, diagnosis.validation);
+  if (const std::optional<Objection> objection = objection_to_all_clear(diagnosis, tests)) {
+    verdict.status = objection->status;
+    verdict.explanation = objection->explanation + closest + ".";
+    if (objection->status == Status::unexplained) {
+      const Trace trace = strongest_trace(tests, diagnosis.where);
+      verdict.coordinate = trace.coordinate;
+      verdict.where = trace.where;
+      verdict.explanation += fmt::format(" What is left depends most on {}: {}. By motion, {}.",
+                                         spaced(trace.coordinate), trace.where, where_it_fails(diagnosis.where));
+      verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
+    }
+    verdict.next_experiment = objection->next_experiment;
     return verdict;
   }
   verdict.status = verdict.parameters.empty() ? Status::adequate : Status::parameters;

@@ -1,0 +1,117 @@
+#include "host/compare/residual_effort.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace host {
+
+namespace {
+
+/// Turning points count once the axis has come back from them by so many steps of the encoder.
+constexpr double kBelievedSteps = 3.0;
+
+/// Of every row: signed travel since the last reversal, and seconds of the rest before the present motion.
+struct History {
+  std::vector<double> since_reversal, rest_s;
+
+  History(const SmoothedMotion& motion, double resolution, double period_s)
+      : since_reversal(motion.x.size()), rest_s(motion.x.size()) {
+    std::size_t turning = 0, extreme = 0;
+    double direction = 0.0, rest = 0.0;
+    for (std::size_t k = 0; k < motion.x.size(); ++k) {
+      const double beyond = motion.x[k] - motion.x[extreme];
+      if (direction == 0.0 ? std::abs(beyond) > kBelievedSteps * resolution
+                           : beyond * direction < -kBelievedSteps * resolution) {
+        turning = extreme;
+        extreme = k;
+        direction = beyond > 0.0 ? 1.0 : -1.0;
+      } else if (beyond * direction > 0.0) {
+        extreme = k;
+      }
+      since_reversal[k] = motion.x[k] - motion.x[turning];
+      if (motion.standing[k]) rest = k > 0 && motion.standing[k - 1] ? rest + period_s : period_s;
+      rest_s[k] = rest;
+    }
+  }
+};
+
+/// Appends the averages of one record.
+void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared, std::size_t index,
+            const Prediction& prediction, std::size_t first_window, bool with_temperature, ResidualEffort& out) {
+  const Record& record = *prepared.record;
+  const SmoothedMotion& motion = prepared.motion();
+  const History history(motion, data.encoder_resolution, prepared.period_s);
+  const std::size_t step =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(out.period_s / prepared.period_s)));
+  const double step_s = static_cast<double>(step) * prepared.period_s;
+  const bool by_position = record.has_position();
+  for (std::size_t place = 0; place < prepared.windows.size(); ++place) {
+    const Window& window = prepared.windows[place];
+    // How far the motion is beyond its prediction; nothing at the restart.
+    const auto beyond = [&](std::size_t row) {
+      if (row == window.begin) return 0.0;
+      return by_position ? motion.x[row] - prediction.x[row] : motion.w[row] - prediction.w[row];
+    };
+    for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
+      if (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0) continue;
+      const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
+      const double slope = 0.5 * (beyond(row + step) - beyond(row - step));
+      const double acceleration = by_position ? bend / (step_s * step_s * drive.lead) : slope / step_s;
+      out.record.push_back(index);
+      out.slot.push_back(row / step);
+      out.window.push_back(first_window + place);
+      out.missing.push_back(drive.inertia * acceleration);
+      out.t_s.push_back(record.t_s[row] - record.t_s.front());
+      out.x.push_back(motion.x[row]);
+      out.w.push_back(motion.w[row]);
+      out.acceleration.push_back((motion.w[row + step] - motion.w[row - step]) / (2.0 * step_s));
+      out.command_V.push_back(prepared.u_V[row]);
+      out.since_reversal.push_back(history.since_reversal[row]);
+      out.rest_s.push_back(history.rest_s[row]);
+      if (with_temperature) out.temp_C.push_back(record.temp_C[row]);
+    }
+  }
+}
+
+/// Short windows that follow one another as one, so that an average has room between two restarts.
+PreparedRecord in_long_windows(PreparedRecord prepared) {
+  const auto times = static_cast<std::size_t>(std::lround(kWindow_s / prepared.window_s()));
+  if (times < 2) return prepared;
+  std::vector<Window> joined;
+  const std::vector<Window>& all = prepared.windows;
+  for (std::size_t k = 0; k + times <= all.size();) {
+    const std::size_t length = all[k].length;
+    const bool whole =
+        (all[k].begin / length) % times == 0 && all[k + times - 1].begin == all[k].begin + (times - 1) * length;
+    if (whole) joined.push_back({all[k].begin, times * length});
+    k += whole ? times : 1;
+  }
+  std::vector<ShiftWeights> weights;
+  for (std::size_t k = 0; k < prepared.shift_weights->size(); k += times)
+    weights.push_back((*prepared.shift_weights)[k]);
+  prepared.windows = std::move(joined);
+  prepared.shift_weights = std::make_shared<const std::vector<ShiftWeights>>(std::move(weights));
+  return prepared;
+}
+
+}  // namespace
+
+ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set) {
+  const sim::Drive drive(model);
+  const bool with_temperature = std::ranges::none_of(
+      set.records, [](const ComparedRecord& compared) { return compared.prepared.record->temp_C.empty(); });
+  ResidualEffort residual;
+  Prediction prediction;
+  std::size_t windows = 0;
+  for (std::size_t r = 0; r < set.records.size(); ++r) {
+    const PreparedRecord prepared = in_long_windows(set.records[r].prepared);
+    predict(drive, prepared, prediction);
+    append(drive, model.data, prepared, r, prediction, windows, with_temperature, residual);
+    windows += prepared.windows.size();
+  }
+  return residual;
+}
+
+}  // namespace host

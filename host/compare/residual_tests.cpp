@@ -1,0 +1,289 @@
+#include "host/compare/residual_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+
+#include "host/report/text_format.hpp"
+
+namespace host {
+
+namespace {
+
+using Values = std::vector<double>;
+
+/// Fewer samples in a set tell nothing of a dependence.
+constexpr std::size_t kFewestSamples = 100;
+
+/// A sudden breakaway counts as so many times the median size at most: one must not hide what recurs.
+constexpr double kMostMedians = 6.0;
+
+Values clipped(Values values) {
+  Values sizes(values.size());
+  std::ranges::transform(values, sizes.begin(), [](double value) { return std::abs(value); });
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  for (double& value : values) value = std::clamp(value, -kMostMedians * *middle, kMostMedians * *middle);
+  return values;
+}
+
+double sum_of_squares(const Values& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+/// A curve of means over bins with as many samples each; a mean of few samples is drawn towards zero.
+class Curve {
+ public:
+  Curve(const Values& coordinate, const Values& value, std::size_t bins) {
+    constexpr double kDrawnBy = 10.0;  // samples: neighbours are alike, so that ten are about one
+    Values sorted = coordinate;
+    std::ranges::sort(sorted);
+    for (std::size_t bin = 1; bin < bins; ++bin) edges_.push_back(sorted[bin * sorted.size() / bins]);
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    low_ = sorted.front();
+    high_ = sorted.back();
+    Values sums(edges_.size() + 1), counts(edges_.size() + 1);
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      sums[bin_of(coordinate[k])] += value[k];
+      ++counts[bin_of(coordinate[k])];
+    }
+    for (std::size_t bin = 0; bin < sums.size(); ++bin) means_.push_back(sums[bin] / (counts[bin] + kDrawnBy));
+    for (std::size_t bin = 0; bin < sums.size(); ++bin) weights_.push_back(counts[bin] * means_[bin] * means_[bin]);
+  }
+
+  double operator()(double coordinate) const { return means_[bin_of(coordinate)]; }
+
+  /// The neighbouring bins round the strongest one that have its sign and half of its height.
+  std::pair<double, double> stands_out() const {
+    const auto top = static_cast<std::size_t>(std::ranges::max_element(weights_) - weights_.begin());
+    const auto alike = [&](std::size_t bin) { return means_[bin] / means_[top] > 0.5; };
+    std::size_t from = top, to = top;
+    while (from > 0 && alike(from - 1)) --from;
+    while (to + 1 < means_.size() && alike(to + 1)) ++to;
+    return {from == 0 ? low_ : edges_[from - 1], to == edges_.size() ? high_ : edges_[to]};
+  }
+
+ private:
+  std::size_t bin_of(double coordinate) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(edges_, coordinate) - edges_.begin());
+  }
+  Values edges_, means_, weights_;
+  double low_ = 0.0, high_ = 0.0;
+};
+
+/// A set's residual, ready to be tested.
+struct Half {
+  ResidualEffort samples;
+  Values value;
+
+  explicit Half(ResidualEffort residual) : samples(std::move(residual)), value(clipped(samples.missing)) {}
+};
+
+/// Both sets along one coordinate, dealt out in blocks to two folds: a curve that was learnt on one is tried on the
+/// other. Whole sets would not do: one of them may never visit the place where something happens.
+struct Folds {
+  std::array<Values, 2> along, value;
+
+  Folds(const std::array<const Half*, 2>& halves, Values ResidualEffort::*coordinate) {
+    constexpr std::size_t kBlock = 10;  // windows
+    for (const Half* half : halves) {
+      const Values& values = half->samples.*coordinate;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const std::size_t fold = (half->samples.window[k] / kBlock) % 2;
+        along[fold].push_back(values[k]);
+        value[fold].push_back(half->value[k]);
+      }
+    }
+  }
+
+  double removed_share(std::size_t bins) const {
+    double left = 0.0, all = 0.0;
+    for (const std::size_t tried : {0U, 1U}) {
+      const std::size_t other = 1 - tried;
+      if (along[other].empty()) return 0.0;
+      const Curve learnt(along[other], value[other], bins);
+      for (std::size_t k = 0; k < value[tried].size(); ++k)
+        left += std::pow(value[tried][k] - learnt(along[tried][k]), 2);
+      all += sum_of_squares(value[tried]);
+    }
+    return all > 0.0 ? std::max(0.0, 1.0 - left / all) : 0.0;
+  }
+};
+
+/// Part of the squared residual that the two windows before and behind a window foretell.
+double share_of_time(const Half& half) {
+  const std::vector<std::size_t>& window = half.samples.window;
+  const std::size_t windows = window.back() + 1;
+  Values sums(windows), counts(windows);
+  for (std::size_t k = 0; k < window.size(); ++k) {
+    sums[window[k]] += half.value[k];
+    ++counts[window[k]];
+  }
+  double product = 0.0, square = 0.0;  // of neighbouring means: how much of one the other foretells
+  Values foretold(windows);
+  for (std::size_t k = 1; k + 1 < windows; ++k) {
+    const double count = counts[k - 1] + counts[k + 1];
+    if (count <= 0.0 || counts[k] <= 0.0) continue;
+    foretold[k] = (sums[k - 1] + sums[k + 1]) / count;
+    product += foretold[k] * sums[k];
+    square += foretold[k] * foretold[k] * counts[k];
+  }
+  // The best multiple of the neighbours' mean removes product^2/square.
+  return product > 0.0 && square > 0.0 ? product * product / square / sum_of_squares(half.value) : 0.0;
+}
+
+/// Power over frequency, averaged over segments of 2 s with half overlap (Welch 1967, Hann window), 0.5 Hz apart.
+struct Spectrum {
+  static constexpr double kSegment_s = 2.0, kLowest_Hz = 3.0;
+  Values power;  ///< of line k at k/kSegment_s Hz; sums to about 1
+
+  explicit Spectrum(const Half& half) {
+    const double period_s = half.samples.period_s;
+    const auto length = static_cast<std::size_t>(std::lround(kSegment_s / period_s));
+    power.assign(length / 2, 0.0);
+    Values series;
+    for (std::size_t k = 0; k < half.value.size();) {
+      const std::size_t record = half.samples.record[k], first = half.samples.slot[k];
+      series.clear();
+      for (; k < half.value.size() && half.samples.record[k] == record; ++k) {
+        series.resize(half.samples.slot[k] - first + 1, 0.0);
+        series.back() = half.value[k];
+      }
+      for (std::size_t begin = 0; begin + length <= series.size(); begin += length / 2)
+        add(series.data() + begin, length);
+    }
+    const double total = std::accumulate(power.begin(), power.end(), 0.0);
+    if (total > 0.0)
+      for (double& line : power) line /= total;
+  }
+
+  /// How far a line and its two neighbours stand out of the median of those round them, as a part of the whole.
+  double outstanding(std::size_t line) const {
+    constexpr std::size_t kRound = 12;
+    if (line < static_cast<std::size_t>(kLowest_Hz * kSegment_s) || line + 1 >= power.size()) return 0.0;
+    Values round;
+    for (std::size_t k = line - std::min(line, kRound); k < std::min(power.size(), line + kRound + 1); ++k)
+      if (k + 1 < line || k > line + 1) round.push_back(power[k]);
+    const auto middle = round.begin() + static_cast<std::ptrdiff_t>(round.size() / 2);
+    std::ranges::nth_element(round, middle);
+    return power[line - 1] + power[line] + power[line + 1] - 3.0 * *middle;
+  }
+
+  std::size_t strongest() const {
+    std::size_t best = 0;
+    for (std::size_t line = 0; line < power.size(); ++line)
+      if (outstanding(line) > outstanding(best)) best = line;
+    return best;
+  }
+
+ private:
+  void add(const double* values, std::size_t length) {
+    Values windowed(length);
+    for (std::size_t k = 0; k < length; ++k)
+      windowed[k] =
+          values[k] *
+          (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length)));
+    for (std::size_t line = 0; line < power.size(); ++line) {
+      const double turn = 2.0 * std::numbers::pi * static_cast<double>(line) / static_cast<double>(length);
+      const double twice_cosine = 2.0 * std::cos(turn);  // Goertzel 1958
+      double last = 0.0, before = 0.0;
+      for (const double value : windowed) {
+        const double next = value + twice_cosine * last - before;
+        before = last;
+        last = next;
+      }
+      power[line] += last * last + before * before - twice_cosine * last * before;
+    }
+  }
+};
+
+ResidualDependence on_frequency(const Half& training, const Half& validation) {
+  const Spectrum first(training), second(validation);
+  ResidualDependence best{"frequency", {}, 0.0};
+  for (const std::size_t line : {first.strongest(), second.strongest()}) {
+    const double share = std::min(first.outstanding(line), second.outstanding(line));
+    if (share <= best.share) continue;
+    best.share = share;
+    best.where = fmt::format("at {:.1f} Hz", static_cast<double>(line) / Spectrum::kSegment_s);
+  }
+  return best;
+}
+
+Correlation correlation(const ResidualEffort& samples, const Values& value, const Values& other, long from, long to) {
+  Correlation result;
+  const auto centred = [](Values values) {
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    for (double& entry : values) entry -= mean;
+    return values;
+  };
+  const Values a = centred(value), b = centred(other);
+  const double scale = std::sqrt(sum_of_squares(a) * sum_of_squares(b));
+  constexpr double kNormal99 = 2.576;
+  result.bound = kNormal99 / std::sqrt(static_cast<double>(a.size()));
+  for (long lag = from; lag <= to; ++lag) {
+    double sum = 0.0;
+    for (long k = std::max(0L, lag), n = static_cast<long>(a.size()); k < std::min(n, n + lag); ++k) {
+      const auto now = static_cast<std::size_t>(k), then = static_cast<std::size_t>(k - lag);
+      const bool evenly = samples.record[now] == samples.record[then] &&
+                          static_cast<long>(samples.slot[now]) - static_cast<long>(samples.slot[then]) == lag;
+      if (evenly) sum += a[now] * b[then];
+    }
+    result.lag_s.push_back(static_cast<double>(lag) * samples.period_s);
+    result.value.push_back(scale > 0.0 ? sum / scale : 0.0);
+  }
+  return result;
+}
+
+}  // namespace
+
+ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet& training,
+                             const RecordSet& validation) {
+  ResidualTests tests;
+  const Half first(residual_effort(model, training)), second(residual_effort(model, validation));
+  if (std::min(first.value.size(), second.value.size()) < kFewestSamples) return tests;
+  if (!(sum_of_squares(first.value) > 0.0) || !(sum_of_squares(second.value) > 0.0)) return tests;
+  tests.rms = std::sqrt(sum_of_squares(second.value) / static_cast<double>(second.value.size()));
+
+  const bool rotary = model.data.kind == sim::DriveKind::rotary;
+  const auto against = [&](const char* coordinate, Values ResidualEffort::*along, std::size_t bins, double factor,
+                           const char* words, const char* unit) {
+    if ((first.samples.*along).size() != first.value.size() || (second.samples.*along).size() != second.value.size())
+      return;
+    const Folds folds({&first, &second}, along);
+    Values all_along = first.samples.*along, all = first.value;
+    all_along.insert(all_along.end(), (second.samples.*along).begin(), (second.samples.*along).end());
+    all.insert(all.end(), second.value.begin(), second.value.end());
+    const auto [from, to] = Curve(all_along, all, bins).stands_out();
+    tests.dependences.push_back({coordinate,
+                                 fmt::format("{} between {} and {} {}", words, format_value(factor * from, 3),
+                                             format_value(factor * to, 3), unit),
+                                 folds.removed_share(bins)});
+  };
+  const double in_mm = rotary ? 1.0 : 1e3;
+  const char* speed_unit = rotary ? "rad/s" : "m/s";
+  against("speed", &ResidualEffort::w, 24, 1.0, "at speeds", speed_unit);
+  if (training.records.front().prepared.record->has_position())
+    against("position", &ResidualEffort::x, 40, in_mm, "at positions", "mm");
+  against("travel_since_reversal", &ResidualEffort::since_reversal, 24, in_mm, "where the travel since a reversal is",
+          "mm");
+  against("acceleration", &ResidualEffort::acceleration, 24, 1.0, "at accelerations", rotary ? "rad/s²" : "m/s²");
+  against("current", &ResidualEffort::command_V, 24, 1.0, "at commands", "V");
+  against("rest", &ResidualEffort::rest_s, 12, 1.0, "after a rest", "s");
+  against("temperature", &ResidualEffort::temp_C, 12, 1.0, "at temperatures", "°C");
+  tests.dependences.push_back(
+      {"time", "from one moment to the next", std::max(share_of_time(first), share_of_time(second))});
+  tests.dependences.push_back(on_frequency(first, second));
+  std::ranges::stable_sort(tests.dependences, std::greater(), &ResidualDependence::share);
+
+  constexpr long kLags = 40;
+  tests.with_itself = correlation(second.samples, second.value, second.value, 0, kLags);
+  tests.with_command = correlation(second.samples, second.value, second.samples.command_V, -kLags, kLags);
+  return tests;
+}
+
+}  // namespace host

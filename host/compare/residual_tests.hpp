@@ -1,0 +1,42 @@
+// Does what a model leaves depend on anything? Its residual effort is held against each coordinate of the motion,
+// against time and frequency, by curves that are learnt on half of the data and tried on the other half. Significance
+// alone is no test here: with 25,000 samples whiteness is refused to every model of a real machine. What counts is how
+// much of the residual a dependence carries, and that it carries it again in other data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/compare/residual_effort.hpp"
+
+namespace host {
+
+/// How much of the residual depends on one coordinate.
+struct ResidualDependence {
+  /// speed, position, travel_since_reversal, acceleration, current, rest, temperature, time, frequency
+  std::string coordinate;
+  std::string where;  ///< where along it, to follow "most": "at speeds between 3 and 6 rad/s", "at 48.0 Hz"
+  /// Part of the squared residual of all data that curves remove from blocks of it that they were not learnt on, 0..1.
+  /// Frequency: the smaller part of both sets, at the same line. Time: the larger, since what happens at a time may
+  /// happen in one of them.
+  double share = 0.0;
+};
+
+/// A correlation function, with the bound that 99 of 100 values of a white residual keep.
+struct Correlation {
+  std::vector<double> lag_s, value;
+  double bound = 0.0;
+};
+
+struct ResidualTests {
+  std::vector<ResidualDependence> dependences;  ///< largest share first
+  Correlation with_itself;                      ///< of the residual on validation data
+  Correlation with_command;                     ///< of the residual with earlier and later commands
+  double rms = 0.0;                             ///< of the residual effort on validation data, Nm or N
+};
+
+/// The lists are empty where the axis hardly moves in one of the sets.
+ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet& training,
+                             const RecordSet& validation);
+
+}  // namespace host

@@ -1,0 +1,134 @@
+#include "host/diagnose/all_clear.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "host/diagnose/visibility.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// Part of the squared residual that may depend on a coordinate. Of made cases without any effect it is below 0.05.
+constexpr double kMostDependence = 0.1;
+/// The same for the acceleration, whose changes the smoother rounds off: up to 0.25 in such cases.
+constexpr double kMostOnAcceleration = 0.4;
+
+/// Windows in which the axis neither stands nor turns over.
+double error_while_sliding(const sim::DriveDescription& model, const RecordSet& set) {
+  const SetError error = error_of(sim::Drive(model), set);
+  double square = 0.0;
+  std::size_t channels = 0;
+  for (const WindowScore& score : error.windows) {
+    const PreparedRecord& prepared = set.records[score.record].prepared;
+    const SmoothedMotion& motion = prepared.motion();
+    const Window& window = prepared.windows[score.window];
+    bool slides = true;
+    for (std::size_t row = window.begin; row < window.begin + window.length && slides; ++row)
+      slides = motion.w[row] * motion.w[row + 1] > 0.0 && !motion.standing[row];
+    if (!slides) continue;
+    for (const double part : {score.x, score.w, score.effort}) {
+      square += part;
+      if (part > 0.0) ++channels;
+    }
+  }
+  return channels == 0 ? error.combined : std::sqrt(square / static_cast<double>(channels));
+}
+
+/// The error may exceed its size where single breakaways or impacts come a moment late: while the axis slides it is
+/// small then, and so it is with those windows weighed down.
+bool is_small(const sim::DriveDescription& model, const RecordSet& set) {
+  const SetError error = error_of(sim::Drive(model), set);
+  if (error.combined <= kSmall) return true;
+  return error.robust <= 1.0 && error_while_sliding(model, set) <= 1.0;
+}
+
+/// Effects whose trace no motion sets apart from this base: a constant from a Coulomb level by direction, an offset of
+/// the tachometer from its noise, and what acts on static friction that the base does not have.
+bool is_taken_up(const std::string& kind, const sim::DriveDescription& base) {
+  constexpr std::array kConstants = {"constant_torque", "dac_offset", "coulomb_asymmetry", "tach_offset"};
+  constexpr std::array kOfStaticFriction = {"friction_lag", "dwell_stiction"};
+  const auto among = [&](const auto& kinds) { return std::ranges::find(kinds, kind) != kinds.end(); };
+  return among(kConstants) || (base.find("stribeck") == nullptr && among(kOfStaticFriction));
+}
+
+std::string_view coordinate_of(std::string_view partition, std::string_view region) {
+  if (partition == "regime") return region == "reversal" ? "travel_since_reversal" : "speed";
+  if (partition == "position" || partition == "place" || partition == "order") return "position";
+  if (partition == "time" || partition == "event") return "time";
+  if (partition == "rest") return "rest";
+  if (partition == "frequency") return "frequency";
+  return "speed";
+}
+
+}  // namespace
+
+Trace strongest_trace(const ResidualTests& tests, const std::vector<ErrorRegion>& regions) {
+  // Of made cases without any effect it is below this, but for one in a hundred.
+  constexpr double kLeast = 0.02;
+  // Whatever depends on the motion also lasts from one moment to the next.
+  constexpr double kGeneric = 0.15;
+  const ResidualDependence* best = nullptr;
+  double most = 0.0;
+  for (const ResidualDependence& dependence : tests.dependences) {
+    if (dependence.share < kLeast || dependence.coordinate == "acceleration") continue;
+    const bool generic = dependence.coordinate == "time";
+    const double weight = (generic ? kGeneric : 1.0) * dependence.share;
+    if (weight <= most) continue;
+    most = weight;
+    best = &dependence;
+  }
+  if (best != nullptr) return {best->coordinate, best->where};
+  if (const ErrorRegion* worst = worst_region(regions))
+    return {std::string(coordinate_of(worst->partition, worst->region)), worst->words};
+  return {"time", "spread evenly over the records"};
+}
+
+std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests) {
+  for (const auto& [set, name, error] : {std::tuple(&diagnosis.training, "training", diagnosis.before_train),
+                                         std::tuple(&diagnosis.validation, "validation", diagnosis.before_validate)}) {
+    if (is_small(diagnosis.base, *set)) continue;
+    // Of few windows, a single bad one makes such an error.
+    const auto windows = static_cast<double>(set->used_windows());
+    if (error < kSmall * (1.0 + 1.0 / std::sqrt(windows)))
+      return Objection{Status::insufficient_data,
+                       fmt::format("The error on {} data is {:.2f} times the floor, more than a complete model leaves, "
+                                   "but {:.0f} windows are too few to be sure of it",
+                                   name, error, windows),
+                       "Record the same motions for longer."};
+    return Objection{Status::unexplained,
+                     fmt::format("The error on {} data is {:.2f} times the floor, and no effect of the catalogue "
+                                 "accounts for it",
+                                 name, error),
+                     "Look where the error lives, and record that motion alone, slowly and fast, both ways."};
+  }
+  const auto depends = std::ranges::find_if(tests.dependences, [](const ResidualDependence& dependence) {
+    return dependence.share > (dependence.coordinate == "acceleration" ? kMostOnAcceleration : kMostDependence);
+  });
+  if (depends != tests.dependences.end())
+    return Objection{Status::unexplained,
+                     fmt::format("The error is small ({:.2f} times the floor), but what is left is no noise: {:.0f} % "
+                                 "of it depends on {}",
+                                 diagnosis.before_validate, 100.0 * depends->share, depends->coordinate),
+                     "Look where the error lives, and record that motion alone, slowly and fast, both ways."};
+  std::vector<std::string> hidden, ways;
+  for (const Visibility& effect : visibility_of_effects(diagnosis.base, diagnosis.training, diagnosis.validation)) {
+    if (effect.floors >= kVisible || is_taken_up(effect.kind, diagnosis.base)) continue;
+    hidden.push_back(effect.kind);
+    ways.emplace_back(sim::find_effect(effect.kind)->separate_by);
+  }
+  if (hidden.empty()) return {};
+  return Objection{Status::insufficient_data,
+                   fmt::format("What is left is noise ({:.2f} times the floor), but an effect of usual size that "
+                               "these motions would not have shown may be there: {}",
+                               diagnosis.before_validate, fmt::join(hidden, ", ")),
+                   ways.front() + "."};
+}
+
+}  // namespace host

@@ -1,0 +1,33 @@
+// Whether a model that nothing in the catalogue improves deserves an all-clear: what is left must be small, must depend
+// on nothing, and the records must have been able to show what they did not show.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "host/compare/residual_tests.hpp"
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// An error over floor up to which a model may be complete: made cases without any effect leave 0.8 to 1.05.
+inline constexpr double kSmall = 1.2;
+
+/// Why there is no all-clear.
+struct Objection {
+  Status status;            ///< unexplained, or insufficient_data where the records could not have shown an effect
+  std::string explanation;  ///< sentences
+  std::string next_experiment;
+};
+
+/// The objection to calling the re-fitted base complete; empty where there is none.
+std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests);
+
+/// What is left as the coordinate that carries most of it, and where along it, in words. Falls back on the regions of
+/// the error where the residual effort depends on nothing.
+struct Trace {
+  std::string coordinate, where;
+};
+Trace strongest_trace(const ResidualTests& tests, const std::vector<ErrorRegion>& regions);
+
+}  // namespace host

@@ -1,0 +1,43 @@
+// The bar that a candidate must pass to be claimed. It rises with the number of candidates that were tried and falls
+// with the windows that judged them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// An error of a complete model, over its floor: made cases without any effect leave 0.8 to 1.05.
+inline constexpr double kComplete = 1.0;
+
+/// Nothing is claimed whose improvement is luck with more than this probability.
+inline constexpr double kMostLuck = 0.05;
+
+/// The luckiest of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5 %.
+inline constexpr double kLeastGain = 0.05;
+
+/// Part of what there is to explain, before^2 - kComplete^2, that is gone, 0..1. 0 where there was nothing.
+double explained_share(double before, double after);
+
+/// Why a candidate is not claimed.
+enum class Doubt {
+  none,
+  no_gain,      ///< it lowers too little of the error, or not on training and validation alike
+  on_bound,     ///< a parameter ran to the end of its physical range
+  leaves_much,  ///< what it leaves is too much for an effect that is really there: it makes up for something else
+  luck,         ///< too few windows judged it to rule out that the best of all that were tried was lucky
+};
+
+/// The first doubt, in the order above.
+Doubt doubt_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
+
+/// Parameters of the effects in `kinds` that stand at the end of their range, "compliance: damping_ratio". A range that
+/// ends at zero ends where the parameter's part of the effect is absent, which is no fault.
+std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
+
+/// Seconds of validation windows after which an improvement in all of them is no luck, of `tried` candidates.
+double least_validation_s(std::size_t tried);
+
+}  // namespace host

@@ -1,0 +1,76 @@
+#include "host/diagnose/probability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "host/diagnose/claim.hpp"
+
+namespace host {
+
+namespace {
+
+double logistic(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
+std::size_t parameters_of(const JudgedCandidate& candidate) {
+  std::size_t count = 0;
+  for (const std::string& kind : candidate.kinds)
+    if (const sim::EffectEntry* entry = candidate.model.find(kind)) count += entry->parameters.size();
+  return count;
+}
+
+/// Log of the error, over both sets alike, with what a candidate's complexity costs. Errors below the floor are the
+/// floor's own uncertainty.
+double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {
+  const auto log_error = [](double error) { return std::log(std::max(error, 0.9 * kComplete)); };
+  return 0.5 * (log_error(candidate.after) + log_error(candidate.train_after)) +
+         scale.further * static_cast<double>(candidate.kinds.size() - 1) +
+         scale.parameter * static_cast<double>(parameters_of(candidate)) +
+         scale.bound * static_cast<double>(candidate.on_bound.size());
+}
+
+/// That a base with these errors lacks nothing.
+double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& scale) {
+  const double windows = static_cast<double>(
+      std::max<std::size_t>(1, std::min(diagnosis.training.used_windows(), diagnosis.validation.used_windows())));
+  const double error = std::max({diagnosis.before_train, diagnosis.before_validate, 0.5 * kComplete});
+  return logistic((std::log(scale.complete) - std::log(error)) / (scale.complete_by + 0.25 / std::sqrt(windows)));
+}
+
+}  // namespace
+
+void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  double nothing = probability_complete(diagnosis, scale);
+  const JudgedCandidate* best = nullptr;
+  std::vector<double> costs;
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    costs.push_back(cost_of(candidate, scale));
+    if (best == nullptr || costs.back() < cost_of(*best, scale)) best = &candidate;
+  }
+  if (best == nullptr) {
+    verdict.probability_nothing = nothing;
+    verdict.probability_other = 1.0 - nothing;
+    return;
+  }
+  const double unexplained = 1.0 - std::min(explained_share(best->before, best->after),
+                                            explained_share(diagnosis.before_train, best->train_after));
+  constexpr double kLeastPart = 0.01;
+  const double other = logistic(scale.other_slope * std::log((unexplained + kLeastPart) / scale.other_at) -
+                                (diagnosis.rough ? scale.rough : 0.0));
+  const double least = *std::ranges::min_element(costs);
+  double sum = 0.0;
+  for (const double cost : costs) sum += std::exp((least - cost) / scale.tie);
+  double candidates = 0.0;
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    JudgedCandidate& candidate = diagnosis.candidates[k];
+    // What may be luck is no evidence for the candidate.
+    candidate.probability =
+        (1.0 - nothing) * (1.0 - other) * (1.0 - candidate.luck) * std::exp((least - costs[k]) / scale.tie) / sum;
+    candidates += candidate.probability;
+  }
+  verdict.probability_nothing = nothing;
+  verdict.probability_other = 1.0 - nothing - candidates;
+}
+
+}  // namespace host

@@ -1,0 +1,25 @@
+// How probable each answer is: every candidate, that nothing is missing, that something else is.
+#pragma once
+
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// Constants of the probabilities, calibrated on made cases whose truth is known (axistool scoreboard --reliability
+/// shows how well).
+struct ProbabilityScale {
+  double tie = 0.05;          ///< log error by which a rival's odds fall to 1/e
+  double further = 0.15;      ///< log error that a second effect must bring to be worth its place
+  double parameter = 0.01;    ///< the same for each parameter beyond those of the simplest candidate
+  double bound = 0.15;        ///< the same for a parameter at the end of its range
+  double complete = 1.2;      ///< error over floor at which a base is as probably complete as not
+  double complete_by = 0.05;  ///< width of that step in log error, with many windows
+  double other_at = 0.12;     ///< unexplained part at which something else is as probable as the best candidate
+  double other_slope = 2.4;   ///< of the log odds over the log of that part
+  double rough = 3.5;  ///< log odds that a rough machine, which lacks many small things, takes off "something else"
+};
+
+/// Fills `probability` of all candidates and both probabilities of the verdict; together they are 1.
+void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale = {});
+
+}  // namespace host
