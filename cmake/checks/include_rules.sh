@@ -21,6 +21,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/evidence/"] = "host/evidence/ " may["host/identify/"]
     may["host/compare/"] = "host/compare/ host/report/ " may["host/evidence/"]
     may["host/diagnose/"] = "host/diagnose/ " may["host/compare/"]
+    may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
     may["host/device/"] = "host/device/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/axistool/"] = "host/ host/axistool/ sim/ hal/ firmware/core/ firmware/app/"

@@ -1,148 +1,45 @@
-// axistool scoreboard: what diagnose answers on cases whose truth is known.
+// axistool scoreboard: what diagnose answers on records whose truth is known.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
+#include <random>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
-#include "host/diagnose/verdict.hpp"
+#include "host/scoreboard/answer.hpp"
 
 namespace axistool {
 
 namespace {
 
-namespace fs = std::filesystem;
-using Kinds = std::vector<std::string>;
+using host::Answer;
+using host::Outcome;
+using host::Status;
 
 /// Part of the explainable squared error that an answer should remove.
 constexpr double kMostOfIt = 0.8;
+/// A whole case whose error exceeds this many floors has something to find, whatever a piece of it shows.
+constexpr double kSomethingToFind = 2.0;
 
-enum class Outcome { right, group, partly, wrong, missed };
-
-struct Score {
-  std::string name;
-  Kinds truth;
-  host::DiagnosisVerdict verdict;
-  double before = 0.0, after = 0.0;  ///< combined, on validation data
-  double seconds = 0.0;
-  Outcome outcome = Outcome::missed;
-
-  /// Part of the squared error above the floor that is gone; 0 where there was none.
-  double explained() const {
-    const double there_is = before * before - 1.0;
-    return there_is > 0.0 ? (before * before - after * after) / there_is : 0.0;
-  }
+struct Arguments {
+  std::string folder, json;
+  bool cuts = false;
+  std::size_t nulls = 0, sample = 0;
+  std::uint64_t seed = 1;
 };
 
-std::string_view outcome_name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::right:
-      return "right";
-    case Outcome::group:
-      return "group";
-    case Outcome::partly:
-      return "partly";
-    case Outcome::wrong:
-      return "wrong";
-    case Outcome::missed:
-      return "missed";
-  }
-  return "";
-}
-
-/// Right: exactly the truth. Group: an ambiguous answer that contains it. Partly: some of several effects, and nothing
-/// else. Wrong: something that is not there. Missed: no claim where there was something to find.
-Outcome outcome_of(const Kinds& truth, const host::DiagnosisVerdict& verdict) {
-  const auto claims = [&](const std::string& kind) {
-    return std::ranges::find(verdict.effects, kind) != verdict.effects.end();
-  };
-  const auto is_true = [&](const std::string& kind) { return std::ranges::find(truth, kind) != truth.end(); };
-  if (verdict.effects.empty()) return truth.empty() ? Outcome::right : Outcome::missed;
-  if (std::ranges::is_permutation(truth, verdict.effects) && verdict.status == host::Status::missing)
-    return Outcome::right;
-  if (verdict.status == host::Status::ambiguous && !truth.empty() && std::ranges::all_of(truth, claims))
-    return Outcome::group;
-  return std::ranges::all_of(verdict.effects, is_true) ? Outcome::partly : Outcome::wrong;
-}
-
-Kinds read_truth(const fs::path& file) {
-  std::ifstream in(file);
-  try {
-    return nlohmann::json::parse(in).at("effects").get<Kinds>();
-  } catch (const nlohmann::json::exception& error) {
-    throw host::Failure(host::ExitCode::bad_input,
-                        fmt::format("{}: no list \"effects\" of kinds ({})", file.string(), error.what()));
-  }
-}
-
-/// Folders at any depth that hold a case, in the order of their names.
-std::vector<fs::path> find_cases(const std::string& folder) {
-  if (!fs::is_directory(folder))
-    throw host::Failure(host::ExitCode::bad_input, folder + ": no such folder; give the folder that holds the cases");
-  std::vector<fs::path> cases;
-  const auto add = [&cases](const fs::path& path) {
-    if (fs::exists(path / "truth.json") && fs::exists(path / "model.toml") && fs::exists(path / "validate.csv"))
-      cases.push_back(path);
-  };
-  add(folder);
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_directory()) add(entry.path());
-  if (cases.empty())
-    throw host::Failure(host::ExitCode::bad_input,
-                        folder +
-                            ": no case below; a case is a folder with model.toml, train-*.csv, validate.csv and "
-                            "truth.json");
-  std::ranges::sort(cases);
-  return cases;
-}
-
-InsightArguments arguments_of(const fs::path& folder) {
-  InsightArguments arguments;
-  arguments.model = (folder / "model.toml").string();
-  arguments.validate = {(folder / "validate.csv").string()};
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().filename().string().starts_with("train-") && entry.path().extension() == ".csv")
-      arguments.train.push_back(entry.path().string());
-  if (arguments.train.empty())
-    throw host::Failure(host::ExitCode::bad_input, folder.string() + ": no training record; add train-*.csv");
-  std::ranges::sort(arguments.train);
-  return arguments;
-}
-
-Score score(const fs::path& folder, const std::string& name) {
-  const auto begin = std::chrono::steady_clock::now();
-  const InsightRecords records(arguments_of(folder));
-  host::Diagnosis diagnosis;
-  {
-    SearchProgress progress(name);
-    diagnosis = host::diagnose(records.model, records.measurements, progress.callback());
-  }
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  Score result{name,
-               read_truth(folder / "truth.json"),
-               diagnosis.verdict,
-               diagnosis.before_validate,
-               diagnosis.after_validate,
-               took.count()};
-  result.outcome = outcome_of(result.truth, result.verdict);
-  return result;
-}
-
-/// Counts over the cases that hide nothing, one effect, or several.
+/// Counts over answers of a kind.
 struct Summary {
   std::size_t cases = 0, most_explained = 0;
   std::map<Outcome, std::size_t> outcomes;
 
-  void add(const Score& score) {
+  void add(const Answer& answer) {
     ++cases;
-    ++outcomes[score.outcome];
-    if (score.explained() >= kMostOfIt) ++most_explained;
+    ++outcomes[answer.outcome];
+    if (answer.explained() >= kMostOfIt) ++most_explained;
   }
   std::size_t count(Outcome outcome) const {
     const auto found = outcomes.find(outcome);
@@ -151,38 +48,60 @@ struct Summary {
 };
 
 struct Summaries {
-  Summary none, single, pairs;
+  Summary none, single, pairs, alien;
 
-  explicit Summaries(const std::vector<Score>& scores) {
-    for (const Score& score : scores)
-      (score.truth.empty() ? none : score.truth.size() == 1 ? single : pairs).add(score);
+  explicit Summaries(const std::vector<Answer>& answers) {
+    for (const Answer& answer : answers)
+      (answer.truth.alien                 ? alien
+       : answer.truth.effects.empty()     ? none
+       : answer.truth.effects.size() == 1 ? single
+                                          : pairs)
+          .add(answer);
   }
 };
 
-nlohmann::json to_json(const std::vector<Score>& scores) {
+nlohmann::json to_json(const host::Reliability& reliability) {
+  nlohmann::json bins = nlohmann::json::array();
+  for (const host::Reliability::Bin& bin : reliability.bins)
+    bins.push_back({{"count", bin.count}, {"forecast", bin.forecast}, {"came_true", bin.came_true}});
+  return {{"bins", bins}, {"expected_error", reliability.expected_error}};
+}
+
+nlohmann::json to_json(const std::vector<Answer>& answers) {
   nlohmann::json cases = nlohmann::json::array();
-  for (const Score& score : scores)
-    cases.push_back({{"case", score.name},
-                     {"truth", score.truth},
-                     {"outcome", std::string(outcome_name(score.outcome))},
-                     {"status", std::string(host::status_name(score.verdict.status))},
-                     {"effects", score.verdict.effects},
-                     {"alternatives", score.verdict.alternatives},
-                     {"before", score.before},
-                     {"after", score.after},
-                     {"explained", score.explained()},
-                     {"seconds", score.seconds}});
-  const Summaries summaries(scores);
+  std::vector<Answer> whole;
+  for (const Answer& answer : answers) {
+    cases.push_back({{"case", answer.name},
+                     {"group", answer.group},
+                     {"truth", answer.truth.effects},
+                     {"alien", answer.truth.alien},
+                     {"outcome", std::string(host::outcome_name(answer.outcome))},
+                     {"status", std::string(host::status_name(answer.verdict.status))},
+                     {"effects", answer.verdict.effects},
+                     {"alternatives", answer.verdict.alternatives},
+                     {"coordinate", answer.verdict.coordinate},
+                     {"forecasts", answer.forecasts},
+                     {"before", answer.before},
+                     {"after", answer.after},
+                     {"explained", answer.explained()},
+                     {"seconds", answer.seconds}});
+    if (answer.group == "whole") whole.push_back(answer);
+  }
+  const Summaries summaries(whole);
   const auto row = [](const Summary& summary) {
     nlohmann::json document = {{"cases", summary.cases}, {"most_explained", summary.most_explained}};
     for (const Outcome outcome : {Outcome::right, Outcome::group, Outcome::partly, Outcome::wrong, Outcome::missed})
-      document[std::string(outcome_name(outcome))] = summary.count(outcome);
+      document[std::string(host::outcome_name(outcome))] = summary.count(outcome);
     return document;
   };
-  return {
-      {"format", "axis-scoreboard/1"},
-      {"cases", cases},
-      {"summary", {{"none", row(summaries.none)}, {"single", row(summaries.single)}, {"pairs", row(summaries.pairs)}}}};
+  return {{"format", "axis-scoreboard/1"},
+          {"cases", cases},
+          {"reliability", to_json(host::reliability_of(host::top_forecasts(answers)))},
+          {"summary",
+           {{"none", row(summaries.none)},
+            {"single", row(summaries.single)},
+            {"pairs", row(summaries.pairs)},
+            {"alien", row(summaries.alien)}}}};
 }
 
 void print_head(std::size_t width) {
@@ -190,19 +109,23 @@ void print_head(std::size_t width) {
              "truth -> verdict");
 }
 
-void print(const Score& score, std::size_t width) {
-  fmt::print("{:<{}}  {:<8} {:8.2f} {:8.2f} {:6.1f}  {} -> {} {}", score.name, width, outcome_name(score.outcome),
-             score.before, score.after, score.seconds,
-             score.truth.empty() ? "nothing" : fmt::format("{}", fmt::join(score.truth, " + ")),
-             host::status_name(score.verdict.status), fmt::join(score.verdict.effects, ", "));
-  for (const Kinds& group : score.verdict.alternatives) fmt::print(" ({})", fmt::join(group, " or "));
+void print(const Answer& answer, std::size_t width) {
+  fmt::print("{:<{}}  {:<8} {:8.2f} {:8.2f} {:6.1f}  {} -> {} {}", answer.name, width,
+             host::outcome_name(answer.outcome), answer.before, answer.after, answer.seconds,
+             answer.truth.alien             ? "an alien"
+             : answer.truth.effects.empty() ? "nothing"
+                                            : fmt::format("{}", fmt::join(answer.truth.effects, " + ")),
+             host::status_name(answer.verdict.status), fmt::join(answer.verdict.effects, ", "));
+  for (const std::vector<std::string>& group : answer.verdict.alternatives)
+    fmt::print(" ({})", fmt::join(group, " or "));
+  if (!answer.verdict.coordinate.empty()) fmt::print("by {}", answer.verdict.coordinate);
   fmt::print("\n");
   std::fflush(stdout);
 }
 
 void print(const Summaries& summaries) {
-  const Summary &none = summaries.none, &single = summaries.single, &pairs = summaries.pairs;
-  fmt::print("\nErrors are on validation data over the floor: 1 is perfect.\n");
+  const auto& [none, single, pairs, alien] = summaries;
+  fmt::print("\nWhole cases. Errors are on validation data over the floor: 1 is perfect.\n");
   if (none.cases > 0) fmt::print("nothing hidden: {} cases, {} false claims\n", none.cases, none.count(Outcome::wrong));
   if (single.cases > 0)
     fmt::print(
@@ -211,35 +134,139 @@ void print(const Summaries& summaries) {
         single.cases, single.count(Outcome::right), single.count(Outcome::group), single.count(Outcome::wrong),
         single.count(Outcome::missed), single.most_explained, 100.0 * kMostOfIt);
   if (pairs.cases > 0)
-    fmt::print("two effects:    {} cases, {} both found, {} one found, {} wrong, {} missed; {} have {:g} % gone\n",
+    fmt::print("several:        {} cases, {} all found, {} some found, {} wrong, {} missed; {} have {:g} % gone\n",
                pairs.cases, pairs.count(Outcome::right), pairs.count(Outcome::partly), pairs.count(Outcome::wrong),
                pairs.count(Outcome::missed), pairs.most_explained, 100.0 * kMostOfIt);
+  if (alien.cases > 0)
+    fmt::print("in no catalogue: {} cases, {} called adequate or given a name\n", alien.cases,
+               alien.count(Outcome::wrong));
 }
 
-void run(const std::string& folder, const std::string& json) {
-  const std::vector<fs::path> cases = find_cases(folder);
-  const auto name_of = [&](const fs::path& path) {
-    return path == folder ? folder : path.lexically_relative(folder).string();
+/// One line for each way of cutting cases. `worth`: the names of pieces whose whole case has something to find.
+void print_pieces(const std::vector<Answer>& answers, const std::map<std::string, bool>& worth) {
+  struct Line {
+    std::size_t pieces = 0, right = 0, wrong = 0, unexplained = 0, insufficient = 0, all_clear = 0, false_all_clear = 0;
   };
-  std::size_t width = 4;
-  for (const fs::path& path : cases) width = std::max(width, name_of(path).size());
-  const bool talks = json != "-";
-  if (talks) print_head(width);
-  std::vector<Score> scores;
-  for (const fs::path& path : cases) {
-    scores.push_back(score(path, name_of(path)));
-    if (talks) print(scores.back(), width);
+  std::map<std::string, Line> lines;
+  std::size_t claims = 0, wrong = 0;
+  for (const Answer& answer : answers) {
+    if (answer.group == "whole" || answer.group == "simulated") continue;
+    Line& line =
+        lines[answer.truth.effects.empty() && !answer.truth.alien ? answer.group + ", nothing hidden" : answer.group];
+    ++line.pieces;
+    const bool names = !answer.verdict.effects.empty();
+    if (names) ++claims;
+    if (names && answer.outcome == Outcome::wrong) ++wrong, ++line.wrong;
+    if (names && answer.outcome != Outcome::wrong) ++line.right;
+    if (answer.verdict.status == Status::unexplained) ++line.unexplained;
+    if (answer.verdict.status == Status::insufficient_data) ++line.insufficient;
+    if (answer.gives_all_clear()) {
+      ++line.all_clear;
+      if (worth.at(answer.name)) ++line.false_all_clear;
+    }
   }
-  if (!json.empty()) write_json(to_json(scores), json);
-  if (talks) print(Summaries(scores));
+  if (lines.empty()) return;
+  fmt::print("\n{:<28} {:>7} {:>7} {:>7} {:>12} {:>13} {:>10} {:>9}\n", "Pieces of cases", "trials", "named", "wrong",
+             "unexplained", "insufficient", "all-clear", "of them");
+  fmt::print("{:<28} {:>7} {:>7} {:>7} {:>12} {:>13} {:>10} {:>9}\n", "", "", "right", "name", "", "", "", "false");
+  for (const auto& [group, line] : lines)
+    fmt::print("{:<28} {:>7} {:>7} {:>7} {:>12} {:>13} {:>10} {:>9}\n", group, line.pieces, line.right, line.wrong,
+               line.unexplained, line.insufficient, line.all_clear, line.false_all_clear);
+  fmt::print("{} of {} names given are wrong.\n", wrong, claims);
+}
+
+void print_nulls(const std::vector<Answer>& answers) {
+  std::size_t trials = 0, claims = 0, unexplained = 0, clear = 0;
+  for (const Answer& answer : answers) {
+    if (answer.group != "simulated") continue;
+    ++trials;
+    if (!answer.verdict.effects.empty()) ++claims;
+    if (answer.verdict.status == Status::unexplained) ++unexplained;
+    if (answer.gives_all_clear()) ++clear;
+  }
+  if (trials > 0)
+    fmt::print("\nSimulated with nothing hidden: {} trials, {} claims ({:.1f} %), {} unexplained, {} all-clear\n",
+               trials, claims, 100.0 * static_cast<double>(claims) / static_cast<double>(trials), unexplained, clear);
+}
+
+void print(const char* title, const host::Reliability& reliability) {
+  fmt::print("\n{}: expected calibration error {:.1f} %\n  said    trials  mean  came true\n", title,
+             100.0 * reliability.expected_error);
+  for (std::size_t k = 0; k < reliability.bins.size(); ++k) {
+    const host::Reliability::Bin& bin = reliability.bins[k];
+    if (bin.count > 0)
+      fmt::print("  {:2}–{:3} % {:6} {:4.0f} % {:8.0f} %\n", 10 * k, 10 * k + 10, bin.count, 100.0 * bin.forecast,
+                 100.0 * bin.came_true);
+  }
+}
+
+/// What is to be asked, in an order of its own where only a sample of it is.
+std::vector<host::Trial> trials_of(const Arguments& arguments, std::map<std::string, bool>& worth) {
+  std::vector<host::Trial> wholes, pieces;
+  std::map<std::string, double> error;
+  for (const auto& folder : host::find_cases(arguments.folder)) {
+    const std::string name =
+        folder == arguments.folder ? arguments.folder : folder.lexically_relative(arguments.folder).string();
+    wholes.push_back(host::whole_case(folder, name));
+    if (!arguments.cuts) continue;
+    const host::Truth truth = host::read_truth(folder);
+    std::vector<double> lengths_s{2.0, 4.0, 8.0};
+    if (truth.effects.empty() && !truth.alien) {
+      lengths_s.clear();
+      for (double length_s = 1.0; length_s <= 10.0; length_s += 0.5) lengths_s.push_back(length_s);
+    }
+    for (host::Trial& piece : host::pieces_of_case(folder, name, lengths_s, true)) pieces.push_back(std::move(piece));
+  }
+  if (arguments.sample > 0) {
+    std::mt19937_64 random(arguments.seed);
+    for (auto* list : {&wholes, &pieces}) {
+      std::ranges::shuffle(*list, random);
+      list->resize(std::min(list->size(), arguments.sample));
+      std::ranges::sort(*list, {}, &host::Trial::name);
+    }
+  }
+  for (const host::Trial& piece : pieces) {
+    const std::string folder = piece.folder.string();
+    if (!error.contains(folder)) error[folder] = host::error_of_whole_case(piece.folder);
+    worth[piece.name] = error[folder] > kSomethingToFind;
+  }
+  std::ranges::move(pieces, std::back_inserter(wholes));
+  return wholes;
+}
+
+void run(const Arguments& arguments) {
+  const bool talks = arguments.json != "-";
+  std::map<std::string, bool> worth;
+  const std::vector<host::Trial> trials = trials_of(arguments, worth);
+  std::size_t width = 4;
+  for (const host::Trial& trial : trials) width = std::max(width, trial.name.size());
+  if (talks) print_head(width);
+  std::vector<Answer> answers;
+  const auto note = [&](Answer answer) {
+    answers.push_back(std::move(answer));
+    if (talks) print(answers.back(), width);
+  };
+  for (const host::Trial& trial : trials) {
+    SearchProgress progress(trial.name);
+    note(host::run_trial(trial, progress.callback()));
+  }
+  for (std::uint64_t k = 0; k < arguments.nulls; ++k)
+    note(host::run_null(arguments.seed * 1'000'000 + k, fmt::format("null {}", k)));
+  if (!arguments.json.empty()) write_json(to_json(answers), arguments.json);
+  if (!talks) return;
+  std::vector<Answer> whole;
+  std::ranges::copy_if(answers, std::back_inserter(whole),
+                       [](const Answer& answer) { return answer.group == "whole"; });
+  print(Summaries(whole));
+  print_pieces(answers, worth);
+  print_nulls(answers);
+  print("The most probable of each answer", host::reliability_of(host::top_forecasts(answers)));
+  print("All that was said", host::reliability_of(host::all_forecasts(answers)));
 }
 
 }  // namespace
 
 void add_scoreboard(CLI::App& app) {
-  struct Arguments {
-    std::string folder, json;
-  };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("scoreboard", "how often diagnose is right on cases whose truth is known");
   command
@@ -247,11 +274,17 @@ void add_scoreboard(CLI::App& app) {
           "FOLDER", arguments->folder,
           "folder with cases at any depth: each a folder with model.toml, train-*.csv, validate.csv, truth.json")
       ->required();
+  command->add_flag("--cuts", arguments->cuts,
+                    "also each training record alone, each pair, and their first 2, 4 and 8 s (1 to 10 s where nothing "
+                    "is hidden)");
+  command->add_option("--nulls", arguments->nulls, "also so many simulated drives in which nothing is hidden");
+  command->add_option("--sample", arguments->sample, "only so many of the cases and of the cuts, drawn at random");
+  command->add_option("--seed", arguments->seed, "of the sample and of the simulated drives")->capture_default_str();
   add_json_option(*command, arguments->json);
   command->footer(
-      "Example:\n  axistool scoreboard tests/data/drive-cases\n"
+      "Example:\n  axistool scoreboard tests/data/drive-cases --cuts --sample 5\n"
       "Exit code 0 whatever the answers are; 9 for a bad file or a folder without cases.");
-  command->callback([arguments] { run(arguments->folder, arguments->json); });
+  command->callback([arguments] { run(*arguments); });
 }
 
 }  // namespace axistool

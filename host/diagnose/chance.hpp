@@ -11,9 +11,9 @@ namespace host {
 double confidence_of_improvement(const SetError& before, const SetError& after, std::size_t block = 10,
                                  double common_square = kCommonSquare);
 
-/// Windows of about so long a time are taken to be lucky or not on their own, s: twice the time that a prediction runs
-/// before it restarts.
-inline constexpr double kLuckBlock_s = 0.2;
+/// Windows of so long a time are taken to be lucky or not on their own, s: each prediction restarts from the
+/// measurement, so that none carries on what went wrong in the one before.
+inline constexpr double kLuckBlock_s = kWindow_s;
 
 /// Probability that the best of `tried` candidates lowers the error as much as `after` does although each gains and
 /// loses by chance: the part of random signs of the blocks' gains that sum to as much (a randomisation test), times

@@ -45,6 +45,7 @@ double explained_share(double before, double after) {
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
                                              const std::vector<std::string>& kinds) {
   constexpr double kNear = 1e-3;
+  constexpr double kStandsForZero = 0.005;  // of the upper end
   std::vector<std::string> found;
   for (const std::string& kind : kinds) {
     const sim::EffectEntry* entry = model.find(kind);
@@ -52,9 +53,11 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
     for (const auto& [id, value] : entry->parameters) {
       const sim::ParameterInfo* info = sim::find_effect(kind)->parameter(id);
       if (info == nullptr) continue;
-      const bool on_one = std::ranges::any_of(std::array{info->lower, info->upper}, [value = value](double bound) {
-        return bound != 0.0 && std::isfinite(bound) && std::abs(value - bound) <= kNear * std::abs(bound);
-      });
+      const bool on_one =
+          std::ranges::any_of(std::array{info->lower, info->upper}, [info, value = value](double bound) {
+            return std::abs(bound) > kStandsForZero * std::abs(info->upper) && std::isfinite(bound) &&
+                   std::abs(value - bound) <= kNear * std::abs(bound);
+          });
       if (on_one) found.push_back(fmt::format("{}: {}", kind, info->key(model.data.kind)));
     }
   }

@@ -5,7 +5,7 @@
 
 namespace host {
 
-/// Constants of the probabilities, calibrated on made cases whose truth is known (axistool scoreboard --reliability
+/// Constants of the probabilities, calibrated on made cases whose truth is known (axistool scoreboard
 /// shows how well).
 struct ProbabilityScale {
   double tie = 0.05;          ///< log error by which a rival's odds fall to 1/e

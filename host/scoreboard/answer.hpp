@@ -1,0 +1,71 @@
+// What the diagnosis answered to a trial, held against the truth.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+#include "host/scoreboard/trial.hpp"
+
+namespace host {
+
+/// Right: exactly the truth, or no claim where nothing is hidden or nothing that a catalogue knows. Group: an ambiguous
+/// answer that contains it. Partly: some of several effects, and nothing else. Wrong: something that is not there.
+/// Missed: no claim where there was something to find.
+enum class Outcome { right, group, partly, wrong, missed };
+
+std::string_view outcome_name(Outcome outcome);
+
+Outcome outcome_of(const Truth& truth, const DiagnosisVerdict& verdict);
+
+/// Something said to be probable, and whether it is so.
+using Forecast = std::pair<double, bool>;
+
+struct Answer {
+  std::string name, group;
+  Truth truth;
+  DiagnosisVerdict verdict;
+  double before = 0.0, after = 0.0;  ///< combined, on validation data
+  double seconds = 0.0;
+  Outcome outcome = Outcome::missed;
+  std::vector<Forecast> forecasts;  ///< every candidate, nothing, something else
+
+  /// Part of the squared error above the floor that is gone; 0 where there was none.
+  double explained() const;
+  bool gives_all_clear() const { return verdict.status == Status::adequate || verdict.status == Status::parameters; }
+};
+
+/// Holds a diagnosis against the truth.
+Answer answer_of(const std::string& name, const std::string& group, const Truth& truth, const Diagnosis& diagnosis,
+                 double seconds);
+
+/// Runs a trial on a case's model.
+Answer run_trial(const Trial& trial, const ShareDone& progress = {});
+
+/// Diagnoses a simulated drive in which nothing is hidden.
+Answer run_null(std::uint64_t seed, const std::string& name);
+
+/// The larger error over floor of a whole case, both sets, after a re-fit of the base: how much there is to find.
+double error_of_whole_case(const std::filesystem::path& folder);
+
+/// Forecasts in ten bins of probability.
+struct Reliability {
+  struct Bin {
+    std::size_t count = 0;
+    double forecast = 0.0;   ///< mean
+    double came_true = 0.0;  ///< part, 0..1
+  };
+  std::vector<Bin> bins;
+  double expected_error = 0.0;  ///< mean of |forecast - came_true| over all forecasts (expected calibration error)
+};
+
+Reliability reliability_of(const std::vector<Forecast>& forecasts);
+
+/// The most probable of each answer.
+std::vector<Forecast> top_forecasts(const std::vector<Answer>& answers);
+std::vector<Forecast> all_forecasts(const std::vector<Answer>& answers);
+
+}  // namespace host

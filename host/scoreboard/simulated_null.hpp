@@ -1,0 +1,22 @@
+// Simulated measurements of a drive in which nothing is hidden, each with a motion, noise and parameters of its own: a
+// diagnosis may claim nothing from them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+struct SimulatedNull {
+  sim::DriveDescription model;   ///< what the engineer has: up to 10 % off, as after a first identification
+  std::vector<Record> train;     ///< one to three records of 3 to 10 s
+  std::vector<Record> validate;  ///< empty for every other one
+};
+
+/// The same numbers give the same measurements.
+SimulatedNull simulated_null(std::uint64_t seed);
+
+}  // namespace host

@@ -1,0 +1,50 @@
+// Trials of the diagnosis on records whose truth is known: whole cases, and pieces of them as a new user brings first.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// What is hidden in a case.
+struct Truth {
+  std::vector<std::string> effects;  ///< kinds; empty where nothing is hidden
+  bool alien = false;                ///< something is hidden that no catalogue knows
+};
+
+/// Folders at any depth that hold a case (model.toml, train-*.csv, validate.csv, truth.json), in the order of their
+/// names. Throws Failure(bad_input) where there is none.
+std::vector<std::filesystem::path> find_cases(const std::string& folder);
+
+/// Throws Failure(bad_input) for a file without a list "effects".
+Truth read_truth(const std::filesystem::path& case_folder);
+
+/// Part of a record file, seconds after its start.
+struct Piece {
+  std::string path;
+  double from_s = 0.0, to_s = HUGE_VAL;
+};
+
+struct Trial {
+  std::string name;
+  std::string group;  ///< the line of a table that it counts in: "one record", "2 s"
+  std::filesystem::path folder;
+  std::vector<Piece> train, validate;  ///< no `validate`: part of the training data is kept back
+};
+
+/// All training records and the validation record.
+Trial whole_case(const std::filesystem::path& folder, const std::string& name);
+
+/// Each training record alone, each pair of them, and the first `lengths_s` of each. Without validation records.
+std::vector<Trial> pieces_of_case(const std::filesystem::path& folder, const std::string& name,
+                                  const std::vector<double>& lengths_s, bool pairs);
+
+/// Throws Failure(bad_input) for a bad file, or a piece that the record does not have.
+Record read_piece(const Piece& piece, const sim::DataSheet& data);
+
+}  // namespace host

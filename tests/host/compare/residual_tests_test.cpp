@@ -1,0 +1,80 @@
+// What a made residual depends on must be named, and what depends on nothing must not be.
+#include "host/compare/residual_tests.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tests/host/evidence/hand_made_record.hpp"
+
+namespace {
+
+/// A record whose motor gave `extra` (Nm, of time and speed) beyond what its motion needs.
+host::Record record_with(const std::function<double(double t_s, double x, double w)>& extra) {
+  host::Record record = HandMade::record(20.0);
+  const double per_volt = HandMade::model().data.effort_per_volt();
+  for (std::size_t k = 0; k < record.size(); ++k)
+    record.u_V[k] += extra(record.t_s[k], record.x[k], record.w[k]) / per_volt;
+  return record;
+}
+
+double share_on(const host::ResidualTests& tests, const std::string& coordinate) {
+  for (const host::ResidualDependence& dependence : tests.dependences)
+    if (dependence.coordinate == coordinate) return dependence.share;
+  return -1.0;
+}
+
+host::ResidualTests tests_of(const host::Record& record) {
+  const host::RecordSet set = host::compare_on({&record}, HandMade::model());
+  return host::test_residuals(HandMade::model(), set, set);
+}
+
+TEST(ResidualTests, ATorqueOfAFixedFrequencyIsNamedByItsFrequency) {
+  constexpr double kHum_Hz = 17.0;  // within what the smoother resolves
+  const auto tests = tests_of(
+      record_with([](double t_s, double, double) { return 0.2 * std::sin(2.0 * std::numbers::pi * kHum_Hz * t_s); }));
+  ASSERT_FALSE(tests.dependences.empty());
+  EXPECT_EQ(tests.dependences.front().coordinate, "frequency");
+  double found_Hz = 0.0;
+  ASSERT_EQ(std::sscanf(tests.dependences.front().where.c_str(), "at %lf Hz", &found_Hz), 1);
+  EXPECT_NEAR(found_Hz, kHum_Hz, 0.51);  // lines are 0.5 Hz apart
+  EXPECT_GT(tests.dependences.front().share, 0.5);
+}
+
+TEST(ResidualTests, AFrictionThatTheModelLacksIsNamedByTheSpeed) {
+  const auto tests = tests_of(record_with([](double, double, double w) { return 0.004 * w * std::abs(w) / 10.0; }));
+  EXPECT_GT(share_on(tests, "speed"), 0.5);
+  EXPECT_LT(share_on(tests, "frequency"), 0.1);
+}
+
+TEST(ResidualTests, AHardSpotIsNamedByItsPosition) {
+  const auto tests = tests_of(record_with([](double, double x, double w) {
+    const double distance = (x - 30.0) / 8.0;
+    return std::abs(w) > 1.0 ? std::copysign(0.4, w) * std::exp(-distance * distance) : 0.0;
+  }));
+  EXPECT_GT(share_on(tests, "position"), 0.1);
+  EXPECT_GT(share_on(tests, "position"), share_on(tests, "speed"));
+}
+
+TEST(ResidualTests, OfACompleteModelNothingIsLeftThatDependsOnAnything) {
+  const auto tests = tests_of(HandMade::record(20.0));
+  // The hand-made axis reverses its acceleration within one sample, which the smoother rounds off: the command tells
+  // when. So the instants of the steps are seen, and nothing else.
+  for (const char* coordinate : {"position", "frequency"}) EXPECT_LT(share_on(tests, coordinate), 0.1) << coordinate;
+}
+
+TEST(ResidualTests, TheAutocorrelationBeginsAtOneAndHasABound) {
+  const auto tests = tests_of(record_with([](double t_s, double, double) { return 0.1 * std::sin(30.0 * t_s); }));
+  ASSERT_FALSE(tests.with_itself.value.empty());
+  EXPECT_NEAR(tests.with_itself.value.front(), 1.0, 1e-9);
+  EXPECT_GT(tests.with_itself.bound, 0.0);
+  EXPECT_LT(tests.with_itself.bound, 0.2);
+  // A sine of 30 rad/s has turned over after 0.105 s: beyond a window of 0.1 s, so that restarts do not hide it.
+  double least = 1.0;
+  for (const double value : tests.with_itself.value) least = std::min(least, value);
+  EXPECT_LT(least, -tests.with_itself.bound);
+}
+
+}  // namespace

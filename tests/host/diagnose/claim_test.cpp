@@ -1,0 +1,138 @@
+// The bar for a claim, on errors written down by hand.
+#include "host/diagnose/claim.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "host/diagnose/chance.hpp"
+#include "host/diagnose/probability.hpp"
+#include "tests/host/evidence/hand_made_record.hpp"
+
+namespace {
+
+using host::Doubt;
+
+host::JudgedCandidate candidate(double before, double after, double train_after) {
+  host::JudgedCandidate judged;
+  judged.kinds = {"viscous_asymmetry"};
+  judged.before = before;
+  judged.after = after;
+  judged.train_after = train_after;
+  judged.confidence = 1.0;
+  judged.luck = 0.001;
+  judged.model = HandMade::model();
+  judged.model.effects.push_back({"viscous_asymmetry", {{"asymmetry", 0.01}}, {}, {}});
+  return judged;
+}
+
+host::Diagnosis diagnosis(double before_train, double before_validate) {
+  host::Diagnosis result;
+  result.before_train = before_train;
+  result.before_validate = before_validate;
+  return result;
+}
+
+TEST(Claim, WhatTakesNearlyAllOfTheErrorOnBothSetsStands) {
+  EXPECT_EQ(host::doubt_about(candidate(12.0, 1.0, 1.1), diagnosis(20.0, 12.0)), Doubt::none);
+  // An impact that comes a moment late leaves 3 floors of 20 on training: 2 % of the square.
+  EXPECT_EQ(host::doubt_about(candidate(12.0, 1.0, 3.0), diagnosis(20.0, 12.0)), Doubt::none);
+}
+
+TEST(Claim, ACompleteModelLeavesNothingToExplain) {
+  // Lucky on validation, where a few windows are bad; on training there was nothing to begin with.
+  EXPECT_EQ(host::doubt_about(candidate(1.24, 0.97, 0.76), diagnosis(0.83, 1.24)), Doubt::no_gain);
+  EXPECT_EQ(host::doubt_about(candidate(1.05, 0.8, 0.8), diagnosis(1.05, 1.05)), Doubt::no_gain);
+}
+
+TEST(Claim, WhatLowersOneSetOnlyIsNoFinding) {
+  EXPECT_EQ(host::doubt_about(candidate(12.0, 1.0, 20.5), diagnosis(20.0, 12.0)), Doubt::no_gain);
+  EXPECT_EQ(host::doubt_about(candidate(12.0, 12.5, 1.0), diagnosis(20.0, 12.0)), Doubt::no_gain);
+}
+
+TEST(Claim, WhatLeavesAQuarterOfTheErrorMakesUpForSomethingElse) {
+  EXPECT_EQ(host::doubt_about(candidate(4.0, 2.0, 1.0), diagnosis(4.0, 4.0)), Doubt::leaves_much);
+  host::Diagnosis rough = diagnosis(40.0, 40.0);
+  rough.rough = true;  // many small things are missing there
+  EXPECT_EQ(host::doubt_about(candidate(40.0, 20.0, 20.0), rough), Doubt::none);
+}
+
+TEST(Claim, AParameterAtTheEndOfItsRangeIsNoFinding) {
+  host::JudgedCandidate judged = candidate(12.0, 1.0, 1.0);
+  judged.on_bound = {"compliance: damping_ratio"};
+  EXPECT_EQ(host::doubt_about(judged, diagnosis(20.0, 12.0)), Doubt::on_bound);
+}
+
+TEST(Claim, TheEndOfARangeIsSeenButNotWhereItIsZero) {
+  sim::DriveDescription model = HandMade::model();
+  model.effects.push_back(
+      {"compliance", {{"load_fraction", 0.3}, {"resonance", 70.0}, {"damping_ratio", 1.0}}, {}, {}});
+  EXPECT_THAT(host::parameters_on_bound(model, {"compliance"}), testing::ElementsAre("compliance: damping_ratio"));
+  model.effects.back().parameters["damping_ratio"] = 0.001;
+  EXPECT_THAT(host::parameters_on_bound(model, {"compliance"}), testing::IsEmpty());
+}
+
+host::SetError errors(std::size_t windows, double square) {
+  host::SetError error;
+  for (std::size_t k = 0; k < windows; ++k) error.windows.push_back({0, k, square, square});
+  return error;
+}
+
+TEST(Claim, LuckIsRuledOutByWindowsAndBroughtBackByCandidates) {
+  // Of five blocks that all improve, one set of signs in 32 does as well; of twenty, one in a million.
+  EXPECT_NEAR(host::probability_of_luck(errors(10, 4.0), errors(10, 1.0), 1, 2), 1.0 / 32.0, 0.006);
+  EXPECT_NEAR(host::probability_of_luck(errors(10, 4.0), errors(10, 1.0), 20, 2), 20.0 / 32.0, 0.12);
+  EXPECT_LT(host::probability_of_luck(errors(40, 4.0), errors(40, 1.0), 20, 2), 0.01);
+  EXPECT_EQ(host::probability_of_luck(errors(40, 1.0), errors(40, 4.0), 20, 2), 1.0);
+  EXPECT_EQ(host::probability_of_luck(errors(0, 1.0), errors(0, 4.0), 20, 2), 1.0);
+}
+
+TEST(Claim, TheSecondsToRecordSufficeWhereAllImproves) {
+  for (const std::size_t tried : {1U, 25U, 50U}) {
+    const auto windows = static_cast<std::size_t>(std::ceil(host::least_validation_s(tried) / host::kWindow_s));
+    EXPECT_LE(host::probability_of_luck(errors(windows + 1, 4.0), errors(windows + 1, 1.0), tried, 1), host::kMostLuck)
+        << tried;
+  }
+}
+
+double sum_of(const host::Diagnosis& diagnosis) {
+  double sum = diagnosis.verdict.probability_nothing + diagnosis.verdict.probability_other;
+  for (const host::JudgedCandidate& judged : diagnosis.candidates) sum += judged.probability;
+  return sum;
+}
+
+TEST(Probability, ACandidateThatTakesItAllHasIt) {
+  host::Diagnosis found = diagnosis(20.0, 12.0);
+  found.candidates = {candidate(12.0, 0.9, 0.9), candidate(12.0, 13.0, 19.0)};
+  host::assign_probabilities(found);
+  EXPECT_GT(found.candidates[0].probability, 0.9);
+  EXPECT_LT(found.candidates[1].probability, 0.001);  // raises the error
+  EXPECT_NEAR(sum_of(found), 1.0, 1e-12);
+}
+
+TEST(Probability, EqualsShareItAndWhatIsLeftBelongsToSomethingElse) {
+  host::Diagnosis tied = diagnosis(20.0, 12.0);
+  tied.candidates = {candidate(12.0, 0.9, 0.9), candidate(12.0, 0.9, 0.9)};
+  host::assign_probabilities(tied);
+  EXPECT_DOUBLE_EQ(tied.candidates[0].probability, tied.candidates[1].probability);
+  EXPECT_GT(tied.candidates[0].probability, 0.45);
+
+  host::Diagnosis poor = diagnosis(20.0, 12.0);
+  poor.candidates = {candidate(12.0, 9.0, 15.0)};
+  host::assign_probabilities(poor);
+  EXPECT_GT(poor.verdict.probability_other, 0.9);
+  EXPECT_NEAR(sum_of(poor), 1.0, 1e-12);
+}
+
+TEST(Probability, ASmallErrorIsProbablyNothing) {
+  host::Diagnosis complete = diagnosis(0.85, 0.95);
+  host::assign_probabilities(complete);
+  EXPECT_GT(complete.verdict.probability_nothing, 0.8);
+  complete.candidates = {candidate(0.95, 0.90, 0.84)};
+  host::assign_probabilities(complete);
+  EXPECT_GT(complete.verdict.probability_nothing, 0.8);
+  EXPECT_NEAR(sum_of(complete), 1.0, 1e-12);
+}
+
+}  // namespace
