@@ -12,7 +12,7 @@ struct ProbabilityScale {
   double further = 0.15;      ///< log error that a second effect must bring to be worth its place
   double parameter = 0.01;    ///< the same for each parameter beyond those of the simplest candidate
   double bound = 0.15;        ///< the same for a parameter at the end of its range
-  double complete = 1.2;      ///< error over floor at which a base is as probably complete as not
+  double complete = 1.25;     ///< error over floor at which a base is as probably complete as not
   double complete_by = 0.05;  ///< width of that step in log error, with many windows
   double other_at = 0.12;     ///< unexplained part at which something else is as probable as the best candidate
   double other_slope = 2.4;   ///< of the log odds over the log of that part
