@@ -82,6 +82,14 @@ struct Half {
   Values value;
 
   explicit Half(ResidualEffort residual) : samples(std::move(residual)), value(clipped(samples.missing)) {}
+
+  /// The residual as a friction: positive where it resists.
+  Half resisting() const {
+    Half half = *this;
+    for (std::size_t k = 0; k < half.value.size(); ++k)
+      if (samples.w[k] < 0.0) half.value[k] = -half.value[k];
+    return half;
+  }
 };
 
 /// Both sets along one coordinate, dealt out in blocks to two folds: a curve that was learnt on one is tried on the
@@ -250,19 +258,24 @@ ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet
   tests.rms = std::sqrt(sum_of_squares(second.value) / static_cast<double>(second.value.size()));
 
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
+  const std::array as_friction{first.resisting(), second.resisting()};
   const auto against = [&](const char* coordinate, Values ResidualEffort::*along, std::size_t bins, double factor,
                            const char* words, const char* unit) {
     if ((first.samples.*along).size() != first.value.size() || (second.samples.*along).size() != second.value.size())
       return;
-    const Folds folds({&first, &second}, along);
-    Values all_along = first.samples.*along, all = first.value;
-    all_along.insert(all_along.end(), (second.samples.*along).begin(), (second.samples.*along).end());
-    all.insert(all.end(), second.value.begin(), second.value.end());
-    const auto [from, to] = Curve(all_along, all, bins).stands_out();
-    tests.dependences.push_back({coordinate,
-                                 fmt::format("{} between {} and {} {}", words, format_value(factor * from, 3),
-                                             format_value(factor * to, 3), unit),
-                                 folds.removed_share(bins)});
+    ResidualDependence dependence{coordinate, {}, -1.0};
+    for (const auto& halves : {std::array{&first, &second}, std::array{&as_friction[0], &as_friction[1]}}) {
+      const double share = Folds(halves, along).removed_share(bins);
+      if (share <= dependence.share) continue;
+      dependence.share = share;
+      Values all_along = first.samples.*along, all = halves[0]->value;
+      all_along.insert(all_along.end(), (second.samples.*along).begin(), (second.samples.*along).end());
+      all.insert(all.end(), halves[1]->value.begin(), halves[1]->value.end());
+      const auto [from, to] = Curve(all_along, all, bins).stands_out();
+      dependence.where = fmt::format("{} between {} and {} {}", words, format_value(factor * from, 3),
+                                     format_value(factor * to, 3), unit);
+    }
+    tests.dependences.push_back(std::move(dependence));
   };
   const double in_mm = rotary ? 1.0 : 1e3;
   const char* speed_unit = rotary ? "rad/s" : "m/s";

@@ -16,6 +16,7 @@ struct ResidualDependence {
   /// speed, position, travel_since_reversal, acceleration, current, rest, temperature, time, frequency
   std::string coordinate;
   std::string where;  ///< where along it, to follow "most": "at speeds between 3 and 6 rad/s", "at 48.0 Hz"
+  /// As an effort of its own, or as a friction that turns with the direction, whichever depends more on it.
   /// Part of the squared residual of all data that curves remove from blocks of it that they were not learnt on, 0..1.
   /// Frequency: the smaller part of both sets, at the same line. Time: the larger, since what happens at a time may
   /// happen in one of them.

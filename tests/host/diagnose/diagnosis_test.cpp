@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host/compare/residual_tests.hpp"
+#include "host/diagnose/prepared_sets.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
@@ -41,6 +43,19 @@ TEST(Diagnosis, AnAxisThatStandsTellsNothing) {
   EXPECT_THAT(diagnosis.verdict.effects, IsEmpty());
   EXPECT_THAT(diagnosis.candidates, IsEmpty());
   EXPECT_THAT(diagnosis.verdict.next_experiment, testing::HasSubstr("V"));
+}
+
+TEST(Diagnosis, WhatACompleteModelLeavesDependsOnNothing) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const DriveCase complete("none/case-00");
+  std::vector<const host::Record*> train, validate;
+  for (const host::Record& record : complete.train) train.push_back(&record);
+  for (const host::Record& record : complete.validate) validate.push_back(&record);
+  const host::PreparedSets sets = host::prepare_sets(complete.model, train, validate);
+  const host::ResidualTests tests = host::test_residuals(sets.base, sets.training, sets.validation);
+  ASSERT_FALSE(tests.dependences.empty());
+  for (const host::ResidualDependence& dependence : tests.dependences)
+    if (dependence.coordinate != "acceleration") EXPECT_LT(dependence.share, 0.1) << dependence.coordinate;
 }
 
 /// A hard spot, which the catalogue does not know. The axis moved as it did under the recorded command; had the spot
