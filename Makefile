@@ -116,11 +116,12 @@ bench: ## Measure speed: plant and predictor against real time, identification, 
 	$(BUILD)/bin/axis_bench $(if $(FILTER),--benchmark_filter='$(FILTER)')
 
 .PHONY: scoreboard
-scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR; the shipped ones by default)
+scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR, CUTS=1, NULLS=1000, SAMPLE=20)
 	$(NEED) build
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool
-	$(BUILD)/bin/axistool scoreboard $(or $(CASES),tests/data/drive-cases)
+	$(BUILD)/bin/axistool scoreboard $(or $(CASES),tests/data/drive-cases) $(if $(CUTS),--cuts) \
+	  $(if $(NULLS),--nulls $(NULLS)) $(if $(SAMPLE),--sample $(SAMPLE))
 
 .PHONY: mutants
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
