@@ -23,7 +23,9 @@ void print(const host::Diagnosis& diagnosis) {
   if (!verdict.parameters.empty())
     fmt::print("  Base parameters that were off: {}\n", fmt::join(verdict.parameters, ", "));
   fmt::print("  Next: {}\n\n", verdict.next_experiment);
-  if (diagnosis.held_back) fmt::print("No --validate: every fourth block of 2 s of the training data was kept back.\n");
+  if (diagnosis.held_back)
+    fmt::print("No --validate: one of {} blocks of {:.2g} s of motion was kept back to judge.\n",
+               diagnosis.blocks.every, diagnosis.blocks.block_s);
   if (!diagnosis.not_searched.empty())
     fmt::print("Not searched to the end, their fits used up what a fit may simulate: {}\n",
                fmt::join(diagnosis.not_searched, ", "));

@@ -70,7 +70,7 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
     result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
     result.given_validate = result.before_validate = result.after_validate =
         error_of(given, result.validation).combined;
-    result.verdict = insufficient_data(model);
+    result.verdict = insufficient_data(model, result);
     return result;
   }
   if (progress) progress(0.05);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/exit_codes.hpp"
@@ -85,6 +87,9 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
   std::vector<Candidate> found;
   const auto search = [&](double window_s, Measure measure) {
     sets = prepare_sets(model, training, validation, window_s, measure);
+    if (!sets.moves_enough)
+      throw Failure(ExitCode::refused, fmt::format("{}: {:.1f} s more of motion are needed to fit and to judge it",
+                                                   kind, std::max(0.1, missing_motion_s(sets))));
     if (!is_applicable(*info, sets.base, sets.training))
       throw Failure(ExitCode::usage,
                     fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or "

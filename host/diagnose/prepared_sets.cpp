@@ -9,43 +9,117 @@ namespace host {
 
 namespace {
 
-/// Blocks of this length alternate between training and validation where no validation record is given, s.
-constexpr double kBlock_s = 2.0;
-/// Every so many-th block is kept back.
-constexpr std::size_t kKeptBack = 4;
+/// Two dozen blocks in all, between these lengths, s of motion: within two seconds it is of one kind, and 0.3 s still
+/// hold three windows.
+constexpr double kBlocks = 24.0;
+constexpr double kShortestBlock_s = 0.3, kLongestBlock_s = 2.0;
+/// One block of four judges; one of three where there are few.
+constexpr std::size_t kUsualEvery = 4, kEveryOfFew = 3;
+constexpr double kFew_s = 30.0;
 
-/// Splits the windows of a set into training and validation blocks.
-void hold_back(RecordSet& training, RecordSet& validation) {
-  validation = training;
-  for (std::size_t r = 0; r < training.records.size(); ++r) {
-    PreparedRecord& kept = training.records[r].prepared;
-    PreparedRecord& back = validation.records[r].prepared;
-    const std::vector<Window> all = kept.windows;
-    kept.windows.clear();
-    back.windows.clear();
-    for (const Window& window : all) {
-      const double t_s = static_cast<double>(window.begin) * kept.period_s;
-      const bool held = static_cast<std::size_t>(t_s / kBlock_s) % kKeptBack == kKeptBack - 1;
-      (held ? back : kept).windows.push_back(window);
-    }
-  }
+/// Whether the axis moves at a row: faster than a twentieth of the record's top speed.
+std::vector<bool> moving_rows(const PreparedRecord& prepared) {
+  constexpr double kSlow = 0.05;
+  const SmoothedMotion& motion = prepared.motion();
+  double top = 0.0;
+  for (const double w : motion.w) top = std::max(top, std::abs(w));
+  std::vector<bool> moves(motion.w.size());
+  for (std::size_t k = 0; k < moves.size(); ++k) moves[k] = !motion.standing[k] && std::abs(motion.w[k]) > kSlow * top;
+  return moves;
 }
 
-/// Excitation below which nothing can be said: the axis must move for a second in all.
-bool moves_enough(const RecordSet& set) {
-  double moving_s = 0.0;
+double moving_s_of(const Window& window, const std::vector<bool>& moves, double period_s) {
+  std::size_t rows = 0;
+  for (std::size_t k = window.begin; k < window.begin + window.length; ++k)
+    if (moves[k]) ++rows;
+  return static_cast<double>(rows) * period_s;
+}
+
+double moving_s_of(const RecordSet& set) {
+  double sum = 0.0;
   for (const ComparedRecord& compared : set.records) {
-    const SmoothedMotion& motion = compared.prepared.motion();
-    double top = 0.0;
-    for (const double w : motion.w) top = std::max(top, std::abs(w));
-    for (std::size_t k = 0; k < motion.w.size(); ++k)
-      if (!motion.standing[k] && std::abs(motion.w[k]) > 0.05 * top) moving_s += compared.prepared.period_s;
+    const std::vector<bool> moves = moving_rows(compared.prepared);
+    for (const Window& window : compared.prepared.windows)
+      sum += moving_s_of(window, moves, compared.prepared.period_s);
   }
-  constexpr double kShortestMotion_s = 1.0;
-  return moving_s >= kShortestMotion_s;
+  return sum;
+}
+
+/// The block that each window belongs to, one list a record: so many seconds of motion each, with the rest that follows
+/// them. Blocks are counted on from record to record and end with their record.
+std::vector<std::vector<std::size_t>> blocks_of(const RecordSet& set, double block_s) {
+  std::vector<std::vector<std::size_t>> blocks;
+  std::size_t block = 0;
+  for (const ComparedRecord& compared : set.records) {
+    const PreparedRecord& prepared = compared.prepared;
+    const std::vector<bool> moves = moving_rows(prepared);
+    std::vector<std::size_t> own;
+    double moved_s = 0.0;
+    for (const Window& window : prepared.windows) {
+      const double more_s = moving_s_of(window, moves, prepared.period_s);
+      if (more_s > 0.0 && moved_s > block_s - 0.5 * more_s) {
+        ++block;
+        moved_s = 0.0;
+      }
+      moved_s += more_s;
+      own.push_back(block);
+    }
+    if (moved_s > 0.0) ++block;
+    blocks.push_back(std::move(own));
+  }
+  return blocks;
+}
+
+/// A record without windows says nothing, and its length of a window is not known.
+void drop_empty(RecordSet& set) {
+  const auto is_empty = [](const ComparedRecord& compared) { return compared.prepared.windows.empty(); };
+  if (!std::ranges::all_of(set.records, is_empty)) std::erase_if(set.records, is_empty);
 }
 
 }  // namespace
+
+std::size_t independent_windows(double moving_s) {
+  constexpr double kRounding = 1e-6;
+  return static_cast<std::size_t>(moving_s / kIndependent_s + kRounding);
+}
+
+double missing_motion_s(const PreparedSets& sets) {
+  const double learn_s = std::max(0.0, static_cast<double>(kFewestToLearn) * kIndependent_s - sets.moving_train_s);
+  const double judge_s = std::max(0.0, static_cast<double>(kFewestToJudge) * kIndependent_s - sets.moving_validate_s);
+  if (!sets.held_back) return learn_s + judge_s;
+  const auto every = static_cast<double>(std::max<std::size_t>(2, sets.blocks.every));
+  return std::max(learn_s * every / (every - 1.0), judge_s * every);
+}
+
+KeptBack hold_back(RecordSet& training, RecordSet& validation) {
+  const double moving_s = moving_s_of(training);
+  const KeptBack kept{std::clamp(moving_s / kBlocks, kShortestBlock_s, kLongestBlock_s),
+                      moving_s < kFew_s ? kEveryOfFew : kUsualEvery};
+  const std::vector<std::vector<std::size_t>> blocks = blocks_of(training, kept.block_s);
+  validation = training;
+  for (std::size_t r = 0; r < training.records.size(); ++r) {
+    PreparedRecord& trains = training.records[r].prepared;
+    PreparedRecord& judges = validation.records[r].prepared;
+    const std::vector<Window> all = trains.windows;
+    const std::size_t reach = trains.smoother.reach();
+    trains.windows.clear();
+    judges.windows.clear();
+    std::vector<bool> near(trains.record->size(), false);  // rows that a window which judges depends on
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (blocks[r][k] % kept.every != kept.every - 1) continue;
+      judges.windows.push_back(all[k]);
+      const std::size_t begin = all[k].begin - std::min(all[k].begin, reach);
+      const std::size_t end = std::min(near.size(), all[k].begin + all[k].length + reach + 1);
+      std::fill(near.begin() + static_cast<std::ptrdiff_t>(begin), near.begin() + static_cast<std::ptrdiff_t>(end),
+                true);
+    }
+    for (const Window& window : all)
+      if (!near[window.begin] && !near[window.begin + window.length]) trains.windows.push_back(window);
+  }
+  drop_empty(training);
+  drop_empty(validation);
+  return kept;
+}
 
 PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                           const std::vector<const Record*>& validation, double window_s, Measure measure) {
@@ -55,12 +129,17 @@ PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<
   sets.held_back = validation.empty();
   sets.training = compare_on(training, model, window_s, measure);
   if (sets.held_back) {
-    hold_back(sets.training, sets.validation);
+    sets.blocks = hold_back(sets.training, sets.validation);
+    renew_floors(sets.training, model);
+    renew_floors(sets.validation, model);
   } else {
     sets.validation = compare_on(validation, model, window_s, measure);
   }
   sets.base = model;
-  sets.moves_enough = moves_enough(sets.training);
+  sets.moving_train_s = moving_s_of(sets.training);
+  sets.moving_validate_s = moving_s_of(sets.validation);
+  sets.moves_enough = independent_windows(sets.moving_train_s) >= kFewestToLearn &&
+                      independent_windows(sets.moving_validate_s) >= kFewestToJudge;
   if (!sets.moves_enough) return sets;
   sets.base = fit_base(model, sets.training);
   renew_floors(sets.training, sets.base);

@@ -1,20 +1,47 @@
 // What a diagnosis begins with: which windows of the records train, which judge, and the base fitted to the first.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "host/compare/comparison.hpp"
 
 namespace host {
 
+/// Stretches of motion so long are independent of one another: a window restarts from the measured state.
+inline constexpr double kIndependent_s = 0.1;
+/// Fewest independent windows of motion to learn from and to be judged by. Below, neither inertia and friction nor a
+/// claim and its absence can be told apart.
+inline constexpr std::size_t kFewestToLearn = 10;
+inline constexpr std::size_t kFewestToJudge = 8;
+
+/// Blocks of the training data that are kept back where no validation record is given.
+struct KeptBack {
+  double block_s = 0.0;   ///< motion in a block, s
+  std::size_t every = 0;  ///< one of so many blocks is kept back; 0: none
+};
+
 struct PreparedSets {
   double window_s = kWindow_s;
   Measure measure = Measure::motion;
-  bool held_back = false;      ///< no validation record was given: blocks of the training data were kept back
-  bool moves_enough = false;   ///< otherwise the base is the model as it was given
-  sim::DriveDescription base;  ///< the given model, re-fitted
+  bool held_back = false;  ///< no validation record was given: blocks of the training data were kept back
+  KeptBack blocks;
+  double moving_train_s = 0.0, moving_validate_s = 0.0;  ///< time in motion within the windows that are used
+  bool moves_enough = false;                             ///< otherwise the base is the model as it was given
+  sim::DriveDescription base;                            ///< the given model, re-fitted
   RecordSet training, validation;
 };
+
+/// Independent windows of motion in so many seconds of it.
+std::size_t independent_windows(double moving_s);
+
+/// Seconds of motion that are missing before a diagnosis means anything; 0 where there is enough.
+double missing_motion_s(const PreparedSets& sets);
+
+/// Keeps blocks of the windows back, across all records: 0.3 to 2 s of motion each, so fine that a single short record
+/// gives some of them, and a quarter or a third of all. Windows next to a block that is kept back train no longer, as
+/// far as the smoothing of a restart reaches.
+KeptBack hold_back(RecordSet& training, RecordSet& validation);
 
 /// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
 /// be compared. Keeps references to the records.

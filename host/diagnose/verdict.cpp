@@ -161,15 +161,20 @@ std::string doubt_in_words(const JudgedCandidate& closest, const Diagnosis& diag
 
 }  // namespace
 
-DiagnosisVerdict insufficient_data(const sim::DriveDescription& model) {
+DiagnosisVerdict insufficient_data(const sim::DriveDescription& model, const PreparedSets& sets) {
   DiagnosisVerdict verdict;
   verdict.status = Status::insufficient_data;
   verdict.next_experiment = fmt::format(
-      "Record steps of the command in both directions that are well above static friction (up to {:g} V), and "
-      "jogs at several speeds both ways.",
+      "Record {:.1f} s more of motion{}: steps of the command in both directions that are well above static friction "
+      "(up to {:g} V), and jogs at several speeds both ways.",
+      std::max(0.1, missing_motion_s(sets)), sets.held_back ? ", or a record of another motion for --validate" : "",
       0.5 * model.data.dac_limit_V);
-  verdict.explanation =
-      "The axis moved for less than a second in all: friction and inertia cannot be told apart from that.";
+  verdict.explanation = fmt::format(
+      "The axis moved for {:.2f} s in the data that train and for {:.2f} s in {}: {} and {} independent windows, of "
+      "which at least {} and {} are needed before inertia, friction and anything else can be told apart.",
+      sets.moving_train_s, sets.moving_validate_s, sets.held_back ? "what was kept back of them" : "those that judge",
+      independent_windows(sets.moving_train_s), independent_windows(sets.moving_validate_s), kFewestToLearn,
+      kFewestToJudge);
   return verdict;
 }
 

@@ -12,6 +12,6 @@ inline constexpr double kExplained = 1.25;
 DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnosis& diagnosis);
 
 /// The verdict where the axis hardly moved.
-DiagnosisVerdict insufficient_data(const sim::DriveDescription& model);
+DiagnosisVerdict insufficient_data(const sim::DriveDescription& model, const PreparedSets& sets);
 
 }  // namespace host

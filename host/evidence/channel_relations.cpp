@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "host/identify/encoder_step.hpp"
 
@@ -27,8 +28,12 @@ double follows(const std::vector<double>& path, const std::vector<double>& rate)
 struct AffineFit {
   double factor = 0.0;
   double left = 1.0;   ///< part of the variance that is left
-  double worst = 0.0;  ///< largest residual over the channel's range
+  double worst = 1.0;  ///< largest residual over the channel's range
 };
+
+bool is_constant(const std::vector<double>& values) {
+  return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
+}
 
 AffineFit affine_fit(const std::vector<double>& of, const std::vector<double>& by) {
   const auto n = static_cast<double>(of.size());
@@ -45,8 +50,10 @@ AffineFit affine_fit(const std::vector<double>& of, const std::vector<double>& b
     oo += o * o;
   }
   AffineFit fit;
+  if (is_constant(of) || is_constant(by)) return fit;  // their variance is rounding
   if (!(bb > 0.0) || !(oo > 0.0) || !std::isfinite(bb) || !std::isfinite(oo)) return fit;
   fit.factor = ob / bb;
+  fit.worst = 0.0;
   double left = 0.0, low = 0.0, high = 0.0;
   for (std::size_t k = 0; k < of.size(); ++k) {
     const double o = of[k] - mean_of, residual = o - fit.factor * (by[k] - mean_by);
