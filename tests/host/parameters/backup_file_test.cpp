@@ -51,7 +51,7 @@ TEST(Backup, AFileOfPartsIsNoBackup) {
 
 TEST(Backup, EndsOfLinesMayBeAnotherSystems) {
   std::string text = host::format_backup(some_values());
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, 1, '\r');
   EXPECT_EQ(message_of(text), "restored");
 }
 
