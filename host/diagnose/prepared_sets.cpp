@@ -17,14 +17,13 @@ constexpr double kShortestBlock_s = 0.3, kLongestBlock_s = 2.0;
 constexpr std::size_t kUsualEvery = 4, kEveryOfFew = 3;
 constexpr double kFew_s = 30.0;
 
-/// Whether the axis moves at a row: faster than a twentieth of the record's top speed.
+/// Whether the axis moves at a row: faster than three standard deviations of its smoothed speed.
 std::vector<bool> moving_rows(const PreparedRecord& prepared) {
-  constexpr double kSlow = 0.05;
+  constexpr double kDeviations = 3.0;
   const SmoothedMotion& motion = prepared.motion();
-  double top = 0.0;
-  for (const double w : motion.w) top = std::max(top, std::abs(w));
   std::vector<bool> moves(motion.w.size());
-  for (std::size_t k = 0; k < moves.size(); ++k) moves[k] = !motion.standing[k] && std::abs(motion.w[k]) > kSlow * top;
+  for (std::size_t k = 0; k < moves.size(); ++k)
+    moves[k] = !motion.standing[k] && std::abs(motion.w[k]) > kDeviations * std::sqrt(motion.w_variance[k]);
   return moves;
 }
 

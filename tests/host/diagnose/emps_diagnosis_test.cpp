@@ -19,7 +19,6 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::UnorderedElementsAre;
 
 const std::filesystem::path kEmps = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "emps";
 
@@ -31,7 +30,7 @@ host::Record read(const char* file, const sim::DataSheet& data) {
   return record;
 }
 
-TEST(EmpsDiagnosis, FindsTheViscousAsymmetryThenTheDelayAndTheLowSpeedShapeTogetherAndStops) {
+TEST(EmpsDiagnosis, FindsTheViscousAsymmetryAndSaysThatWhatIsLeftDependsOnSpeed) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kEmps)) GTEST_SKIP() << kEmps << " is absent";
   sim::DriveDescription drive;
@@ -59,13 +58,12 @@ TEST(EmpsDiagnosis, FindsTheViscousAsymmetryThenTheDelayAndTheLowSpeedShapeToget
   EXPECT_LT(std::abs(0.5 * (coulomb->at("positive") + coulomb->at("negative"))), 0.5);
   EXPECT_THAT(first.verdict.next_experiment, HasSubstr("No record holds a constant speed between"));
 
-  // Recomputed: 2.14 % on training and 2.80 % on the other experiment with a delay of 0.86 ms and a low-speed shape.
-  ASSERT_EQ(improvement.ladder.size(), 3u) << "base, asymmetry, pair: no greedy terms";
-  EXPECT_THAT(improvement.ladder[2].added, UnorderedElementsAre("input_delay", "nonlinear_viscous"));
-  EXPECT_LE(host::relative_error(improvement.model, train), 0.022);
-  EXPECT_LE(host::relative_error(improvement.model, validate), 0.029);
-  const double hold_s = 0.5 * train.sample_period_s;  // the model holds a command for a sample, the published one not
-  EXPECT_NEAR(improvement.model.find("input_delay")->at("delay") + hold_s, 0.8e-3, 0.1e-3);
+  // A delay and a low-speed shape would take the force error to 2.2 %, but with an exponent at the end of its range:
+  // a shape that the catalogue lacks, which is said instead of claimed.
+  EXPECT_EQ(improvement.ladder.size(), 2u) << "base, asymmetry: no greedy terms";
+  EXPECT_EQ(improvement.verdict.status, host::Status::unexplained);
+  EXPECT_EQ(improvement.verdict.coordinate, "speed");
+  EXPECT_LE(host::relative_error(improvement.model, train), 0.032);
   // Both runs have a ripple of 2.5 mm, of one amplitude and 95 degrees apart.
   EXPECT_THAT(improvement.verdict.explanation, AllOf(HasSubstr("A ripple every 2.5"), HasSubstr("does not transfer")));
 }
