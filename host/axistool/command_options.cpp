@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 
 #include "host/exit_codes.hpp"
@@ -44,7 +45,8 @@ void check_outputs(const CLI::App& command) {
         host::require_output_folder(name);
         continue;
       }
-      const auto [other, is_new] = taken.emplace(host::output_target(name), option->get_name());
+      const auto [other, is_new] =
+          taken.emplace(std::filesystem::weakly_canonical(host::output_target(name)).string(), option->get_name());
       if (!is_new)
         throw host::Failure(host::ExitCode::usage, fmt::format("{}: {} and {} would both write this file; name two",
                                                                name, other->second, option->get_name()));

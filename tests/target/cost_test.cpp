@@ -26,8 +26,9 @@ TEST_F(CostOfAStep, CountsAreExactAndRepeatable) {
 TEST_F(CostOfAStep, FloatKeepsItsBudget) {
   auto costs = count_instructions("cost-float-m4");
   EXPECT_LE(costs["estimator_and_feedback"].worst, 90);
-  EXPECT_LE(costs["one_axis"].worst, 450);
-  EXPECT_LE(costs["both_axes"].worst, 1000);
+  // The monitors of the raw signals and of feedback loss took 110 of these; 450 and 1,000 were the aims without them.
+  EXPECT_LE(costs["one_axis"].worst, 600);
+  EXPECT_LE(costs["both_axes"].worst, 1300);
   EXPECT_LT(costs["both_axes"].worst * 20e3 / 168e6, 0.15) << "share of the chip at 20 kHz";
   EXPECT_GT(costs["one_axis"].mean, 100) << "the step did nothing";
 }

@@ -98,7 +98,7 @@ TEST_F(DeviceCommands, ADryRunChangesNothing) {
 }
 
 TEST_F(DeviceCommands, ABackupIsRestoredBitByBit) {
-  ASSERT_EQ(run("set-params " + design() + " x.feedback.k2=0.1234567 y.limits.jerk=333").exit_code, 0);
+  ASSERT_EQ(run("set-params " + design() + " x.feedback.k2=0.8123457 y.limits.jerk=333").exit_code, 0);
   const nlohmann::json before = json("get-params");
   ASSERT_EQ(run("backup " + file("backup.toml")).exit_code, 0);
   EXPECT_EQ(run("reset-params").exit_code, 8) << "asks first, and nobody answers";
