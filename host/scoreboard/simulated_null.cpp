@@ -29,7 +29,7 @@ void change(sim::DriveDescription& drive, Random& random, double most) {
 class Motion {
  public:
   Motion(const sim::DriveDescription& drive, bool closed_loop, Random& random)
-      : closed_loop_(closed_loop), random_(random), drive_(drive), period_s_(drive.data.sample_period_s) {
+      : closed_loop_(closed_loop), random_(random), period_s_(drive.data.sample_period_s) {
     const sim::EffectEntry& coulomb = *drive.find("coulomb");
     friction_V_ = coulomb.either("positive", "level") / drive.data.effort_per_volt();
     const double inertia_V = drive.find("inertia")->at("J") / drive.data.effort_per_volt();
@@ -65,7 +65,6 @@ class Motion {
 
   bool closed_loop_;
   Random& random_;
-  const sim::DriveDescription& drive_;
   double period_s_, friction_V_ = 0.0, gain_V_ = 0.0, top_speed_ = 0.0;
   double left_s_ = 0.0, target_ = 0.0, reference_ = 0.0, acceleration_ = 0.0, direction_ = -1.0;
 };

@@ -43,7 +43,7 @@ class Chip {
   AdcPart adc{bus, dma, [this] { return clock.apb2_Hz(); }};
   SerialPart serial{bus, [this] { return clock.apb2_Hz(); }, 115200.0};
   IndependentWatchdogPart independent_watchdog{bus};
-  WindowWatchdogPart window_watchdog{bus, [this] { return clock.apb1_Hz(); }, clock.enabled(0x40, 11)};
+  WindowWatchdogPart window_watchdog{[this] { return clock.apb1_Hz(); }, clock.enabled(0x40, 11)};
   PlainRegisters usb{0x1000}, interrupts{0x1000}, system{0x100};
   CyclePart cycles{[this] { return clock.ahb_Hz(); }, [this] { return bits(system.read(0xFC), 24) != 0; }};
 

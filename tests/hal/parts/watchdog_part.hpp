@@ -31,8 +31,8 @@ class IndependentWatchdogPart : public Part {
 
 class WindowWatchdogPart : public Part {
  public:
-  WindowWatchdogPart(Bus& bus, std::function<double()> clock_Hz, std::function<bool()> is_clocked)
-      : bus_(bus), clock_Hz_(std::move(clock_Hz)), is_clocked_(std::move(is_clocked)) {}
+  WindowWatchdogPart(std::function<double()> clock_Hz, std::function<bool()> is_clocked)
+      : clock_Hz_(std::move(clock_Hz)), is_clocked_(std::move(is_clocked)) {}
 
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
@@ -42,7 +42,6 @@ class WindowWatchdogPart : public Part {
   bool is_running() const { return bits(control_, 7) != 0; }
 
  private:
-  Bus& bus_;
   std::function<double()> clock_Hz_;
   std::function<bool()> is_clocked_;
   std::uint32_t control_ = 0x7F, configuration_ = 0x7F;
