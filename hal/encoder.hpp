@@ -13,12 +13,25 @@ struct EncoderReading {
   bool valid = false;  ///< false: wire break, illegal edge or bus error; `counts` must then not be used
 };
 
+/// The counter at an index pulse.
+struct IndexReading {
+  std::uint32_t counts = 0;
+  bool seen = false;    ///< a pulse came since the last call
+  bool missed = false;  ///< more than one came; `counts` is of the last
+};
+
 /// Contract: `read()` latches the counter once and returns at once. Positive counts are positive travel of the axis.
 /// A reading never goes back to an earlier value by itself (no reset at the index pulse). An error is an invalid
 /// reading; it lasts as long as its cause.
 template <typename T>
 concept Encoder = requires(T& encoder) {
   { encoder.read() } -> std::same_as<EncoderReading>;
+};
+
+/// An encoder whose index pulse is wired. Contract: `read_index()` returns at once, and forgets what it has told.
+template <typename T>
+concept IndexedEncoder = Encoder<T> && requires(T& encoder) {
+  { encoder.read_index() } -> std::same_as<IndexReading>;
 };
 
 }  // namespace hal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <type_traits>
@@ -66,6 +67,7 @@ class BoardApplication {
       return Status::bad_value;
     }
     if (staged_ == active_) return Status::ok;
+    const auto displaced = axes_whose_counts_change_meaning();
     active_ = staged_;
     if (changed == active_.size() && set_fits_) {
       const BoardLimits limits = limits_of_board();  // all that may change while an axis moves
@@ -75,6 +77,10 @@ class BoardApplication {
     }
     set_fits_ = true;
     configure_all();
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const typename Board::ControlShutOut guard;
+      if (displaced[axis]) axes_[axis].forget_home();
+    }
     return Status::ok;
   }
 
@@ -141,13 +147,16 @@ class BoardApplication {
     return Status::ok;
   }
 
-  Status move(std::size_t axis, std::int64_t target_counts) {
+  /// To a position, which only a homed axis knows, or `relative`: by so many counts.
+  Status move(std::size_t axis, std::int64_t counts, bool relative) {
     {
       const typename Board::ControlShutOut guard;
-      if (axes_[axis].state() != SupervisorState::enabled || !axes_[axis].is_at_rest()) return refusal(axis);
+      if (axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis)) return refusal(axis);
+      if (!relative && !axes_[axis].is_homed()) return Status::not_homed;
     }
     // At rest the reference stands still, and only this background can change that.
-    const MovePlanResult planned = axes_[axis].plan_move_to(CountPosition::at(target_counts));
+    const MovePlanResult planned =
+        relative ? axes_[axis].plan_move_by(counts) : axes_[axis].plan_move_to(CountPosition::at(counts));
     if (planned.error == MovePlanError::outside_travel) return Status::outside_travel;
     if (planned.error != MovePlanError::none) return Status::unreachable;
     const typename Board::ControlShutOut guard;
@@ -168,6 +177,18 @@ class BoardApplication {
   bool is_ahead(std::size_t axis, std::int64_t target_counts) {
     const typename Board::ControlShutOut guard;
     return target_counts > axes_[axis].telemetry().encoder_counts;
+  }
+
+  /// Looks for home, or is told by the operator that the axis stands there; homing.mode says which of them it is.
+  Status home(std::size_t axis, bool here) {
+    if (!is_fitted(axis)) return Status::not_fitted;
+    const bool is_told = active_.axis(axis).template get<"homing.mode">() == static_cast<int>(HomingMode::none);
+    if (here != is_told) return Status::homing_mode;
+    const typename Board::ControlShutOut guard;
+    if (here) return axes_[axis].set_position(axes_[axis].parameters().homing.position) ? Status::ok : refusal(axis);
+    if (!axes_[axis].home()) return refusal(axis);
+    axes_.board().host_commands(true);
+    return Status::ok;
   }
 
   void clear_faults() {
@@ -213,7 +234,9 @@ class BoardApplication {
     const LimitingReasons limiting = axes_[axis].limiting();
     status.flags = static_cast<std::uint8_t>(
         (is_fitted(axis) ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
-        (limiting.velocity_limited ? kAxisVelocityLimited : 0) | (axes_[axis].is_at_rest() ? kAxisAtRest : 0));
+        (limiting.velocity_limited ? kAxisVelocityLimited : 0) |
+        (axes_[axis].is_at_rest() && !axes_[axis].is_homing() ? kAxisAtRest : 0) |
+        (axes_[axis].is_homed() ? kAxisHomed : 0) | (axes_[axis].is_homing() ? kAxisHoming : 0));
     return status;
   }
 
@@ -260,8 +283,12 @@ class BoardApplication {
   bool is_in_motion() {
     const typename Board::ControlShutOut guard;
     for (std::size_t axis = 0; axis < kAxes; ++axis)
-      if (axes_[axis].is_or_will_be_on() && !axes_[axis].is_at_rest()) return true;
+      if (is_in_motion(axis)) return true;
     return false;
+  }
+  /// While the control interrupt is shut out. Between its ways homing stands for a moment.
+  bool is_in_motion(std::size_t axis) const {
+    return axes_[axis].is_or_will_be_on() && (!axes_[axis].is_at_rest() || axes_[axis].is_homing());
   }
 
   BoardLimits limits_of_board() const {
@@ -280,6 +307,18 @@ class BoardApplication {
     if (!store_is_usable()) return;
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
+  }
+
+  std::array<bool, kAxes> axes_whose_counts_change_meaning() const {
+    std::array<bool, kAxes> changed{};
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const AxisValues was = active_.axis(axis), is = staged_.axis(axis);
+      changed[axis] = was.get<"drive.encoder_resolution">() != is.get<"drive.encoder_resolution">() ||
+                      was.get<"homing.mode">() != is.get<"homing.mode">() ||
+                      was.get<"homing.velocity">() != is.get<"homing.velocity">() ||
+                      was.get<"homing.position">() != is.get<"homing.position">();
+    }
+    return changed;
   }
 
   /// The number of values when there is none.

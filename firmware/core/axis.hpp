@@ -85,6 +85,21 @@ class Axis {
     is_synchronised_ = false;
   }
 
+  /// Positions are from home from now on: what was counted as 0 is `origin`. The axis does not move by it.
+  constexpr void set_home(std::int64_t origin) {
+    counter_.shift(origin);
+    telemetry_.encoder_counts += origin;
+    telemetry_.estimate.anchor_counts += origin;
+    telemetry_.reference.counts += origin;
+    preview_.shift(origin);
+    telemetry_.homed = true;
+  }
+  /// Nothing is known of where the axis is, but of how far it moves.
+  constexpr void forget_home() { telemetry_.homed = false; }
+
+  /// What a reading of the encoder means in this axis's counts.
+  constexpr std::int64_t counts_at(std::uint32_t reading) const { return counter_.counts_at(reading); }
+
   /// Velocity reference, mm/s (m/s), limited to the velocity limit; 0 slows down to standstill. False while disabled.
   constexpr bool jog(Scalar velocity) {
     if (!telemetry_.enabled || ScalarTraits<Scalar>::is_nan(velocity)) return false;
@@ -118,6 +133,11 @@ class Axis {
     CountPosition leading = preview_.leading();
     leading.advance(-backlash_.offset(kPreviewSamples));
     return plan_move(target - leading, limits_);
+  }
+
+  /// Likewise, of a move by so many counts.
+  constexpr MovePlanResult plan_move_by(std::int64_t counts) const {
+    return plan_move(CountPosition::at(counts), limits_);
   }
 
   /// Starts a plan made while the reference was at rest, as it must still be. False otherwise, or while disabled.
@@ -210,7 +230,8 @@ class Axis {
         counts_near<Scalar>(estimate.anchor_counts, preview_.position()) * parameters_.encoder_resolution;
     telemetry_.position_error = telemetry_.tracking_error - estimate.offset;
     if (compensation_.is_on())
-      telemetry_.friction_V = compensation_.advance(friction_, backlash_, preview_.velocity(1), preview_.halfway());
+      telemetry_.friction_V =
+          compensation_.advance(friction_, backlash_, preview_.velocity(1), preview_.halfway(), telemetry_.homed);
     else
       telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
     const Scalar feedforward_V = preview_.weighted_sum(feedforward_);

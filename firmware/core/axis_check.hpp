@@ -113,6 +113,14 @@ constexpr ParameterError check(const AxisParameters<Scalar>& p) {
   return ParameterError::none;
 }
 
+template <typename Scalar>
+constexpr ParameterError check_homing(const HomingParameters<Scalar>& h) {
+  using parameter_check::is_positive;
+  if (h.mode == HomingMode::none) return ParameterError::none;
+  const bool moves = is_positive(ScalarTraits<Scalar>::magnitude(h.velocity)) && is_positive(h.creep_velocity);
+  return moves && h.travel > 0 && h.index_travel > 0 ? ParameterError::none : ParameterError::homing;
+}
+
 /// Beyond these a monitor would not protect: what an axis at full command, from standstill, does in the times below, or
 /// what a moving one needs if that is more.
 namespace monitor_ceilings {

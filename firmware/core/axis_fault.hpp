@@ -34,6 +34,9 @@ enum class AxisFault : std::uint8_t {
   command_without_motion = 24,
   limit_cycle = 25,
   converter_not_as_set = 26,
+  homing_switch_not_found = 27,
+  homing_index_not_found = 28,
+  homing_travel_exceeded = 29,
 };
 
 }  // namespace firmware

@@ -6,6 +6,7 @@
 #include "firmware/core/compensation/compensation_parameters.hpp"
 #include "firmware/core/discrete_drive.hpp"
 #include "firmware/core/friction_feedforward.hpp"
+#include "firmware/core/homing.hpp"
 #include "firmware/core/kalman_estimator.hpp"
 #include "firmware/core/motion_limits.hpp"
 #include "firmware/core/reference_feedforward.hpp"
@@ -35,7 +36,8 @@ struct AxisParameters {
   bool disturbance_cancellation_on = false;
   bool zero_phase_feedforward_on = false;  ///< off: the reference velocity alone, eqs. (50) and (52)
 
-  MonitorLimits<Scalar> monitors{};  ///< for SupervisedAxis; Axis alone has no monitors
+  HomingParameters<Scalar> homing{};  ///< for SupervisedAxis
+  MonitorLimits<Scalar> monitors{};   ///< for SupervisedAxis; Axis alone has no monitors
 
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
@@ -79,6 +81,7 @@ enum class ParameterError : std::uint8_t {
   oscillation = 28,            ///< not above 0, or so much that an unstable loop would pass
   estimator_poles = 29,        ///< unstable, undamped or slow (pole_check.hpp)
   loop_poles = 30,             ///< likewise
+  homing = 31,                 ///< not by an operator, and a velocity 0, creep or a way not above 0
 };
 
 }  // namespace firmware

@@ -32,6 +32,7 @@ struct AxisTelemetry : AxisSample<Scalar> {
   Scalar control_V{};               ///< u(k) before limits and rounding
   bool saturated = false;           ///< u(k) was beyond the converter's range
   bool enabled = false;
+  bool homed = false;  ///< encoder_counts are from home, not from where the axis happened to be at power-up
   AxisFault fault = AxisFault::none;
 };
 

@@ -67,15 +67,25 @@ class CountExtender {
 
   /// The same; returns the travel since the last reading.
   constexpr std::int32_t advance(std::uint32_t reading) {
-    const auto travel = static_cast<std::int32_t>(reading - static_cast<std::uint32_t>(counts_));
+    const auto travel = static_cast<std::int32_t>(reading - last_reading_);
+    last_reading_ = reading;
     counts_ += travel;
     return travel;
   }
+
+  /// What a reading near the last one means.
+  constexpr std::int64_t counts_at(std::uint32_t reading) const {
+    return counts_ + static_cast<std::int32_t>(reading - last_reading_);
+  }
+
+  /// Counts from another origin: what was 0 is `by` now.
+  constexpr void shift(std::int64_t by) { counts_ += by; }
 
   constexpr std::int64_t counts() const { return counts_; }
 
  private:
   std::int64_t counts_ = 0;
+  std::uint32_t last_reading_ = 0;
 };
 
 }  // namespace firmware

@@ -79,6 +79,12 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.friction_feedforward_on = p.friction_feedforward_on;
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
   q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;
+  q.homing = {p.homing.mode,
+              fixed(p.homing.velocity / unit.travel_velocity),
+              fixed(p.homing.creep_velocity / unit.travel_velocity),
+              p.homing.travel,
+              p.homing.index_travel,
+              p.homing.position};
   const MonitorLimits<Real>& m = p.monitors;
   q.monitors = {.following_error_floor = fixed(m.following_error_floor / unit.length),
                 .following_error_per_velocity = fixed(m.following_error_per_velocity * unit.velocity / unit.length),

@@ -33,6 +33,9 @@ class ReferencePreview {
     position_.advance(increments_[0]);
   }
 
+  /// The same place, counted from another origin.
+  constexpr void shift(std::int64_t counts) { position_.counts += counts; }
+
   constexpr const CountPosition& position() const { return position_; }  ///< xref(k)
   /// xref(k + kPreviewSamples)
   constexpr CountPosition leading() const {

@@ -20,6 +20,8 @@ struct AxisWiring {
   double negative_end = -std::numeric_limits<double>::infinity();  ///< travel at which the switch acts, mm (m)
   double positive_end = std::numeric_limits<double>::infinity();
   double home = std::numeric_limits<double>::quiet_NaN();  ///< home switch: actuated at and beyond it; NaN: none
+  double index_spacing = 0.0;  ///< travel from one index pulse to the next, mm (m); 0: none is wired
+  double index_offset = 0.0;   ///< travel at which one of them lies
 };
 
 /// Satisfies AxisHal; limits() satisfies LimitInputs. The plant is the caller's, who also lets its time pass.
@@ -28,7 +30,7 @@ class SimulatedAxis {
   /// Takes the current away from the drive, as a board does at reset. Throws std::invalid_argument for a drive whose
   /// description lacks the converter's or the encoder's resolution: then there are no codes and no counts.
   explicit SimulatedAxis(sim::Plant& plant, const AxisWiring& wiring = {})
-      : encoder_{plant},
+      : encoder_{plant, wiring},
         tachometer_{plant, wiring.tachometer_resolution},
         dac_{plant},
         enable_{plant},
@@ -49,11 +51,33 @@ class SimulatedAxis {
 
   class SimulatedEncoder {
    public:
-    explicit SimulatedEncoder(sim::Plant& plant) : plant_(plant) {}
+    SimulatedEncoder(sim::Plant& plant, const AxisWiring& wiring)
+        : plant_(plant), wiring_(wiring), last_turn_(turn_of(plant.encoder_counts())) {}
     EncoderReading read() { return {static_cast<std::uint32_t>(plant_.encoder_counts()), true}; }
 
+    /// Of the pulses passed since the last call the one that came last.
+    IndexReading read_index() {
+      if (!(wiring_.index_spacing > 0.0)) return {};
+      const std::int64_t turn = turn_of(plant_.encoder_counts());
+      const std::int64_t passed = turn - last_turn_;
+      last_turn_ = turn;
+      if (passed == 0) return {};
+      const auto pulse = static_cast<double>(passed > 0 ? turn : turn + 1);
+      const double travel = wiring_.index_offset + pulse * wiring_.index_spacing;
+      const auto counts = std::llround(travel / plant_.data().encoder_resolution);
+      return {static_cast<std::uint32_t>(counts), true, passed < -1 || passed > 1};
+    }
+
    private:
+    std::int64_t turn_of(std::int64_t counts) const {
+      if (!(wiring_.index_spacing > 0.0)) return 0;
+      const double travel = static_cast<double>(counts) * plant_.data().encoder_resolution;
+      return static_cast<std::int64_t>(std::floor((travel - wiring_.index_offset) / wiring_.index_spacing));
+    }
+
     sim::Plant& plant_;
+    AxisWiring wiring_;
+    std::int64_t last_turn_;
   };
 
   class SimulatedTachometer {

@@ -6,13 +6,6 @@
 
 namespace hal::stm32f4 {
 
-/// The position at the last index pulse.
-struct IndexReading {
-  std::uint32_t counts = 0;
-  bool seen = false;    ///< a pulse came since the last call
-  bool missed = false;  ///< more than one came
-};
-
 /// Channels 1 and 2 count every edge of A and B, channel 3 captures the counter at the index pulse. All 32 bits are the
 /// hardware's, so no overflow needs an interrupt.
 class EncoderTimer {
@@ -45,6 +38,6 @@ class EncoderTimer {
  private:
   Timer& registers_;
 };
-static_assert(Encoder<EncoderTimer>);
+static_assert(IndexedEncoder<EncoderTimer>);
 
 }  // namespace hal::stm32f4

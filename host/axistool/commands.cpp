@@ -38,6 +38,7 @@ void add_all_commands(CLI::App& app) {
   add_restore(app);
   add_enable(app);
   add_disable(app);
+  add_home(app);
   add_jog(app);
   add_move(app);
   add_capture(app);

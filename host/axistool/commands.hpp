@@ -34,6 +34,7 @@ void add_backup(CLI::App& app);
 void add_restore(CLI::App& app);
 void add_enable(CLI::App& app);
 void add_disable(CLI::App& app);
+void add_home(CLI::App& app);
 void add_jog(CLI::App& app);
 void add_move(CLI::App& app);
 void add_capture(CLI::App& app);

@@ -19,7 +19,7 @@ struct MotionArguments : DeviceArguments {
   std::vector<std::string> axes;
   std::string axis;
   double value = 0.0, duration_s = 1.0;
-  bool relative = false, take_over = false;
+  bool relative = false, take_over = false, here = false;
 };
 
 std::atomic<bool> interrupted = false;
@@ -95,7 +95,9 @@ void move(const MotionArguments& arguments) {
     throw host::Failure(host::ExitCode::usage, fmt::format("{:g} is too far for the axis to count", target));
   catch_interrupts();
   if (!arguments.dry_run && arguments.take_over) board.take_over();
-  if (!arguments.dry_run) host::move_and_wait(board, axis, std::llround(target / resolution), is_interrupted);
+  const double way = arguments.relative ? arguments.value : target;
+  if (!arguments.dry_run)
+    host::move_and_wait(board, axis, std::llround(way / resolution), arguments.relative, is_interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
   if (!talks(arguments)) return;
@@ -105,6 +107,29 @@ void move(const MotionArguments& arguments) {
 
 void add_take_over(CLI::App& command, MotionArguments& arguments) {
   command.add_flag("--take-over", arguments.take_over, "even while another program moves the axes: it loses them");
+}
+
+void home(const MotionArguments& arguments) {
+  host::BoardClient board = open_board(arguments);
+  const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
+  board.require_same_table();
+  const firmware::ParameterValues values = board.read_values();
+  catch_interrupts();
+  if (!arguments.dry_run) {
+    if (arguments.take_over) board.take_over();
+    if (arguments.here)
+      board.home(axis, true);
+    else
+      host::home_and_wait(board, axis, is_interrupted);
+  }
+  const bool homed = (board.status().axis.at(axis).flags & firmware::kAxisHomed) != 0;
+  const double at = position_of(board, axis, values);
+  report(arguments, "home", {{"axis", arguments.axis}, {"homed", homed}, {"at", at}});
+  if (!talks(arguments)) return;
+  if (arguments.dry_run)
+    fmt::print("would {}\n", arguments.here ? "take the place where the axis stands for home" : "look for home");
+  else
+    fmt::print("{} {}, at {:.4f}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)", at);
 }
 
 }  // namespace
@@ -145,6 +170,23 @@ void add_jog(CLI::App& app) {
   command->callback([arguments] { jog(*arguments); });
 }
 
+void add_home(CLI::App& app) {
+  auto arguments = std::make_shared<MotionArguments>();
+  CLI::App* command = app.add_subcommand("home", "Let an enabled axis find the place that positions are counted from");
+  command->add_option("AXIS", arguments->axis, "x, y, …")->required();
+  command->add_flag("--here", arguments->here,
+                    "the axis stands at homing.position: your word for it, where homing.mode is 0");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  add_take_over(*command, *arguments);
+  command->footer(
+      "Examples:\n  axistool set-params x.homing.mode=3 x.homing.velocity=-20 && axistool enable x && axistool home x\n"
+      "  axistool home y --here\n"
+      "By switch (homing.mode 1), index (2), or switch and then index (3). Until an axis is homed it takes no moves to "
+      "a\nposition, and travel limits, cogging and friction along the travel do not act. A reset forgets home.");
+  command->callback([arguments] { home(*arguments); });
+}
+
 void add_move(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("move", "Move an enabled axis to a position and wait for it");
@@ -154,7 +196,9 @@ void add_move(CLI::App& app) {
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);
-  command->footer("Examples:\n  axistool move x 100\n  axistool move y -5 --relative");
+  command->footer(
+      "Examples:\n  axistool move x 100\n  axistool move y -5 --relative\nTo a POSITION only once the axis is homed: "
+      "axistool home.");
   command->callback([arguments] { move(*arguments); });
 }
 

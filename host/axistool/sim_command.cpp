@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/command_options.hpp"
@@ -49,9 +50,21 @@ void make_folder_of(const std::string& flash_file) {
                                     folder.string(), fault.message()));
 }
 
+/// A home switch 25 mm from where the axis is at power-up and, on a shaft, an index pulse each turn.
+hal::pc::AxisWiring wiring(const sim::DriveDescription& drive) {
+  hal::pc::AxisWiring wiring;
+  const bool is_rotary = drive.data.kind == sim::DriveKind::rotary;  // then in mm, otherwise in m
+  wiring.home = is_rotary ? 25.0 : 0.025;
+  wiring.index_spacing = is_rotary ? 2.0 * std::numbers::pi * drive.data.lead : 0.0;
+  wiring.index_offset = 1.0;
+  return wiring;
+}
+
 /// Where no model is given the paper's two axes take turns.
 host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
-  return {file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_model(file)};
+  const sim::DriveDescription drive =
+      file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_model(file);
+  return {drive, wiring(drive)};
 }
 
 void tell(const std::string& place, const std::string& flash_file, const std::string& device) {
@@ -110,6 +123,7 @@ void add_sim(CLI::App& app) {
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();
   command->footer(
+      "Each axis has a home switch 25 mm from where it is at power-up and, if rotary, an index pulse each turn.\n"
       "Examples:\n"
       "  axistool sim &\n"
       "  axistool info --device sim\n"

@@ -90,6 +90,14 @@ void require_ok(const Message& reply) {
            "over (--take-over of enable, jog, move)");
     case Status::restarting:
       fail(ExitCode::refused, "the board is about to restart: try again in a second");
+    case Status::not_homed:
+      fail(ExitCode::refused,
+           "the axis does not know where it is: `axistool home` first (or move it --relative, or jog it)");
+    case Status::homing_mode:
+      fail(
+          ExitCode::refused,
+          "homing.mode decides how home is found: with 0 the operator says it (`axistool home AXIS --here`), otherwise "
+          "the axis looks for it (without --here)");
     case Status::unreachable:
       fail(ExitCode::refused, "the move would last too long: raise limits.velocity, or split it");
     case Status::device_fault:
@@ -326,6 +334,14 @@ void BoardClient::jog(std::uint8_t axis, double velocity) {
 
 void BoardClient::move(std::uint8_t axis, std::int64_t target_counts) {
   request(MessageType::move, firmware::MoveRequest::to(axis, target_counts));
+}
+
+void BoardClient::move_by(std::uint8_t axis, std::int64_t counts) {
+  request(MessageType::move, firmware::MoveRequest::by(axis, counts));
+}
+
+void BoardClient::home(std::uint8_t axis, bool here) {
+  request(MessageType::home, firmware::HomeRequest{axis, static_cast<std::uint8_t>(here ? 1 : 0)});
 }
 
 void BoardClient::clear_faults() { request(MessageType::clear_faults); }

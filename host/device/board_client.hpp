@@ -52,6 +52,9 @@ class BoardClient {
   void stop();
   void jog(std::uint8_t axis, double velocity);
   void move(std::uint8_t axis, std::int64_t target_counts);
+  void move_by(std::uint8_t axis, std::int64_t counts);
+  /// Looks for home; `here`: says that the axis stands there.
+  void home(std::uint8_t axis, bool here);
   void clear_faults();
   void heartbeat();
   /// Motion that another program commanded is this one's from now on.

@@ -70,7 +70,8 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
                     {"counts", now.counts()},
                     {"velocity", now.velocity},
                     {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
-                    {"at_rest", (now.flags & firmware::kAxisAtRest) != 0}});
+                    {"at_rest", (now.flags & firmware::kAxisAtRest) != 0},
+                    {"homed", (now.flags & firmware::kAxisHomed) != 0}});
   }
   return {{"format", "axis-board/1"},
           {"device", device},
@@ -105,7 +106,10 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
     text += fmt::format(
-        "axis {}       {}, {} counts{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),
+        "axis {}       {}, {} counts{}{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),
+        (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
+        : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
+                                                  : " from where it was (not homed)",
         now.fault == 0
             ? ""
             : fmt::format(", fault {}", firmware::fault_info(static_cast<firmware::AxisFault>(now.fault)).name));

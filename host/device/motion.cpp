@@ -58,6 +58,17 @@ void stop_and_wait(BoardClient& board, std::uint8_t axis) {
   ask_until(board, std::chrono::hours(1), [&](const auto& status) { return rests(status, axis); });
 }
 
+/// Of a motion that ends by itself.
+void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
+  bool interrupted = false;
+  std::this_thread::sleep_for(kRound);  // it begins with the next control period
+  ask_until(board, std::chrono::hours(24), [&](const auto& status) {
+    interrupted = stop();
+    return interrupted || rests(status, axis);
+  });
+  if (interrupted) stop_and_wait(board, axis);
+}
+
 }  // namespace
 
 void require_no_fault(const BoardState& status, std::uint8_t axis) {
@@ -105,16 +116,15 @@ void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono
   stop_and_wait(board, axis);
 }
 
-void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t target_counts,
+void home_and_wait(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
+  board.home(axis, false);
+  wait_for_rest(board, axis, stop);
+}
+
+void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t counts, bool relative,
                    const std::function<bool()>& stop) {
-  board.move(axis, target_counts);
-  bool interrupted = false;
-  std::this_thread::sleep_for(kRound);  // the move begins with the next control period
-  ask_until(board, std::chrono::hours(24), [&](const auto& status) {
-    interrupted = stop();
-    return interrupted || rests(status, axis);
-  });
-  if (interrupted) stop_and_wait(board, axis);
+  relative ? board.move_by(axis, counts) : board.move(axis, counts);
+  wait_for_rest(board, axis, stop);
 }
 
 }  // namespace host

@@ -21,8 +21,11 @@ void disable_and_wait(BoardClient& board, std::uint8_t mask);
 void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,
              const std::function<bool()>& stop);
 
-/// Moves to a target and waits until the axis rests there, or until `stop` says so.
-void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t target_counts,
+/// Lets an enabled axis look for home and waits until it has found it, or until `stop` says so.
+void home_and_wait(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop);
+
+/// Moves to a target, or `relative` by so many counts, and waits until the axis rests there, or until `stop` says so.
+void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t counts, bool relative,
                    const std::function<bool()>& stop);
 
 /// Throws Failure(device_fault) with the fault's name, cause and remedy.

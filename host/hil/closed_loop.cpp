@@ -28,6 +28,7 @@ ClosedLoop::ClosedLoop(const sim::DriveDescription& machine, const firmware::Axi
                   fmt::format("the axis rejects its parameters (parameter error {})", static_cast<int>(error)));
   }
   axis_.step();
+  axis_.set_home(0);
   axis_.enable();
 }
 

@@ -19,6 +19,7 @@ struct ClosedLoop {
       : plant(firmware_test::friction_drive(kPaperX), 1), board(plant), axis(board) {
     EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
     axis.step();
+    axis.set_home(0);
     EXPECT_TRUE(axis.enable());
   }
 

@@ -130,12 +130,14 @@ INSTANTIATE_TEST_SUITE_P(
                          [](float amount) {
                            Watched w = moving_at(1.0f);
                            w.seen.encoder_counts = static_cast<std::int64_t>(amount * 2000.0f);
+                           w.seen.homed = true;
                            return w;
                          }},
                     Case{"negative_travel", AxisFault::travel_limit,
                          [](float amount) {
                            Watched w = moving_at(-1.0f);
                            w.seen.encoder_counts = static_cast<std::int64_t>(-amount * 1000.0f);
+                           w.seen.homed = true;
                            return w;
                          }},
                     Case{"positive_switch", AxisFault::limit_switch_positive,

@@ -36,7 +36,10 @@ TEST(FaultTable, NumbersAreFrozen) {
   EXPECT_EQ(static_cast<int>(AxisFault::command_without_motion), 24);
   EXPECT_EQ(static_cast<int>(AxisFault::limit_cycle), 25);
   EXPECT_EQ(static_cast<int>(AxisFault::converter_not_as_set), 26);
-  EXPECT_EQ(firmware::kFaults.size(), 27u) << "a new fault takes the next number; freeze it here too";
+  EXPECT_EQ(static_cast<int>(AxisFault::homing_switch_not_found), 27);
+  EXPECT_EQ(static_cast<int>(AxisFault::homing_index_not_found), 28);
+  EXPECT_EQ(static_cast<int>(AxisFault::homing_travel_exceeded), 29);
+  EXPECT_EQ(firmware::kFaults.size(), 30u) << "a new fault takes the next number; freeze it here too";
 }
 
 TEST(StateTable, IsWhatTheDocumentationSays) {

@@ -21,6 +21,7 @@ class Travel : public testing::Test {
   AxisFault at(std::int64_t counts, float reference_velocity = 0.0f) {
     firmware::AxisTelemetry<float> seen;
     seen.encoder_counts = counts;
+    seen.homed = true;
     seen.reference_velocity = reference_velocity;
     return monitor.watch(seen, switches);
   }

@@ -16,6 +16,23 @@ constexpr std::int64_t whole_counts(float travel, float encoder_resolution) {
   return static_cast<std::int32_t>(counts > kMost ? kMost : (counts < -kMost ? -kMost : counts));
 }
 
+/// To the nearest count.
+constexpr std::int64_t nearest_counts(float travel, float encoder_resolution) {
+  return whole_counts(travel + (travel < 0 ? -0.5F : 0.5F) * encoder_resolution, encoder_resolution);
+}
+
+constexpr HomingParameters<float> homing(const AxisValues& v) {
+  const float encoder_resolution = v.get<"drive.encoder_resolution">();
+  HomingParameters<float> h;
+  h.mode = static_cast<HomingMode>(v.get<"homing.mode">());
+  h.velocity = v.get<"homing.velocity">();
+  h.creep_velocity = v.get<"homing.creep_velocity">();
+  h.travel = whole_counts(v.get<"homing.travel">(), encoder_resolution);
+  h.index_travel = whole_counts(v.get<"homing.index_travel">(), encoder_resolution);
+  h.position = nearest_counts(v.get<"homing.position">(), encoder_resolution);
+  return h;
+}
+
 constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
   const float sample_period_s = v.get<"drive.sample_period">();
   const float samples_a_second = 1.0F / sample_period_s;
@@ -101,6 +118,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.velocity_limit = v.get<"limits.velocity">();
   p.acceleration_limit = v.get<"limits.acceleration">();
   p.jerk_limit = v.get<"limits.jerk">();
+  p.homing = homing(v);
   p.monitors = monitor_limits(v);
   return p;
 }

@@ -90,6 +90,8 @@ constexpr std::uint16_t id_behind(ParameterError error) {
       return id_of<"backlash.gap">();
     case ParameterError::backlash_crossing:
       return id_of<"backlash.crossing_time">();
+    case ParameterError::homing:
+      return id_of<"homing.velocity">();
     case ParameterError::none:
     case ParameterError::sample_period:
     case ParameterError::controller_is_enabled:
@@ -111,6 +113,7 @@ constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis)
     return {SetProblemKind::rate_disagrees, ParameterKey::of_axis(axis, id_of<"drive.sample_period">())};
   const AxisParameters<Scalar> parameters = axis_parameters<Scalar>(v);
   ParameterError error = check(parameters);
+  if (error == ParameterError::none) error = check_homing(parameters.homing);
   if (error == ParameterError::none) error = check_monitors(parameters);
   if (error == ParameterError::none) error = check_poles(parameters);
   if (error == ParameterError::none) return {};

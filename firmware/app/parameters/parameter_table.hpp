@@ -116,8 +116,10 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {149, axis, "monitor.overspeed", real, "rad/s", "m/s", 1e-9F, 1e4F, 300, while_disabled, "largest speed"},
     {150, axis, "monitor.polarity_command", real, "V", "V", 1e-3F, 1e3F, 3, while_disabled,
      "command beyond any friction: it must accelerate the drive"},
-    {151, axis, "monitor.travel_min", real, "mm", "m", -1e6F, 1e6F, -1e5F, while_disabled, "end of travel"},
-    {152, axis, "monitor.travel_max", real, "mm", "m", -1e6F, 1e6F, 1e5F, while_disabled, "end of travel"},
+    {151, axis, "monitor.travel_min", real, "mm", "m", -1e6F, 1e6F, -1e5F, while_disabled,
+     "end of travel; watched once homed"},
+    {152, axis, "monitor.travel_max", real, "mm", "m", -1e6F, 1e6F, 1e5F, while_disabled,
+     "end of travel; watched once homed"},
     {153, axis, "monitor.saturation_time", real, "s", "s", 1e-3F, 10, 0.1F, while_disabled,
      "longest time at the D/A converter's limit"},
     {154, axis, "monitor.oscillation", real, "V", "V", 1e-3F, 1e3F, 2.5F, while_disabled,
@@ -132,7 +134,7 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {176, axis, "cogging.on", toggle, "", "", 0, 1, 0, while_disabled,
      "take the cogging of the reference's position off the command"},
     {177, axis, "cogging.cosine_1", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled,
-     "effort that cogging adds to the motor's, over the travel since the counter was 0"},
+     "effort that cogging adds to the motor's, over the travel from home; acts once homed"},
     {178, axis, "cogging.sine_1", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "likewise"},
     {179, axis, "cogging.period_1", real, "mm", "m", 1e-6F, 1e6F, 10, while_disabled, "travel of one period"},
     {180, axis, "cogging.cosine_2", real, "Nm", "N", -1e5F, 1e5F, 0, while_disabled, "second harmonic"},
@@ -151,7 +153,7 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {208, axis, "position_friction.on", toggle, "", "", 0, 1, 0, while_disabled,
      "let friction feed-forward follow the travel"},
     {209, axis, "position_friction.cosine", real, "1", "1", -0.95F, 0.95F, 0, while_disabled,
-     "what friction grows by, over the travel since the counter was 0"},
+     "what friction grows by, over the travel from home; acts once homed"},
     {210, axis, "position_friction.sine", real, "1", "1", -0.95F, 0.95F, 0, while_disabled, "likewise"},
     {211, axis, "position_friction.period", real, "mm", "m", 1e-6F, 1e6F, 100, while_disabled, "travel of one period"},
 
@@ -162,6 +164,17 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
      "time that the way across takes"},
     {227, axis, "backlash.wind_up", real, "mm", "m", 0, 10, 0, while_disabled,
      "twist behind the gap under friction; friction reaches the motor as it builds up"},
+
+    {240, axis, "homing.mode", whole, "", "", 0, 3, 0, while_disabled,
+     "what finds home: 0 nothing, an operator says it; 1 the switch; 2 the index; 3 the switch, then the index"},
+    {241, axis, "homing.velocity", real, "mm/s", "m/s", -1e6F, 1e6F, 10, while_disabled,
+     "of the search; its sign is the way to the switch"},
+    {242, axis, "homing.creep_velocity", real, "mm/s", "m/s", 1e-6F, 1e6F, 1, while_disabled,
+     "at which the switch's edge and the index are found"},
+    {243, axis, "homing.travel", real, "mm", "m", 1e-6F, 1e6F, 1000, while_disabled, "longest way of each search"},
+    {244, axis, "homing.index_travel", real, "mm", "m", 1e-6F, 1e6F, 10, while_disabled,
+     "way within which an index pulse comes: a turn and a little more"},
+    {245, axis, "homing.position", real, "mm", "m", -1e6F, 1e6F, 0, while_disabled, "of home"},
 });
 
 }  // namespace parameter_rows

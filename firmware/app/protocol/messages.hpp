@@ -31,6 +31,7 @@ enum class MessageType : std::uint8_t {
   clear_faults = 0x25,
   heartbeat = 0x26,
   take_over = 0x27,
+  home = 0x28,
   start_capture = 0x30,
   stop_capture = 0x31,
   read_fault_capture = 0x32,
@@ -67,6 +68,8 @@ enum class Status : std::uint8_t {
   restarting = 17,
   outside_travel = 18,  ///< a move or a jog beyond a limit of travel; ProblemPayload says which limit
   not_standing = 19,    ///< an axis that is to be enabled moves
+  not_homed = 20,       ///< a move to a position, of an axis that does not know where it is
+  homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
 };
 
 struct IdentityPayload {
@@ -94,7 +97,8 @@ struct AxisStatus {
                                      counts_low);
   }
 };
-inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8;
+inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8,
+                              kAxisHomed = 16, kAxisHoming = 32;
 
 /// Of the board as a whole, as the asking client sees it.
 struct BoardStatus {
@@ -193,14 +197,25 @@ struct JogRequest {
   float velocity = 0;  ///< mm/s (m/s)
 };
 
+struct HomeRequest {
+  std::uint8_t axis = 0;
+  std::uint8_t here = 0;  ///< 1: the operator says that the axis stands at homing.position
+};
+
 struct MoveRequest {
   std::uint8_t axis = 0;
-  std::array<std::uint8_t, 3> reserved{};
+  std::uint8_t relative = 0;  ///< 1: by so many counts, from where the reference stands
+  std::array<std::uint8_t, 2> reserved{};
   std::uint32_t counts_low = 0;
   std::int32_t counts_high = 0;
 
   static constexpr MoveRequest to(std::uint8_t axis, std::int64_t counts) {
-    return {axis, {}, static_cast<std::uint32_t>(counts), static_cast<std::int32_t>(counts >> 32)};
+    return {axis, 0, {}, static_cast<std::uint32_t>(counts), static_cast<std::int32_t>(counts >> 32)};
+  }
+  static constexpr MoveRequest by(std::uint8_t axis, std::int64_t counts) {
+    MoveRequest request = to(axis, counts);
+    request.relative = 1;
+    return request;
   }
   constexpr std::int64_t counts() const {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |

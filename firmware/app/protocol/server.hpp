@@ -86,7 +86,7 @@ class ProtocolServer {
 
   static constexpr bool begins_motion(MessageType type) {
     return type == MessageType::enable || type == MessageType::jog || type == MessageType::move ||
-           type == MessageType::take_over;
+           type == MessageType::home || type == MessageType::take_over;
   }
 
   /// Looking, stopping and disabling are everybody's; the rest waits for the end of another client's motion.
@@ -95,6 +95,7 @@ class ProtocolServer {
       case MessageType::enable:
       case MessageType::jog:
       case MessageType::move:
+      case MessageType::home:
       case MessageType::clear_faults:
       case MessageType::commit:
       case MessageType::save:
@@ -157,11 +158,16 @@ class ProtocolServer {
         });
       case MessageType::move:
         return with<MoveRequest>(request, [&](const MoveRequest& r) {
-          if (r.axis >= kAxes) return Status::malformed;
-          const Status status = app_.move(r.axis, r.counts());
+          if (r.axis >= kAxes || r.relative > 1) return Status::malformed;
+          const Status status = app_.move(r.axis, r.counts(), r.relative != 0);
           if (status == Status::outside_travel)
-            reply.put(app_.limit_of_travel(r.axis, app_.is_ahead(r.axis, r.counts())));
+            reply.put(
+                app_.limit_of_travel(r.axis, r.relative != 0 ? r.counts() > 0 : app_.is_ahead(r.axis, r.counts())));
           return status;
+        });
+      case MessageType::home:
+        return with<HomeRequest>(request, [&](const HomeRequest& r) {
+          return r.axis < kAxes && r.here <= 1 ? app_.home(r.axis, r.here != 0) : Status::malformed;
         });
       case MessageType::clear_faults:
         app_.clear_faults();

@@ -20,8 +20,10 @@ class PilStation {
 
   constexpr PilConfigured configure(const Parameters& parameters) {
     PilConfigured result;
-    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       result.error[i] = static_cast<std::uint32_t>(axes_[i].configure(parameters[i]));
+      axes_[i].set_position(0);
+    }
     axes_.board().configure(BoardWatch::default_limits(kPilPeriod_s));
     axes_.board().excuse_pause();
     return result;

@@ -24,11 +24,12 @@ class DriveCompensation {
   constexpr bool is_on() const { return is_on_; }
   constexpr void reset() { presliding_.reset(); }
 
-  /// Volts for the period in which the reference moves at `velocity`, with `middle` its position halfway.
+  /// Volts for the period in which the reference moves at `velocity`, with `middle` its position halfway. What is bound
+  /// to places (cogging, friction along the travel) acts only where `middle` is counted from home.
   constexpr Scalar advance(const FrictionFeedforward<Scalar>& friction, const BacklashCrossing& backlash,
-                           Scalar velocity, const CountPosition& middle) {
-    Scalar sum = friction_on_ ? friction_V(friction, backlash, velocity, middle) : Scalar(0);
-    if (!parameters_.cogging_on) return sum;
+                           Scalar velocity, const CountPosition& middle, bool homed) {
+    Scalar sum = friction_on_ ? friction_V(friction, backlash, velocity, middle, homed) : Scalar(0);
+    if (!parameters_.cogging_on || !homed) return sum;
     for (const TravelHarmonic<Scalar>& harmonic : parameters_.cogging_V)
       if (!harmonic.is_zero()) sum = sum - harmonic(middle);
     return sum;
@@ -36,9 +37,9 @@ class DriveCompensation {
 
  private:
   constexpr Scalar friction_V(const FrictionFeedforward<Scalar>& friction, const BacklashCrossing& backlash,
-                              Scalar velocity, const CountPosition& middle) {
+                              Scalar velocity, const CountPosition& middle, bool homed) {
     Scalar sliding_V = presliding_on_ ? friction.without_blend(velocity) : friction(velocity);
-    if (varies_) sliding_V = sliding_V + sliding_V * parameters_.position_friction(middle);
+    if (varies_ && homed) sliding_V = sliding_V + sliding_V * parameters_.position_friction(middle);
     if (backlash.is_on() && backlash.is_crossing()) {
       const Scalar carried = backlash.carried<Scalar>();
       sliding_V = velocity < Scalar(0) ? Scalar(0) - sliding_V * carried : sliding_V * carried;

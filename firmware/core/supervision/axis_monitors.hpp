@@ -73,6 +73,9 @@ class AxisMonitors {
     return travel_.watch(seen, switches.read());
   }
 
+  /// Positions are counted from another origin now.
+  constexpr void forget_travel() { travel_.restart(); }
+
   /// While the loop is open there is nothing to follow, and no control signal that a broken state would show in.
   constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
     restart_motion();

@@ -24,7 +24,7 @@ struct FaultInfo {
 };
 
 /// In the order of their numbers.
-inline constexpr std::array<FaultInfo, 27> kFaults{{
+inline constexpr std::array<FaultInfo, 30> kFaults{{
     {AxisFault::none, "none", "no fault", "", FaultReaction::none},
     {AxisFault::encoder_invalid, "encoder_invalid",
      "the encoder's input reports a broken wire, an illegal edge or a bus error",
@@ -105,6 +105,16 @@ inline constexpr std::array<FaultInfo, 27> kFaults{{
      "wire to it is broken",
      "look at the report on the service port; check the converter's supplies, the cable to the amplifier and its load",
      FaultReaction::drop_enable},
+    {AxisFault::homing_switch_not_found, "homing_switch_not_found",
+     "the home switch did not act within the longest way of a search",
+     "check the switch and its wire; check the sign of homing.velocity, and homing.travel", FaultReaction::ramp_stop},
+    {AxisFault::homing_index_not_found, "homing_index_not_found",
+     "no index pulse came within the way that one turn takes",
+     "check the encoder's index wires; homing.index_travel is a turn and a little more", FaultReaction::ramp_stop},
+    {AxisFault::homing_travel_exceeded, "homing_travel_exceeded",
+     "the home switch stayed actuated over the longest way of a search",
+     "check the switch, which may be stuck or shorted; check the sign of homing.velocity, and homing.travel",
+     FaultReaction::ramp_stop},
 }};
 
 namespace fault_table {
@@ -134,6 +144,12 @@ inline constexpr auto kFaultReactions = fault_table::reactions_alone();
 constexpr const FaultInfo& fault_info(AxisFault fault) {
   const auto number = static_cast<std::size_t>(fault);
   return kFaults[number < kFaults.size() ? number : 0];
+}
+
+/// After these nobody knows whether all counts were counted: the axis is no longer homed.
+constexpr bool loses_position(AxisFault fault) {
+  return fault == AxisFault::encoder_invalid || fault == AxisFault::encoder_jump ||
+         fault == AxisFault::encoder_tachometer_disagreement || fault == AxisFault::command_without_motion;
 }
 
 constexpr FaultReaction reaction_to(AxisFault fault) { return kFaultReactions[static_cast<std::size_t>(fault)]; }

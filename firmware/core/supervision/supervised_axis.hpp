@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "firmware/core/axis.hpp"
+#include "firmware/core/homing.hpp"
 #include "firmware/core/pole_check.hpp"
 #include "firmware/core/supervision/axis_monitors.hpp"
 #include "firmware/core/supervision/capture_ring.hpp"
@@ -36,9 +39,11 @@ class SupervisedAxis {
     ParameterError error = check(parameters);
     if (error == ParameterError::none) error = check_monitors(parameters);
     if (error == ParameterError::none) error = check_poles(parameters);
+    if (error == ParameterError::none) error = check_homing(parameters.homing);
     if (error == ParameterError::none) error = axis_.configure(parameters);
     if (error != ParameterError::none) return error;
     monitors_.configure(parameters);
+    homing_.configure(parameters.homing);
     const MotionLimits limits = motion_limits(parameters);
     fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
     largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
@@ -69,7 +74,7 @@ class SupervisedAxis {
 
   /// As of Axis, while the state is enabled; false otherwise.
   constexpr bool jog(Scalar velocity) {
-    if (state_ != SupervisorState::enabled || !has_room_towards(velocity)) return false;
+    if (state_ != SupervisorState::enabled || homing_.is_active() || !has_room_towards(velocity)) return false;
     limiting_.velocity_limited =
         velocity > axis_.parameters().velocity_limit || velocity < Scalar(0) - axis_.parameters().velocity_limit;
     is_interpolated_ = false;
@@ -77,32 +82,59 @@ class SupervisedAxis {
   }
   constexpr bool start(const MovePlan& plan) {
     is_interpolated_ = false;
-    return state_ == SupervisorState::enabled && axis_.start(plan);
+    return state_ == SupervisorState::enabled && !homing_.is_active() && axis_.start(plan);
   }
+  /// A homed axis plans no move beyond its travel; an axis that is not homed knows of none.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
-    if (!monitors_.travel().is_inside(target.counts)) return {{}, MovePlanError::outside_travel};
+    if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, MovePlanError::outside_travel};
     return axis_.plan_move_to(target);
+  }
+  constexpr MovePlanResult plan_move_by(std::int64_t counts) const {
+    const std::int64_t here = axis_.telemetry().reference.counts;
+    if (is_homed() && !monitors_.travel().has_way(here, counts)) return {{}, MovePlanError::outside_travel};
+    return axis_.plan_move_by(counts);
   }
   /// False at a limit of travel that a jog of this velocity would pass.
   constexpr bool has_room_towards(Scalar velocity) const {
-    return velocity == Scalar(0) ||
+    return velocity == Scalar(0) || !is_homed() ||
            monitors_.travel().has_room(axis_.telemetry().reference.counts, velocity > Scalar(0));
   }
-  constexpr void stop() { axis_.stop(); }
+  constexpr void stop() {
+    homing_.abandon();
+    axis_.stop();
+  }
+
+  /// Begins to look for home, from rest. False while the axis is not enabled, moves, or has nothing to look for.
+  constexpr bool home() {
+    if (state_ != SupervisorState::enabled || !is_at_rest() || !homing_.begin()) return false;
+    if constexpr (kHasIndex) hal_.encoder().read_index();  // pulses of the time before
+    is_interpolated_ = false;
+    axis_.forget_home();  // the limits of an old home must not stand in the way
+    return true;
+  }
+  /// The operator says that the axis stands at `position`, counts. False while it moves.
+  constexpr bool set_position(std::int64_t position) {
+    if (homing_.is_active() || (outputs_are_on(state_) && !is_at_rest())) return false;
+    count_from(position - axis_.telemetry().encoder_counts);
+    return true;
+  }
+  constexpr void forget_home() { axis_.forget_home(); }
+  constexpr bool is_homed() const { return axis_.telemetry().homed; }
+  constexpr bool is_homing() const { return homing_.is_active(); }
 
   /// As of Axis: the encoder's reading for the step that follows.
   constexpr void latch() { axis_.latch(); }
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) {
-    if (state_ == SupervisorState::enabled) keep_inside();
+    if (state_ == SupervisorState::enabled && is_homed()) keep_inside();
     axis_.step();
-    supervise(outer);
+    supervise(homing_.is_active() && outer == AxisFault::none ? guide_home() : outer);
   }
 
-  /// One control period with an interpolator's increment on top; a stopping axis goes its own way.
+  /// One control period with an interpolator's increment on top; a stopping or homing axis goes its own way.
   constexpr void step_with(Increment increment, AxisFault outer = AxisFault::none) {
-    if (state_ != SupervisorState::enabled) return step(outer);
+    if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer);
     is_interpolated_ = true;
     if (!is_within_limits(increment)) {
       axis_.stop_interpolated();  // what cannot be right never reaches the drive
@@ -133,6 +165,8 @@ class SupervisedAxis {
   constexpr Hal& hal() { return hal_; }
 
  private:
+  static constexpr bool kHasIndex =
+      hal::IndexedEncoder<std::remove_reference_t<decltype(std::declval<Hal&>().encoder())>>;
   static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
   static constexpr std::int32_t kStandingSamples = 20;
 
@@ -173,6 +207,42 @@ class SupervisedAxis {
   }
 
   constexpr void happen(SupervisorEvent event) { enter(next_state(state_, event | event, fault_ != AxisFault::none)); }
+
+  /// After each step of a homing axis: what the sequence wants next, and its fault.
+  [[gnu::noinline]] constexpr AxisFault guide_home() {
+    HomingInputs seen;
+    seen.counts = axis_.telemetry().encoder_counts;
+    seen.at_switch = hal_.limits().read().home;
+    seen.at_rest = axis_.is_at_rest();
+    if constexpr (kHasIndex) {
+      const hal::IndexReading index = hal_.encoder().read_index();
+      seen.index_seen = index.seen;
+      seen.index_counts = axis_.counts_at(index.counts);
+    }
+    const HomingAction<Scalar> action = homing_.next(seen);
+    switch (action.step) {
+      case HomingStep::wait:
+        break;
+      case HomingStep::jog:
+        axis_.jog(action.velocity);
+        break;
+      case HomingStep::stop:
+        axis_.stop();
+        break;
+      case HomingStep::arrived:
+        count_from(homing_.parameters().position - action.found);
+        break;
+      case HomingStep::failed:
+        return action.fault;
+    }
+    return AxisFault::none;
+  }
+
+  constexpr void count_from(std::int64_t origin) {
+    axis_.set_home(origin);
+    monitors_.forget_travel();
+    standing_at_ += origin;
+  }
 
   constexpr void begin_self_test() {
     monitors_.restart();
@@ -222,6 +292,7 @@ class SupervisedAxis {
   /// worst kind is reported beside it.
   constexpr SupervisorEvent note(AxisFault found) {
     const bool drops = reaction_to(found) != FaultReaction::ramp_stop;
+    if (loses_position(found)) axis_.forget_home();
     if (fault_ == AxisFault::none)
       latch(found);
     else if (found != fault_ && outputs_are_on(state_) &&
@@ -250,6 +321,7 @@ class SupervisedAxis {
   constexpr void enter(SupervisorState next) {
     if (next == state_) return;
     state_ = next;
+    homing_.abandon();
     if (next == SupervisorState::enabled && !axis_.enable()) {
       latch(axis_.telemetry().fault);
       state_ = SupervisorState::fault;
@@ -270,6 +342,7 @@ class SupervisedAxis {
 
   Hal& hal_;
   AxisMonitors<Scalar> monitors_;
+  HomingSequence<Scalar> homing_;
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;
   AxisFault fault_ = AxisFault::none;

@@ -10,9 +10,9 @@
 
 namespace firmware {
 
-/// Beyond an end an axis may stand, and may go back. It may neither be led farther out nor go there by itself: the
-/// innermost place that it has reached since it came beyond the end, and a little play for a loop that holds its
-/// place, is as far out as it may be.
+/// The limits count once the axis is homed, the switches always. Beyond an end an axis may stand, and may go back. It
+/// may neither be led farther out nor go there by itself: the innermost place that it has reached since it came beyond
+/// the end, and a little play for a loop that holds its place, is as far out as it may be.
 template <typename Scalar>
 class TravelMonitor {
  public:
@@ -35,6 +35,10 @@ class TravelMonitor {
   constexpr bool has_room(std::int64_t counts, bool forward) const {
     return forward ? counts + play_ < max_counts_ : counts - play_ > min_counts_;
   }
+  /// From `here` by so many counts.
+  constexpr bool has_way(std::int64_t here, std::int64_t counts) const {
+    return counts <= max_counts_ - here && counts >= min_counts_ - here;
+  }
   constexpr std::int64_t play() const { return play_; }
   constexpr std::int64_t min_counts() const { return min_counts_; }
   constexpr std::int64_t max_counts() const { return max_counts_; }
@@ -46,14 +50,14 @@ class TravelMonitor {
 
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
     const std::int64_t counts = seen.encoder_counts;
-    if (switches.positive_end || counts > max_counts_) {
+    if (switches.positive_end || (seen.homed && counts > max_counts_)) {
       if (counts + play_ < upper_bound_) upper_bound_ = counts + play_;
       if (seen.reference_velocity > Scalar(0) || counts > upper_bound_)
         return switches.positive_end ? AxisFault::limit_switch_positive : AxisFault::travel_limit;
     } else {
       upper_bound_ = std::numeric_limits<std::int64_t>::max();
     }
-    if (switches.negative_end || counts < min_counts_) {
+    if (switches.negative_end || (seen.homed && counts < min_counts_)) {
       if (counts - play_ > lower_bound_) lower_bound_ = counts - play_;
       if (seen.reference_velocity < Scalar(0) || counts < lower_bound_)
         return switches.negative_end ? AxisFault::limit_switch_negative : AxisFault::travel_limit;

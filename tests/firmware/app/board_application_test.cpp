@@ -333,7 +333,7 @@ TYPED_TEST(BoardMotion, TheLastAxisMovesAndTheOthersStopWithIt) {
   bench.run(200);
   ASSERT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{(1u << TestFixture::kAxes) - 1}).status, Status::ok);
   bench.run(5);
-  ASSERT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::to(kLast, 2048)).status, Status::ok);
+  ASSERT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::by(kLast, 2048)).status, Status::ok);
   for (int i = 0; i < 20; ++i) {
     bench.run(50);
     ASSERT_EQ(bench.ask(MessageType::heartbeat).status, Status::ok);

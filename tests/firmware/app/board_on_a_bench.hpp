@@ -38,7 +38,7 @@ struct BoardOnABench {
   using Application = firmware::BoardApplication<Scalar, Board>;
   static constexpr std::size_t kAxes = axes;
 
-  Board board{machines(), 1};
+  Board board{machines(), 1, switches()};
   Application application{board};
   firmware::ImageHeader image;
   firmware::ProtocolServer<Application> server{application, image, {}};
@@ -49,6 +49,17 @@ struct BoardOnABench {
     typename Board::Drives drives;
     for (std::size_t axis = 0; axis < axes; ++axis) drives[axis] = paper_machine(axis % 2 == 0 ? kPaperX : kPaperY);
     return drives;
+  }
+
+  /// The home switch acts from 5 mm on, index pulses lie at 1 mm, 4 mm, 7 mm …
+  static typename Board::Wiring switches() {
+    typename Board::Wiring wiring;
+    for (hal::pc::AxisWiring& one : wiring) {
+      one.home = 5.0;
+      one.index_spacing = 3.0;
+      one.index_offset = 1.0;
+    }
+    return wiring;
   }
 
   /// Starts with what the flash holds.
@@ -126,11 +137,12 @@ struct BoardOnABench {
     return seen;
   }
 
-  /// Parameters of the paper's x axis, self-test passed, enabled.
+  /// Parameters of the paper's x axis, self-test passed, enabled; home is where the axis stands.
   void fit_and_enable_x() {
     ASSERT_EQ(download(paper_values(axes)).status, firmware::Status::ok);
     run(200);
     ASSERT_EQ(ask(firmware::MessageType::enable, firmware::AxesRequest{1}).status, firmware::Status::ok);
+    ASSERT_EQ(ask(firmware::MessageType::home, firmware::HomeRequest{0, 1}).status, firmware::Status::ok);
     run(5);
     ASSERT_EQ(status().axis[0].state, static_cast<std::uint8_t>(firmware::SupervisorState::enabled));
   }

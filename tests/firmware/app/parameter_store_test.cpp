@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ ParameterValues generation(int number) {
   for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     const firmware::ParameterRule& rule = firmware::rule_at(place);
     const float toggled = static_cast<float>(number % 2);
-    const float whole = rule.minimum + static_cast<float>(number);
+    const float whole = rule.minimum + std::fmod(static_cast<float>(number), rule.maximum - rule.minimum + 1);
     const float real = rule.minimum + (rule.maximum - rule.minimum) * 0.01F * static_cast<float>(number);
     values.set(place, rule.type == firmware::ParameterType::toggle  ? toggled
                       : rule.type == firmware::ParameterType::whole ? whole

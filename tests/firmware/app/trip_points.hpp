@@ -64,6 +64,7 @@ std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& pa
         [sign](Telemetry& seen, float level) {
           seen.reference_velocity = Scalar(static_cast<int>(sign));
           seen.encoder_counts = sign * static_cast<std::int64_t>(1000.0f * level);
+          seen.homed = true;
         },
         travel));
   }

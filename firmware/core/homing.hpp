@@ -1,0 +1,154 @@
+// Homing: finds the place that positions are counted from, by a switch, by an index pulse, or by both.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/axis_fault.hpp"
+#include "firmware/core/scalar.hpp"
+
+namespace firmware {
+
+enum class HomingMode : std::uint8_t {
+  none = 0,              ///< nothing finds it: an operator says where the axis is
+  home_switch = 1,       ///< the place where the switch begins to be actuated
+  index = 2,             ///< the next index pulse of the encoder
+  switch_and_index = 3,  ///< the first index pulse after the switch begins to be actuated
+};
+
+/// Velocities in mm/s (m/s), ways in encoder counts.
+template <typename Scalar>
+struct HomingParameters {
+  HomingMode mode = HomingMode::none;
+  Scalar velocity{};              ///< of the search; its sign is the way to the switch; not 0
+  Scalar creep_velocity{};        ///< at which edge and index are found, > 0
+  std::int64_t travel = 0;        ///< longest way of each search, > 0
+  std::int64_t index_travel = 0;  ///< way within which an index pulse comes: a turn and a little more, > 0
+  std::int64_t position = 0;      ///< of the place that is found
+};
+
+/// What one control period saw.
+struct HomingInputs {
+  std::int64_t counts = 0;
+  bool at_switch = false;
+  bool at_rest = false;     ///< the reference stands
+  bool index_seen = false;  ///< since the last control period
+  std::int64_t index_counts = 0;
+};
+
+enum class HomingStep : std::uint8_t { wait, jog, stop, arrived, failed };
+
+template <typename Scalar>
+struct HomingAction {
+  HomingStep step = HomingStep::wait;
+  Scalar velocity{};                  ///< of jog
+  std::int64_t found = 0;             ///< arrived: the counts of the place, as they have been counted so far
+  AxisFault fault = AxisFault::none;  ///< failed
+};
+
+/// Drives onto the switch at the speed of the search, off it again, and onto it once more at creep; an index is awaited
+/// in the same direction, so that backlash and hysteresis are always on the same side. An axis that begins on its
+/// switch leaves it first. Every way has its longest: the sequence ends, with a place or with a fault.
+template <typename Scalar>
+class HomingSequence {
+ public:
+  constexpr void configure(const HomingParameters<Scalar>& parameters) {
+    parameters_ = parameters;
+    phase_ = Phase::idle;
+  }
+
+  /// From rest. False without anything that could be found.
+  constexpr bool begin() {
+    if (parameters_.mode == HomingMode::none) return false;
+    phase_ = Phase::beginning;
+    return true;
+  }
+  constexpr void abandon() { phase_ = Phase::idle; }
+  constexpr bool is_active() const { return phase_ != Phase::idle; }
+  constexpr const HomingParameters<Scalar>& parameters() const { return parameters_; }
+
+  /// Once a control period while active.
+  constexpr HomingAction<Scalar> next(const HomingInputs& seen) {
+    switch (phase_) {
+      case Phase::idle:
+        return {};
+      case Phase::beginning:
+        return enter(parameters_.mode == HomingMode::index ? Phase::awaiting_index
+                     : seen.at_switch                      ? Phase::leaving
+                                                           : Phase::searching,
+                     seen);
+      case Phase::leaving:
+        return seen.at_switch ? go_on(seen, parameters_.travel, AxisFault::homing_travel_exceeded)
+                              : stop_before(Phase::searching);
+      case Phase::searching:
+        return !seen.at_switch ? go_on(seen, parameters_.travel, AxisFault::homing_switch_not_found)
+                               : stop_before(Phase::backing_off);
+      case Phase::backing_off:
+        return seen.at_switch ? go_on(seen, parameters_.travel, AxisFault::homing_travel_exceeded)
+                              : stop_before(Phase::creeping);
+      case Phase::creeping:
+        if (!seen.at_switch) return go_on(seen, parameters_.travel, AxisFault::homing_switch_not_found);
+        if (parameters_.mode == HomingMode::switch_and_index) return enter(Phase::awaiting_index, seen);
+        return stop_at(seen.counts);
+      case Phase::awaiting_index:
+        return seen.index_seen ? stop_at(seen.index_counts)
+                               : go_on(seen, parameters_.index_travel, AxisFault::homing_index_not_found);
+      case Phase::stopping:
+        break;
+    }
+    if (!seen.at_rest) return {};
+    if (next_ != Phase::idle) return enter(next_, seen);
+    phase_ = Phase::idle;
+    return {HomingStep::arrived, Scalar(0), found_, AxisFault::none};
+  }
+
+ private:
+  enum class Phase : std::uint8_t {
+    idle,
+    beginning,
+    leaving,
+    searching,
+    backing_off,
+    creeping,
+    awaiting_index,
+    stopping,  ///< until the reference stands, then next_; idle: arrived
+  };
+
+  constexpr HomingAction<Scalar> enter(Phase phase, const HomingInputs& seen) {
+    phase_ = phase;
+    begin_ = seen.counts;
+    const Scalar fast = parameters_.velocity;
+    const Scalar creep = fast < Scalar(0) ? Scalar(0) - parameters_.creep_velocity : parameters_.creep_velocity;
+    const bool goes_back = phase == Phase::leaving || phase == Phase::backing_off;
+    return {HomingStep::jog,
+            goes_back                   ? Scalar(0) - fast
+            : phase == Phase::searching ? fast
+                                        : creep,
+            0, AxisFault::none};
+  }
+
+  constexpr HomingAction<Scalar> go_on(const HomingInputs& seen, std::int64_t longest, AxisFault otherwise) {
+    const std::int64_t way = seen.counts - begin_;
+    if (way <= longest && way >= -longest) return {};
+    phase_ = Phase::idle;
+    return {HomingStep::failed, Scalar(0), 0, otherwise};
+  }
+
+  constexpr HomingAction<Scalar> stop_before(Phase next) {
+    phase_ = Phase::stopping;
+    next_ = next;
+    return {HomingStep::stop, Scalar(0), 0, AxisFault::none};
+  }
+
+  constexpr HomingAction<Scalar> stop_at(std::int64_t found) {
+    found_ = found;
+    return stop_before(Phase::idle);
+  }
+
+  HomingParameters<Scalar> parameters_{};
+  Phase phase_ = Phase::idle;
+  Phase next_ = Phase::idle;
+  std::int64_t begin_ = 0;
+  std::int64_t found_ = 0;
+};
+
+}  // namespace firmware
