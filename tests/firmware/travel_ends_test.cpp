@@ -23,6 +23,7 @@ class DrivenAxis {
     io.tachometer().reading = {0, true};
     EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
     for (int k = 0; k < firmware::kSelfTestSamples + 1; ++k) axis.step();
+    EXPECT_TRUE(axis.set_position(0));
     EXPECT_TRUE(axis.enable());
     step();
   }
