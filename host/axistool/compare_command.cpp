@@ -24,7 +24,7 @@ namespace {
 
 struct CompareArguments {
   std::string model;
-  std::vector<std::string> records, accepted;
+  std::vector<std::string> files, models, records, accepted;
   std::string json, report, predictions;
   double window_s = host::kWindow_s;
   double fail_above = 0.0;
@@ -64,34 +64,67 @@ void run_tracking(const CompareArguments& arguments, const std::vector<host::Rec
   if (arguments.json != "-") fmt::print("{}", host::tracking_text(errors));
 }
 
-void run(const CompareArguments& arguments) {
+/// What ends in .toml is a model, whatever stands around it.
+void sort_files(CompareArguments& arguments) {
+  arguments.models = {arguments.model};
+  arguments.records.clear();
+  for (const std::string& file : arguments.files)
+    (file.ends_with(".toml") ? arguments.models : arguments.records).push_back(file);
+  if (arguments.records.empty())
+    throw host::Failure(host::ExitCode::usage, "compare needs a record to hold the models against: MODEL… RECORD…");
+  if (arguments.models.size() > 1 && !arguments.predictions.empty())
+    throw host::Failure(host::ExitCode::usage, "--predictions writes those of one model: name one");
+}
+
+host::ComparedModel compared(const std::string& path, const CompareArguments& arguments) {
+  const sim::DriveDescription read = host::read_model(path);
+  const host::GateOptions as_logged{.accepted = arguments.accepted, .as_logged = true};
+  host::Measurements measured = host::MeasurementGate(read, as_logged).read(arguments.records);
+  sim::DriveDescription model = host::with_measured_sensors(read, measured.training());
+  host::RecordSet set = host::compare_on(measured.training_records(), model, arguments.window_s);
+  host::ModelComparison comparison = host::compare_model(model, measured, set, arguments.window_s);
+  return {path, std::move(model), std::move(measured), std::move(set), std::move(comparison)};
+}
+
+/// As of the first model alone; all of them in "models".
+nlohmann::json document_of(const std::vector<host::ComparedModel>& models) {
+  nlohmann::json document = host::comparison_json(models.front().comparison);
+  document["model"] = models.front().path;
+  if (models.size() == 1) return document;
+  for (const host::ComparedModel& one : models) {
+    nlohmann::json part = host::comparison_json(one.comparison);
+    part.erase("format");
+    part["model"] = one.path;
+    document["models"].push_back(std::move(part));
+  }
+  return document;
+}
+
+void run(CompareArguments& arguments) {
+  sort_files(arguments);
   if (!arguments.predictions.empty())
     for (std::size_t r = 0; r < arguments.records.size(); ++r) host::output_target(predictions_path(arguments, r));
-  const sim::DriveDescription read = host::read_model(arguments.model);
-  if (std::vector<host::Record> tracks = records_of_tracking(arguments, read.data); !tracks.empty()) {
+  if (std::vector<host::Record> tracks = records_of_tracking(arguments, host::read_model(arguments.model).data);
+      !tracks.empty()) {
     run_tracking(arguments, tracks);
     return;
   }
-  const host::GateOptions as_logged{.accepted = arguments.accepted, .as_logged = true};
-  const host::Measurements measured = host::MeasurementGate(read, as_logged).read(arguments.records);
-  const std::vector<host::Record>& records = measured.training();
-  const sim::DriveDescription model = host::with_measured_sensors(read, records);
-  const host::RecordSet set = host::compare_on(measured.training_records(), model, arguments.window_s);
-  const host::ModelComparison comparison = host::compare_model(model, measured, set, arguments.window_s);
+  std::vector<host::ComparedModel> models;
+  for (const std::string& path : arguments.models) models.push_back(compared(path, arguments));
 
   if (!arguments.predictions.empty()) {
-    for (std::size_t r = 0; r < records.size(); ++r)
+    for (std::size_t r = 0; r < arguments.records.size(); ++r)
       host::write_file_atomically(predictions_path(arguments, r),
-                                  host::predictions_csv(model, set.records[r].prepared));
+                                  host::predictions_csv(models[0].model, models[0].set.records[r].prepared));
   }
-  if (!arguments.report.empty()) host::comparison_report(model, set, comparison).write(arguments.report);
-  if (!arguments.json.empty()) write_json(host::comparison_json(comparison), arguments.json);
+  if (!arguments.report.empty()) host::comparison_report(models).write(arguments.report);
+  if (!arguments.json.empty()) write_json(document_of(models), arguments.json);
   if (arguments.json != "-") {
-    const host::Terminal terminal = host::terminal_of(stdout);
-    fmt::print("{}", host::comparison_text(model, comparison, terminal));
+    fmt::print("{}", host::comparison_text(models, host::terminal_of(stdout)));
     if (!arguments.report.empty()) fmt::print("\nReport: {}\n", arguments.report);
   }
-  if (arguments.fail_above > 0.0 && comparison.combined > arguments.fail_above) end_with(host::ExitCode::answer_is_no);
+  const auto fails = [&](const host::ComparedModel& one) { return one.comparison.combined > arguments.fail_above; };
+  if (arguments.fail_above > 0.0 && std::ranges::any_of(models, fails)) end_with(host::ExitCode::answer_is_no);
 }
 
 }  // namespace
@@ -100,7 +133,8 @@ void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "how well a model predicts records, and where it fails");
   add_input(*command, "MODEL", arguments->model, "model of the drive (axis-model/1)")->required();
-  add_input(*command, "RECORD", arguments->records, "records of the drive (axis-record/1)")->required();
+  add_input(*command, "RECORD", arguments->files, "records of the drive (axis-record/1), and further models (.toml)")
+      ->required();
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   add_output(*command, "--report", arguments->report, "write an HTML page with plots to this file");
@@ -119,6 +153,7 @@ void add_compare(CLI::App& app) {
       "Examples:\n"
       "  axistool compare x.toml jog.csv\n"
       "  axistool compare x.toml steps.csv jog.csv --report compare.html --json compare.json\n"
+      "  axistool compare x.toml better.toml validate.csv --report both.html   # several models, on top of each other\n"
       "  axistool compare x.toml validate.csv --fail-above 2      # for scripts\n"
       "The model predicts from the recorded command alone. The floor is what sensor noise and the uncertainty of the\n"
       "restart leave; error/floor is about 1 for a perfect model. Log faults (shifted, wrapped, mis-scaled channels)\n"

@@ -8,20 +8,21 @@
 #include "host/axistool/commands.hpp"
 #include "host/demo/demonstration.hpp"
 #include "host/report/terminal.hpp"
+#include "host/shipped_files.hpp"
 
 namespace axistool {
 
 namespace {
 
 struct DemoArguments {
-  std::string output, emps, data = AXIS_SHIPPED_DRIVE_CASE;
+  std::string output = "axis-demo", emps, data = host::shipped_file("drive");
 };
 
 void run(const DemoArguments& arguments) {
   if (!std::filesystem::exists(arguments.data)) {
     throw host::Failure(host::ExitCode::bad_input,
-                        fmt::format("{}: the shipped record is not there; name its folder (tests/data/drive-cases/"
-                                    "none/case-00 of the project) with --data",
+                        fmt::format("{}: the shipped record is not there; name a folder with model.toml, "
+                                    "train-steps.csv, validate.csv and truth.json with --data",
                                     arguments.data));
   }
   host::DemonstrationInput input{.drive_case = arguments.data, .emps_folder = {}};
@@ -54,14 +55,14 @@ void add_demo(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("demo", "identify a shipped record, control the paper's axes, report with plots");
   add_output(*command, "-o,--output", arguments->output, "folder for the report, index.html", FileRole::output_folder)
-      ->required();
+      ->capture_default_str();
   command->add_option("--emps", arguments->emps, "folder with DATA_EMPS.mat and DATA_EMPS_PULSES.mat")
       ->check(CLI::ExistingDirectory);
-  command->add_option("--data", arguments->data, "folder of the shipped record")->capture_default_str();
+  command->add_option("--data", arguments->data, "folder of the record, in place of the shipped one");
   command->footer(
       "Examples:\n"
-      "  axistool demo -o build/demo\n"
-      "  axistool demo -o build/demo --emps ~/Downloads/EMPS\n"
+      "  axistool demo\n"
+      "  axistool demo -o emps --emps ~/Downloads/EMPS\n"
       "Exit code 1: a figure does not agree with its reference.");
   command->callback([arguments] { run(*arguments); });
 }

@@ -9,10 +9,14 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/hil/before_after_report.hpp"
 #include "host/hil/fault_trial.hpp"
+#include "host/hil/scenario_index.hpp"
 #include "host/hil/scenario_report.hpp"
 #include "host/model/model_file.hpp"
 #include "host/record/read_record.hpp"
+#include "host/report/terminal.hpp"
+#include "host/shipped_files.hpp"
 
 namespace axistool {
 
@@ -21,7 +25,7 @@ namespace {
 struct HilArguments {
   std::vector<std::string> scenarios, models;
   std::string output, json;
-  bool fault_page = false;
+  bool fault_page = false, list = false, before_after = false;
 };
 
 std::string stem_of(const std::string& scenario, const std::string& folder) {
@@ -56,41 +60,102 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
 }
 
 /// "x=FILE": what the controller of this axis is told in place of what the scenario says.
-void take_model(host::Scenario& scenario, const std::string& assignment) {
+host::ReplacedModel parse_model(const std::string& assignment) {
   const auto* const axis = std::ranges::find(host::kAxisNames, assignment.substr(0, assignment.find('=')));
   if (axis == host::kAxisNames.end() || assignment.find('=') == std::string::npos)
     throw host::Failure(host::ExitCode::usage, fmt::format("--model {}: write x=FILE or y=FILE", assignment));
-  host::ScenarioAxis& told = scenario.axes[static_cast<std::size_t>(axis - host::kAxisNames.begin())];
-  told.believed = host::read_model(assignment.substr(assignment.find('=') + 1));
-  told.knowledge = host::Knowledge::model;
+  return {static_cast<std::size_t>(axis - host::kAxisNames.begin()), assignment.substr(assignment.find('=') + 1)};
 }
 
-void run(const HilArguments& arguments) {
+host::Scenario with_models(host::Scenario scenario, const std::vector<host::ReplacedModel>& models) {
+  for (const host::ReplacedModel& model : models) {
+    scenario.axes[model.axis].believed = host::read_model(model.path);
+    scenario.axes[model.axis].knowledge = host::Knowledge::model;
+  }
+  return scenario;
+}
+
+void print(const host::Scenario& scenario, const host::ScenarioRun& run) {
+  const host::Terminal terminal = host::terminal_of(stdout);
+  fmt::print("{}", host::scenario_text(scenario, run, terminal));
+  const host::ScenarioOutcome outcome = host::outcome_of(run);
+  fmt::print("{}\n\n", host::coloured(outcome.word, outcome.tone, terminal));
+}
+
+void list_shipped() {
+  for (const std::string& name : host::shipped_scenarios())
+    fmt::print("{:<32} {}\n", name, host::read_scenario(host::scenario_file(name)).name);
+}
+
+/// The scenario as it is, and again with the models of the command line: one page of both.
+void run_before_and_after(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
+  if (arguments.scenarios.size() != 1 || models.empty())
+    throw host::Failure(host::ExitCode::usage, "--before-after takes one scenario, and --model for what is new");
+  const host::Scenario scenario = host::read_scenario(arguments.scenarios.front());
+  const host::Scenario changed = with_models(scenario, models);
+  const host::ScenarioRun before = host::run_scenario(scenario), after = host::run_scenario(changed);
+  if (!arguments.output.empty()) {
+    write_files(changed, after, arguments.output);
+    host::before_after_report(scenario, before, after, models)
+        .write(stem_of(scenario.path, arguments.output) + ".html");
+  }
+  if (!arguments.json.empty())
+    write_json({{"format", "axis-hil-before-after/1"},
+                {"before", host::scenario_json(scenario, before)},
+                {"after", host::scenario_json(changed, after)}},
+               arguments.json);
+  if (arguments.json != "-") {
+    print(changed, after);
+    fmt::print("Before and after: {}\n", host::before_and_after(before, after));
+    if (!arguments.output.empty()) fmt::print("Page: {}.html\n", stem_of(scenario.path, arguments.output));
+  }
+  if (!after.holds()) end_with(host::ExitCode::answer_is_no);
+}
+
+void run_all(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
+  nlohmann::json all = nlohmann::json::array();
+  std::vector<host::IndexLine> lines;
+  for (const std::string& path : arguments.scenarios) {
+    const host::Scenario scenario = with_models(host::read_scenario(path), models);
+    const host::ScenarioRun result = host::run_scenario(scenario);
+    const std::string page = std::filesystem::path(path).stem().string() + ".html";
+    lines.push_back(host::index_line(scenario, result, page));
+    if (!arguments.output.empty()) write_files(scenario, result, arguments.output);
+    all.push_back(host::scenario_json(scenario, result));
+    if (arguments.json != "-") print(scenario, result);
+  }
+  const bool several = lines.size() > 1;
+  const std::string index = (std::filesystem::path(arguments.output) / "index.html").string();
+  if (several && !arguments.output.empty()) host::scenario_index(lines).write(index);
+  if (!arguments.json.empty()) write_json(several ? all : all.front(), arguments.json);
+  if (arguments.json != "-") {
+    if (several) fmt::print("{}", host::terminal_verdict(host::index_verdict(lines), host::terminal_of(stdout)));
+    if (!arguments.output.empty())
+      fmt::print("{}: {}\n", several ? "Pages" : "Page",
+                 several ? index : stem_of(arguments.scenarios.front(), arguments.output) + ".html");
+  }
+  if (!std::ranges::all_of(lines, &host::IndexLine::holds)) end_with(host::ExitCode::answer_is_no);
+}
+
+void run(HilArguments& arguments) {
   if (arguments.fault_page) {
     fmt::print("{}", host::fault_page());
     return;
   }
-  if (arguments.scenarios.empty())
-    throw host::Failure(host::ExitCode::usage, "no scenario is named; the shipped ones are in host/hil/scenarios");
-  if (!arguments.output.empty()) check_names(arguments);
-  nlohmann::json all = nlohmann::json::array();
-  bool holds = true;
-  for (const std::string& path : arguments.scenarios) {
-    host::Scenario scenario = host::read_scenario(path);
-    for (const std::string& model : arguments.models) take_model(scenario, model);
-    const host::ScenarioRun result = host::run_scenario(scenario);
-    holds = holds && result.holds();
-    if (!arguments.output.empty()) write_files(scenario, result, arguments.output);
-    all.push_back(host::scenario_json(scenario, result));
-    if (arguments.json == "-") continue;
-    const host::Terminal terminal = host::terminal_of(stdout);
-    fmt::print("{}", host::scenario_text(scenario, result, terminal));
-    fmt::print("{}\n\n", result.holds() ? host::coloured("holds", host::Tone::good, terminal)
-                                        : host::coloured("FAILS", host::Tone::bad, terminal));
+  if (arguments.list) {
+    list_shipped();
+    return;
   }
-  if (!arguments.json.empty()) write_json(all.size() == 1 ? all.front() : all, arguments.json);
-  if (!arguments.output.empty() && arguments.json != "-") fmt::print("Records and reports: {}\n", arguments.output);
-  if (!holds) end_with(host::ExitCode::answer_is_no);
+  if (arguments.scenarios.empty())
+    throw host::Failure(host::ExitCode::usage, "no scenario is named; axistool hil --list names the shipped ones");
+  for (std::string& name : arguments.scenarios) name = host::scenario_file(name);
+  std::vector<host::ReplacedModel> models;
+  for (const std::string& assignment : arguments.models) models.push_back(parse_model(assignment));
+  if (!arguments.output.empty()) check_names(arguments);
+  if (arguments.before_after)
+    run_before_and_after(arguments, models);
+  else
+    run_all(arguments, models);
 }
 
 }  // namespace
@@ -98,21 +163,25 @@ void run(const HilArguments& arguments) {
 void add_hil(CLI::App& app) {
   auto arguments = std::make_shared<HilArguments>();
   CLI::App* command = app.add_subcommand("hil", "run scenarios: the board's firmware around simulated drives");
-  add_input(*command, "SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1)")->check(CLI::ExistingFile);
+  add_input(*command, "SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1), or names of shipped ones");
   add_output(*command, "-o,--output", arguments->output,
-             "folder for records (x, y), the controllers' models, and an HTML report of each scenario",
+             "folder for records (x, y), the controllers' models, an HTML page of each scenario and one of all",
              FileRole::output_folder);
   add_input(*command, "--model", arguments->models,
             "x=FILE or y=FILE: design this axis's controller from this model instead")
       ->take_all();
   add_json_option(*command, arguments->json);
+  command->add_flag("--list", arguments->list, "the shipped scenarios");
+  command->add_flag("--before-after", arguments->before_after,
+                    "run it as it is too, and write one page of both: before, and after --model");
   command->add_flag("--fault-page", arguments->fault_page,
                     "inject every fault and print the page of faults and reactions (Markdown)");
   command->footer(
       "Examples:\n"
-      "  axistool hil host/hil/scenarios/circle.toml -o build/hil\n"
-      "  axistool hil host/hil/scenarios/*.toml --json -\n"
-      "  axistool hil circle.toml --model x=better-x.toml --model y=better-y.toml\n"
+      "  axistool hil --list\n"
+      "  axistool hil circle -o circle\n"
+      "  axistool hil mine.toml square --json -\n"
+      "  axistool hil hidden-effect --model x=better-x.toml --model y=better-y.toml --before-after -o after\n"
       "Exit code 1: something that a scenario expects does not hold. Equal scenarios give equal records, bit for bit.");
   command->callback([arguments] { run(*arguments); });
 }

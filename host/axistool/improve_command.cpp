@@ -8,8 +8,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
-#include "host/diagnose/diagnosis_report.hpp"
-#include "host/diagnose/verdict.hpp"
+#include "host/diagnose/improvement_report.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/report/terminal.hpp"
 
@@ -21,13 +20,12 @@ void print_doubts(const sim::DriveDescription& model) {
   for (const std::string& warning : host::messages_of(host::doubts_of(model))) fmt::print("warning: {}\n", warning);
 }
 
-void print(const host::Improvement& improvement, const std::string& output) {
+void print(const host::Improvement& improvement, const host::ImprovementFiles& files) {
+  const host::Terminal terminal = host::terminal_of(stdout);
   print_log(improvement.first.log);
-  fmt::print("{}", host::terminal_bars(host::ladder_chart(improvement), host::terminal_of(stdout)));
-  fmt::print("Stopped because {}.\n", improvement.stopped_because);
-  fmt::print("Last verdict: {}. {}\n", host::status_name(improvement.verdict.status), improvement.verdict.explanation);
+  fmt::print("{}\n", host::terminal_bars(host::ladder_chart(improvement), terminal));
   print_doubts(improvement.model);
-  fmt::print("Model written to {}\n", output);
+  fmt::print("{}", host::terminal_verdict(host::improvement_verdict(improvement, files), terminal));
 }
 
 void run_improve(const InsightArguments& arguments) {
@@ -38,13 +36,14 @@ void run_improve(const InsightArguments& arguments) {
     improvement = host::improve(records.model, records.measurements, progress.callback());
   }
   host::write_model(improvement.model, arguments.output);
-  if (!arguments.report.empty()) host::write_improvement_report(improvement, arguments.model, arguments.report);
+  const host::ImprovementFiles files{arguments.model, arguments.output};
+  if (!arguments.report.empty()) host::write_improvement_report(improvement, files, arguments.report);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::to_json(improvement, arguments.output);
     document["warnings"] = host::messages_of(host::doubts_of(improvement.model));
     write_json(document, arguments.json);
   }
-  if (arguments.json != "-") print(improvement, arguments.output);
+  if (arguments.json != "-") print(improvement, files);
 }
 
 void run_add(const InsightArguments& arguments, const std::string& kind) {

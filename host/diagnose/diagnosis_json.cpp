@@ -99,6 +99,7 @@ nlohmann::json to_json(const Improvement& improvement, const std::string& model_
     channels.push_back(row);
   }
   return {{"format", "axis-improvement/1"},
+          {"given", {{"train", improvement.first.given_train}, {"validate", improvement.first.given_validate}}},
           {"ladder", ladder},
           {"channels", channels},
           {"stopped_because", improvement.stopped_because},

@@ -3,29 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <utility>
-
-#include "host/compare/effort_residual.hpp"
+#include "host/diagnose/diagnosis_figures.hpp"
 #include "host/diagnose/verdict.hpp"
-#include "host/report/binned_curve.hpp"
 #include "host/report/report.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
 
 namespace {
-
-struct Units {
-  std::string travel, speed, effort, acceleration;
-};
-
-Units units_of(const sim::DriveDescription& model) {
-  if (model.data.kind == sim::DriveKind::rotary) return {"mm", "rad/s", "Nm", "rad/s²"};
-  return {"m", "m/s", "N", "m/s²"};
-}
 
 Verdict verdict_block(const Diagnosis& diagnosis) {
   const DiagnosisVerdict& verdict = diagnosis.verdict;
@@ -73,160 +58,6 @@ Verdict verdict_block(const Diagnosis& diagnosis) {
   return block;
 }
 
-/// Samples of all validation records, residual effort of one model.
-ResidualSamples residuals_on(const sim::DriveDescription& model, const RecordSet& set) {
-  constexpr std::size_t kEnough = 30'000;  // samples, for curves of a hundred bins
-  std::size_t rows = 0;
-  for (const ComparedRecord& compared : set.records) rows += compared.prepared.record->size();
-  const std::size_t stride = 1 + rows / kEnough;
-  ResidualSamples all;
-  for (const ComparedRecord& compared : set.records) {
-    const ResidualSamples part = residual_samples(model, compared.prepared, stride);
-    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.t_s, part.t_s);
-    append(all.x, part.x);
-    append(all.w, part.w);
-    append(all.acceleration, part.acceleration);
-    append(all.effort, part.effort);
-    append(all.missing, part.missing);
-    append(all.tach_error, part.tach_error);
-  }
-  return all;
-}
-
-ScatterSeries curve(const std::string& name, SeriesRole role, const std::vector<double>& x,
-                    const std::vector<double>& y) {
-  constexpr std::size_t kMostBins = 160, kFewestBins = 8, kSamplesABin = 40, kFewestSamples = 5;
-  const BinnedCurve binned =
-      binned_curve(x, y, std::clamp(x.size() / kSamplesABin, kFewestBins, kMostBins), kFewestSamples);
-  ScatterSeries series;
-  series.name = name;
-  series.role = role;
-  series.style = SeriesStyle::line;
-  series.x = binned.x;
-  series.y = binned.mean;
-  return series;
-}
-
-ScatterPlot before_and_after(const std::string& title, const std::string& caption, const Axis& x, const Axis& y,
-                             const std::vector<double>& before_x, const std::vector<double>& before_y,
-                             const std::vector<double>& after_x, const std::vector<double>& after_y) {
-  ScatterPlot plot;
-  plot.title = title;
-  plot.caption = caption;
-  plot.x = x;
-  plot.y = y;
-  plot.series = {curve("before", SeriesRole::before, before_x, before_y),
-                 curve("after", SeriesRole::after, after_x, after_y)};
-  return plot;
-}
-
-/// Position modulo the period of the effect that was found, or one motor turn.
-std::vector<double> folded(const std::vector<double>& x, double period) {
-  std::vector<double> result;
-  for (const double value : x) result.push_back(value - period * std::floor(value / period));
-  return result;
-}
-
-/// The model's period along the travel, else that of the likeliest candidate that has one, else a turn of the shaft.
-std::optional<double> period_of(const sim::DriveDescription& model, const Diagnosis& diagnosis) {
-  for (const sim::EffectEntry& entry : model.effects)
-    if (entry.has("period")) return entry.at("period");
-  for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (const sim::EffectEntry& last = candidate.model.effects.back(); last.has("period")) return last.at("period");
-  constexpr double kTurn_rad = 6.283185307179586;
-  if (model.data.kind == sim::DriveKind::linear) return {};
-  return kTurn_rad * model.data.lead;
-}
-
-void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {
-  const Units units = units_of(best);
-  const ResidualSamples before = residuals_on(diagnosis.base, diagnosis.validation);
-  const ResidualSamples after = residuals_on(best, diagnosis.validation);
-  report.section(
-      "Where it shows",
-      "What the motor gave beyond what the model explains, on validation data, averaged over each coordinate. A "
-      "flat line at zero is what a complete model leaves.");
-  const auto add = [&report](ScatterPlot plot) {
-    if (std::ranges::any_of(plot.series, [](const ScatterSeries& series) { return series.x.size() < 2; })) return;
-    report.add(std::move(plot));
-  };
-  const Axis effort{"unexplained effort", units.effort};
-  add(before_and_after("Against speed", "", {"speed", units.speed}, effort, before.w, before.missing, after.w,
-                       after.missing));
-  if (const std::optional<double> period = period_of(best, diagnosis))
-    add(before_and_after(fmt::format("Against position within one period of {:.4g} {}", *period, units.travel), "",
-                         {"position in the period", units.travel}, effort, folded(before.x, *period), before.missing,
-                         folded(after.x, *period), after.missing));
-  add(before_and_after("Along the travel", "", {"position", units.travel}, effort, before.x, before.missing, after.x,
-                       after.missing));
-  add(before_and_after("Against acceleration", "", {"acceleration", units.acceleration}, effort, before.acceleration,
-                       before.missing, after.acceleration, after.missing));
-  add(before_and_after("Over time", "", {"time since start", "s"}, effort, before.t_s, before.missing, after.t_s,
-                       after.missing));
-  if (!before.tach_error.empty())
-    add(before_and_after("Tachometer against speed", "Tachometer less the speed from the encoder.",
-                         {"speed", units.speed}, {"tachometer error", units.speed}, before.w, before.tach_error,
-                         after.w, after.tach_error));
-}
-
-void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {
-  const Units units = units_of(best);
-  const ComparedRecord& compared = diagnosis.validation.records.front();
-  const Record& record = *compared.prepared.record;
-  Prediction before, after;
-  predict(sim::Drive(diagnosis.base), compared.prepared, before);
-  predict(sim::Drive(best), compared.prepared, after);
-  // Between windows, and before the first, nothing is predicted.
-  const auto shown = [&](const std::vector<double>& predicted, const std::vector<double>* less) {
-    std::vector<double> values(record.size(), std::nan(""));
-    for (const Window& window : compared.prepared.windows)
-      for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k)
-        values[k] = less == nullptr ? predicted[k] : (*less)[k] - predicted[k];
-    return values;
-  };
-  TimePlot plot;
-  plot.title = "Measured and predicted";
-  plot.caption = fmt::format("Prediction from the command alone, restarted every {:g} s from the smoothed measurement.",
-                             diagnosis.window_s);
-  plot.t_s = record.t_s;
-  if (record.has_speed()) {
-    plot.panels.push_back({"speed",
-                           units.speed,
-                           {{"measured", SeriesRole::measured, record.w},
-                            {"predicted", SeriesRole::predicted, shown(after.w, nullptr)}}});
-    plot.panels.push_back({"speed error",
-                           units.speed,
-                           {{"before", SeriesRole::before, shown(before.w, &record.w)},
-                            {"after", SeriesRole::after, shown(after.w, &record.w)}}});
-  }
-  if (record.has_position())
-    plot.panels.push_back({"position error",
-                           units.travel,
-                           {{"before", SeriesRole::before, shown(before.x, &record.x)},
-                            {"after", SeriesRole::after, shown(after.x, &record.x)}}});
-  report.section("Measured and predicted", fmt::format("Validation record {}.", record.path));
-  report.add(plot);
-}
-
-BarChart candidate_chart(const Diagnosis& diagnosis) {
-  BarChart chart;
-  chart.title = "Candidates on validation data";
-  chart.caption = "Error over floor with the effect added and all parameters fitted again; shorter is better.";
-  chart.series = {{"without", SeriesRole::before}, {"with", SeriesRole::after}};
-  chart.reference = {"floor", 1.0};
-  constexpr std::size_t kShown = 10;
-  for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
-    const JudgedCandidate& candidate = diagnosis.candidates[k];
-    chart.rows.push_back({fmt::format("{}", fmt::join(candidate.kinds, " + ")),
-                          {candidate.before, candidate.after},
-                          fmt::format("{:.0f} % probable", 100.0 * candidate.probability)});
-  }
-  return chart;
-}
-
 void add_errors(Report& report, const Diagnosis& diagnosis) {
   BarChart chart;
   chart.title = "Error over floor";
@@ -244,19 +75,6 @@ void add_errors(Report& report, const Diagnosis& diagnosis) {
 
 }  // namespace
 
-BarChart ladder_chart(const Improvement& improvement) {
-  BarChart chart;
-  chart.title = "The ladder";
-  chart.caption = "Error over floor, rung by rung.";
-  chart.series = {{"train", SeriesRole::train}, {"validation", SeriesRole::validate}};
-  chart.reference = {"floor", 1.0};
-  for (const Rung& rung : improvement.ladder)
-    chart.rows.push_back({rung.added.empty() ? "base re-fitted" : fmt::format("+ {}", fmt::join(rung.added, " + ")),
-                          {rung.train, rung.validate},
-                          ""});
-  return chart;
-}
-
 void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name, const std::string& path) {
   Report report("Diagnosis of " + model_name, "Which physical effect is missing from the model");
   report.verdict(verdict_block(diagnosis));
@@ -265,17 +83,6 @@ void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model
   if (!diagnosis.candidates.empty()) report.add(candidate_chart(diagnosis));
   add_residuals(report, diagnosis, diagnosis.best);
   add_traces(report, diagnosis, diagnosis.best);
-  report.write(path);
-}
-
-void write_improvement_report(const Improvement& improvement, const std::string& model_name, const std::string& path) {
-  Report report("Improvement of " + model_name, "Effects added until nothing more earns its place");
-  report.verdict(verdict_block(improvement.first));
-  report.section("The error falls", "Stopped because " + improvement.stopped_because + ".");
-  report.add(ladder_chart(improvement));
-  if (!improvement.first.candidates.empty()) report.add(candidate_chart(improvement.first));
-  add_residuals(report, improvement.first, improvement.model);
-  add_traces(report, improvement.first, improvement.model);
   report.write(path);
 }
 

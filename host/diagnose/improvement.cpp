@@ -61,7 +61,7 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
     } else {
       result.stopped_because = status == Status::unexplained ? "no effect of the catalogue explains what is left"
                                : status == Status::insufficient_data
-                                   ? "the axis did not move enough"
+                                   ? "these motions cannot show what else may be there"
                                    : "nothing in the catalogue lowers the validation error beyond chance";
     }
     const double left = result.ladder.back().validate;

@@ -34,7 +34,7 @@ CheckedExpectation check_state(const Expectation& expected, const ScenarioRun& r
   const auto last =
       static_cast<firmware::SupervisorState>(static_cast<int>(run.records[expected.axis].extra[0].values.back()));
   return {fmt::format("axis {}: {} at the end", kAxisNames[expected.axis], firmware::state_name(*expected.state)),
-          firmware::state_name(last), last == *expected.state};
+          firmware::state_name(last), last == *expected.state, false};
 }
 
 const std::vector<double>& signal_of(const Expectation& expected, std::size_t axis, const ScenarioRun& run) {
@@ -80,7 +80,7 @@ CheckedExpectation check_signal(const Expectation& expected, const ScenarioRun& 
 
 CheckedExpectation merge(const CheckedExpectation& a, const CheckedExpectation& b) {
   if (a.text.empty()) return b;
-  return {a.text + "; " + b.text, a.found + "; " + b.found, a.holds && b.holds};
+  return {a.text + "; " + b.text, a.found + "; " + b.found, a.holds && b.holds, a.aim};
 }
 
 }  // namespace
@@ -90,6 +90,7 @@ CheckedExpectation check_expectation(const Expectation& expected, const Scenario
   if (expected.fault) all = merge(all, check_fault(expected, run));
   if (expected.state) all = merge(all, check_state(expected, run));
   if (!expected.signal.empty()) all = merge(all, check_signal(expected, run));
+  all.aim = expected.aim;
   return all;
 }
 

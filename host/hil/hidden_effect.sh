@@ -35,6 +35,10 @@ done
 
 echo "4. The same circle with the compensation that was found"
 "$axistool" hil "$scenarios/hidden-effect.toml" --model "x=$folder/better-x.toml" --model "y=$folder/better-y.toml" \
-  -o "$folder/after" --json "$folder/after.json" > "$folder/after.txt"
-after=$(contour "$folder/after.json")
-echo "   contour error $before um before, $after um after"
+  --before-after -o "$folder/after" --json "$folder/after.json" > "$folder/after.txt"
+sed -n 's/^Before and after: /   /p' "$folder/after.txt"
+page=$folder/after/hidden-effect.html
+echo "   before and after on one page: $page"
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && command -v xdg-open > /dev/null; then
+  xdg-open "$page" > /dev/null 2>&1 &
+fi

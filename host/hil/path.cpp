@@ -58,6 +58,11 @@ Path Path::circle(double radius_mm, int turns) {
   return path;
 }
 
+std::optional<PathSegment> Path::whole_circle() const {
+  if (segments_.size() != 1 || std::abs(segments_.front().angle) < 2.0 * kPi) return {};
+  return segments_.front();
+}
+
 Path Path::rounded_square(double side_mm, double corner_radius_mm) {
   const double r = corner_radius_mm, half = side_mm / 2.0, straight = half - r;
   if (!(r > 0.0) || !(straight > 0.0)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "firmware/core/count_position.hpp"
@@ -38,6 +39,8 @@ class Path {
   double length() const;
   PlanePoint at(double distance) const;
   double distance_to(const PlanePoint& point) const;
+  /// The circle that the path is; nothing for other paths.
+  std::optional<PathSegment> whole_circle() const;
 
  private:
   std::vector<PathSegment> segments_;

@@ -57,6 +57,7 @@ struct ScenarioFault {
 struct Expectation {
   std::size_t line = 0;
   std::size_t axis = 0;
+  bool aim = false;  ///< what is wished for: a run that misses it does not fail
   std::optional<firmware::AxisFault> fault;
   std::optional<double> by_s;
   std::optional<firmware::SupervisorState> state;

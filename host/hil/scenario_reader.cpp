@@ -201,6 +201,7 @@ class ScenarioReader {
     expected.to_s = from.has("to_s") ? time(from, "to_s") : scenario_.duration_s;
     expected.at_most = from.optional_number("at_most");
     expected.at_least = from.optional_number("at_least");
+    expected.aim = from.toggle("aim", false);
     expected.at_most_share = from.optional_number("at_most_share");
     if (expected.at_most_share) expected.of_axis = from.choice("of_axis", kAxes);
     from.refuse_rest();

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host/hil/circle_plot.hpp"
 #include "host/hil/identification_figures.hpp"
 #include "host/identify/friction_law.hpp"
 #include "host/report/text_format.hpp"
@@ -23,7 +25,10 @@ Table expectation_table(const ScenarioRun& run) {
   table.title = "Expectations";
   table.headings = {"what must hold", "found", ""};
   for (const CheckedExpectation& checked : run.expectations)
-    table.rows.push_back({checked.text, checked.found, checked.holds ? "holds" : "FAILS"});
+    table.rows.push_back({checked.aim ? "aim: " + checked.text : checked.text, checked.found,
+                          checked.holds ? "holds"
+                          : checked.aim ? "missed"
+                                        : "FAILS"});
   return table;
 }
 
@@ -86,6 +91,7 @@ TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
 ScatterPlot plane_plot(const ScenarioRun& run) {
   ScatterPlot plot;
   plot.title = "The path in the plane";
+  plot.equal_scales = true;
   plot.x = {"x", "mm"};
   plot.y = {"y", "mm"};
   const auto every = [](const std::vector<double>& values) {
@@ -133,10 +139,10 @@ ScatterPlot friction_plot(const Scenario& scenario, const ScenarioRun& run, std:
 
 Verdict verdict_of(const Scenario& scenario, const ScenarioRun& run) {
   Verdict verdict;
-  verdict.tone = run.holds() ? Tone::good : Tone::bad;
-  verdict.label = run.expectations.empty() ? "ran" : (run.holds() ? "holds" : "fails");
-  const auto held = std::ranges::count_if(run.expectations, &CheckedExpectation::holds);
-  verdict.headline = fmt::format("{} of {} expectations hold.", held, run.expectations.size());
+  const ScenarioOutcome outcome = outcome_of(run);
+  verdict.tone = outcome.tone;
+  verdict.label = outcome.word;
+  verdict.headline = summary_of(run);
   if (!scenario.about.empty()) verdict.sentences.push_back(scenario.about);
   for (const StopEvent& stop : run.stops)
     verdict.sentences.push_back(fmt::format("Axis {} stopped at {:.3f} s: {}.", kAxisNames[stop.axis], stop.at_s,
@@ -159,6 +165,27 @@ Facts figures(const Scenario& scenario, const ScenarioRun& run) {
 
 }  // namespace
 
+ScenarioOutcome outcome_of(const ScenarioRun& run) {
+  if (!run.holds()) return {Tone::bad, "FAILS"};
+  if (run.misses_aim()) return {Tone::attention, "misses its aim"};
+  return {Tone::good, run.expectations.empty() ? "ran" : "holds"};
+}
+
+std::string summary_of(const ScenarioRun& run) {
+  std::string text;
+  if (!run.contour_um.empty())
+    text = fmt::format("contour error up to {} µm", format_value(largest(run.contour_um)));
+  else
+    text = fmt::format("tracking error up to {} µm",
+                       format_value(std::max(largest(run.tracking_um[0]), largest(run.tracking_um[1]))));
+  for (const StopEvent& stop : run.stops)
+    text += fmt::format(", axis {} stopped by {}", kAxisNames[stop.axis], firmware::fault_info(stop.fault).name);
+  const auto held = std::ranges::count_if(run.expectations, &CheckedExpectation::holds);
+  if (!run.expectations.empty()) text += fmt::format("; {} of {} expectations hold", held, run.expectations.size());
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 Report scenario_report(const Scenario& scenario, const ScenarioRun& run) {
   Report report(scenario.name, scenario.path);
   report.verdict(verdict_of(scenario, run));
@@ -168,6 +195,7 @@ Report scenario_report(const Scenario& scenario, const ScenarioRun& run) {
   report.add(figures(scenario, run));
   report.add(error_plot(run));
   if (!run.contour_um.empty()) report.add(plane_plot(run));
+  if (auto circle = circle_plot(scenario, {{"encoders", SeriesRole::before, &run}})) report.add(std::move(*circle));
   report.section("Each axis");
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     report.add(motion_plot(run, i));
@@ -189,7 +217,8 @@ nlohmann::json scenario_json(const Scenario& scenario, const ScenarioRun& run) {
   if (!run.contour_um.empty()) document["contour_um"] = largest(run.contour_um);
   document["expectations"] = nlohmann::json::array();
   for (const CheckedExpectation& checked : run.expectations)
-    document["expectations"].push_back({{"what", checked.text}, {"found", checked.found}, {"holds", checked.holds}});
+    document["expectations"].push_back(
+        {{"what", checked.text}, {"found", checked.found}, {"holds", checked.holds}, {"aim", checked.aim}});
   document["stops"] = nlohmann::json::array();
   const auto optional = [](const std::optional<double>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json();

@@ -10,6 +10,16 @@
 
 namespace host {
 
+/// Good, an aim missed, or something that must hold does not.
+struct ScenarioOutcome {
+  Tone tone = Tone::neutral;
+  std::string word;
+};
+ScenarioOutcome outcome_of(const ScenarioRun& run);
+
+/// "Contour error up to 12.6 µm; 3 of 4 expectations hold".
+std::string summary_of(const ScenarioRun& run);
+
 Report scenario_report(const Scenario& scenario, const ScenarioRun& run);
 /// "axis-hil/1".
 nlohmann::json scenario_json(const Scenario& scenario, const ScenarioRun& run);

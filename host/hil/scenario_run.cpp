@@ -64,6 +64,7 @@ class ScenarioDriver {
     run.table_um = table_um_;
     run.disturbance_V = disturbance_V_;
     run.contour_um = contour_um_;
+    run.path_points = path_points_;
     run.stops = stops_;
     run.simulated_s = scenario_.duration_s;
     return run;
@@ -130,6 +131,7 @@ class ScenarioDriver {
 
   void begin_path(const ScenarioMove& move) {
     path_ = &*move.path;
+    path_points_.clear();
     path_increments_ =
         follow_path(*path_, move.path_limits, period_s_,
                     {scenario_.axes[0].drive.data.encoder_resolution, scenario_.axes[1].drive.data.encoder_resolution});
@@ -168,11 +170,12 @@ class ScenarioDriver {
     contour_um_.push_back(is_on_path() ? contour_error_um() : 0.0);
   }
 
-  double contour_error_um() const {
+  double contour_error_um() {
     std::array<double, hal::kAxisCount> mm{};
     for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       mm[i] = recorder_.record(i).x.back() + scenario_.axes[i].drive.data.encoder_resolution / 2.0 - path_origin_mm_[i];
-    return 1e3 * path_->distance_to({mm[0], mm[1]});
+    path_points_.push_back({mm[0], mm[1]});
+    return 1e3 * path_->distance_to(path_points_.back());
   }
 
   void begin_stop(std::size_t axis, std::uint64_t k) {
@@ -209,6 +212,7 @@ class ScenarioDriver {
   std::array<std::vector<double>, hal::kAxisCount> table_um_;
   std::array<std::vector<double>, hal::kAxisCount> disturbance_V_;
   std::vector<double> contour_um_;
+  std::vector<PlanePoint> path_points_;
   std::optional<std::uint64_t> injected_at_;
   std::array<firmware::AxisFault, hal::kAxisCount> last_fault_{};
   std::array<std::optional<std::size_t>, hal::kAxisCount> stopping_;
@@ -220,7 +224,13 @@ class ScenarioDriver {
 
 std::uint64_t commissioning_seed(const Scenario& scenario, std::size_t axis) { return 100 * scenario.seed + 10 * axis; }
 
-bool ScenarioRun::holds() const { return std::ranges::all_of(expectations, &CheckedExpectation::holds); }
+bool ScenarioRun::holds() const {
+  return std::ranges::all_of(expectations, [](const CheckedExpectation& one) { return one.holds || one.aim; });
+}
+
+bool ScenarioRun::misses_aim() const {
+  return std::ranges::any_of(expectations, [](const CheckedExpectation& one) { return one.aim && !one.holds; });
+}
 
 ScenarioRun run_scenario(const Scenario& scenario) {
   std::array<sim::DriveDescription, hal::kAxisCount> believed;

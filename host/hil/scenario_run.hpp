@@ -25,6 +25,7 @@ struct CheckedExpectation {
   std::string text;
   std::string found;
   bool holds = false;
+  bool aim = false;  ///< missed, it does not make the run fail
 };
 
 struct ScenarioRun {
@@ -33,14 +34,16 @@ struct ScenarioRun {
   std::array<std::vector<double>, hal::kAxisCount> table_um;       ///< where the table is wanted less where it is
   std::array<std::vector<double>, hal::kAxisCount> disturbance_V;  ///< the Kalman filter's
   std::vector<double> contour_um;                                  ///< empty without a path
-  std::array<sim::DriveDescription, hal::kAxisCount> believed;     ///< what the controllers were designed from
+  std::vector<PlanePoint> path_points;  ///< encoders, from where the last path began, while it was followed
+  std::array<sim::DriveDescription, hal::kAxisCount> believed;  ///< what the controllers were designed from
   std::array<double, hal::kAxisCount> high_water_um{};
   std::vector<StopEvent> stops;
   std::vector<CheckedExpectation> expectations;
   double simulated_s = 0.0;
   double wall_s = 0.0;
 
-  bool holds() const;
+  bool holds() const;       ///< all that must
+  bool misses_aim() const;  ///< and something that was wished for does not
   double times_real_time() const { return wall_s > 0.0 ? simulated_s / wall_s : 0.0; }
 };
 

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 namespace host {
 
 namespace {
 
-struct Bin {
-  double x_sum = 0.0;
-  std::vector<double> values;
-};
+using Sample = std::pair<double, double>;  // coordinate, value
 
 double quantile(std::vector<double>& values, double fraction) {
   const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
@@ -20,36 +17,61 @@ double quantile(std::vector<double>& values, double fraction) {
   return values[static_cast<std::size_t>(rank)];
 }
 
+void append_bin(BinnedCurve& curve, std::span<const Sample> bin) {
+  const auto samples = static_cast<double>(bin.size());
+  double x_sum = 0.0, y_sum = 0.0;
+  std::vector<double> values;
+  for (const auto& [x, y] : bin) {
+    x_sum += x;
+    y_sum += y;
+    values.push_back(y);
+  }
+  curve.x.push_back(x_sum / samples);
+  curve.mean.push_back(y_sum / samples);
+  curve.lower.push_back(quantile(values, 0.1));
+  curve.upper.push_back(quantile(values, 0.9));
+  curve.samples.push_back(samples);
+}
+
+void append_gap(BinnedCurve& curve, double x) {
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+  curve.x.push_back(x);
+  for (auto* values : {&curve.mean, &curve.lower, &curve.upper}) values->push_back(kNothing);
+  curve.samples.push_back(0.0);
+}
+
+void append_stretch(BinnedCurve& curve, std::span<const Sample> stretch, double width, std::size_t min_samples) {
+  while (!stretch.empty()) {
+    std::size_t end = 1;
+    while (end < stretch.size() && (end < min_samples || stretch[end].first - stretch.front().first < width)) ++end;
+    if (stretch.size() - end < min_samples) end = stretch.size();
+    append_bin(curve, stretch.first(end));
+    stretch = stretch.subspan(end);
+  }
+}
+
 }  // namespace
 
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
                          std::size_t min_samples) {
-  const std::size_t count = std::min(x.size(), y.size());
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -lowest;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
-    lowest = std::min(lowest, x[k]);
-    highest = std::max(highest, x[k]);
-  }
+  constexpr double kGap = 5.0;  // widths of a bin
+  std::vector<Sample> samples;
+  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k)
+    if (std::isfinite(x[k]) && std::isfinite(y[k])) samples.emplace_back(x[k], y[k]);
   BinnedCurve curve;
-  if (!(lowest <= highest) || bins == 0) return curve;
-
-  std::vector<Bin> filled(bins);
-  const double bins_per_unit = highest > lowest ? static_cast<double>(bins) / (highest - lowest) : 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
-    Bin& bin = filled[std::min(bins - 1, static_cast<std::size_t>((x[k] - lowest) * bins_per_unit))];
-    bin.x_sum += x[k];
-    bin.values.push_back(y[k]);
-  }
-  for (Bin& bin : filled) {
-    if (bin.values.empty() || bin.values.size() < min_samples) continue;
-    const auto samples = static_cast<double>(bin.values.size());
-    curve.x.push_back(bin.x_sum / samples);
-    curve.mean.push_back(std::accumulate(bin.values.begin(), bin.values.end(), 0.0) / samples);
-    curve.lower.push_back(quantile(bin.values, 0.1));
-    curve.upper.push_back(quantile(bin.values, 0.9));
+  if (samples.empty() || bins == 0) return curve;
+  std::ranges::stable_sort(samples, {}, &Sample::first);
+  const double width = (samples.back().first - samples.front().first) / static_cast<double>(bins);
+  double last_x = samples.front().first;
+  for (std::span<const Sample> rest = samples; !rest.empty();) {
+    std::size_t end = 1;
+    while (end < rest.size() && rest[end].first - rest[end - 1].first <= kGap * width) ++end;
+    if (end >= min_samples) {
+      if (!curve.x.empty()) append_gap(curve, (last_x + rest.front().first) / 2.0);
+      append_stretch(curve, rest.first(end), width, std::max<std::size_t>(min_samples, 1));
+      last_x = rest[end - 1].first;
+    }
+    rest = rest.subspan(end);
   }
   return curve;
 }

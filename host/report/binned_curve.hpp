@@ -7,16 +7,19 @@
 
 namespace host {
 
-/// One entry per bin that holds enough samples, in ascending x.
+/// One entry per bin, in ascending x. Where a stretch of the coordinate holds no samples, one entry of NaN stands
+/// between the bins on both sides: a line drawn through them breaks there.
 struct BinnedCurve {
-  std::vector<double> x;      ///< mean coordinate of the bin's samples
-  std::vector<double> mean;   ///< mean value
-  std::vector<double> lower;  ///< 10 % quantile of the values
-  std::vector<double> upper;  ///< 90 % quantile of the values
+  std::vector<double> x;        ///< mean coordinate of the bin's samples
+  std::vector<double> mean;     ///< mean value
+  std::vector<double> lower;    ///< 10 % quantile of the values
+  std::vector<double> upper;    ///< 90 % quantile of the values
+  std::vector<double> samples;  ///< in the bin
 };
 
-/// Bins of equal width between the smallest and the largest finite x. Samples with a NaN are left out, bins with fewer
-/// than `min_samples` too.
+/// Bins are as wide as the range of x over `bins`, or wider until they hold `min_samples`; what is left at the end of a
+/// stretch joins the bin before it. Five widths without a sample end a stretch; one with fewer than `min_samples` in
+/// all is left out. Samples with a NaN are left out.
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
                          std::size_t min_samples = 10);
 

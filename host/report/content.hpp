@@ -62,6 +62,8 @@ struct ScatterSeries {
   std::vector<double> y;
   std::vector<double> lower;
   std::vector<double> upper;
+  std::vector<double> samples =
+      {};  ///< behind each point: drawn as a strip at the foot of the plot, told at the cursor
 };
 
 struct Axis {
@@ -77,6 +79,23 @@ struct ScatterPlot {
   Axis y;
   std::vector<ScatterSeries> series;
   bool logarithmic_y = false;  ///< values <= 0 leave gaps
+  bool equal_scales = false;   ///< a unit of x is as long as a unit of y: for paths in a plane
+};
+
+/// One turn about the circle, or several: where the path is, and how far outside the circle (negative: inside).
+struct PolarTrace {
+  std::string name;
+  SeriesRole role = SeriesRole::measured;
+  std::vector<double> angle_rad;
+  std::vector<double> deviation_um;
+};
+
+/// Deviations from a circle, drawn about it and magnified, as in ISO 230-4.
+struct PolarPlot {
+  std::string title;
+  std::string caption;
+  double radius_mm = 1.0;
+  std::vector<PolarTrace> traces;
 };
 
 struct BarRow {
@@ -106,6 +125,7 @@ struct Table {
   std::string caption;
   std::vector<std::string> headings;
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> links = {};  ///< files that the rows' first cells lead to; may be empty
 };
 
 /// Pairs of name and value, set compactly.

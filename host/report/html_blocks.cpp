@@ -116,11 +116,14 @@ std::string table(const Table& table) {
     head += fmt::format("<th scope=\"col\"{}>{}</th>", alignment[column], escape_html(table.headings[column]));
   }
   std::string body;
-  for (const std::vector<std::string>& row : table.rows) {
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const std::vector<std::string>& row = table.rows[k];
     body += "<tr>";
     for (std::size_t column = 0; column < row.size(); ++column) {
-      body +=
-          fmt::format("<td{}>{}</td>", column < alignment.size() ? alignment[column] : "", escape_html(row[column]));
+      std::string cell = escape_html(row[column]);
+      if (column == 0 && k < table.links.size())
+        cell = fmt::format("<a href=\"{}\">{}</a>", escape_html(table.links[k]), cell);
+      body += fmt::format("<td{}>{}</td>", column < alignment.size() ? alignment[column] : "", cell);
     }
     body += "</tr>\n";
   }

@@ -112,6 +112,8 @@ nlohmann::json scatter_plot_json(const ScatterPlot& plot) {
       one["lower"] = short_numbers(picked(series.lower, rows));
       one["upper"] = short_numbers(picked(series.upper, rows));
     }
+    if (series.samples.size() == series.y.size() && !series.y.empty())
+      one["samples"] = short_numbers(picked(series.samples, rows));
     all.push_back(std::move(one));
   }
   return {{"kind", "scatter"},
@@ -120,6 +122,7 @@ nlohmann::json scatter_plot_json(const ScatterPlot& plot) {
           {"unit", plot.y.unit},
           {"xUnit", plot.x.unit},
           {"logarithmic", plot.logarithmic_y},
+          {"equal", plot.equal_scales},
           {"series", all}};
 }
 

@@ -11,6 +11,7 @@
 #include "host/report/assets.hpp"
 #include "host/report/html_blocks.hpp"
 #include "host/report/plot_json.hpp"
+#include "host/report/polar_svg.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {
@@ -45,6 +46,7 @@ struct BlockWriter {
     body += html::plot_frame(plots.size(), html::FrameWidth::half, plot.title, plot.caption, "");
     plots.push_back(scatter_plot_json(plot));
   }
+  void operator()(const PolarPlot& plot) { body += html::polar_plot(plot); }
   void operator()(const BarChart& chart) { body += html::bar_chart(chart); }
   void operator()(const Table& table) { body += html::table(table); }
   void operator()(const Facts& facts) { body += html::facts(facts); }
@@ -85,6 +87,14 @@ void Report::add(ScatterPlot plot) {
     require(without_bars || (series.lower.size() == series.y.size() && series.upper.size() == series.y.size()),
             plot.title, fmt::format("series \"{}\" has error bars of another length", series.name));
   }
+  blocks_.emplace_back(std::move(plot));
+}
+
+void Report::add(PolarPlot plot) {
+  for (const PolarTrace& trace : plot.traces)
+    require(trace.angle_rad.size() == trace.deviation_um.size(), plot.title,
+            fmt::format("trace \"{}\" has {} angles and {} deviations", trace.name, trace.angle_rad.size(),
+                        trace.deviation_um.size()));
   blocks_.emplace_back(std::move(plot));
 }
 

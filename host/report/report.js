@@ -9,6 +9,13 @@
   const HIDDEN_STRETCHES = 200;
   const VALUE_AXIS_WIDTH = 62; // pixels; the same in all panels of a stack, so that their time axes line up
   const charts = [];
+  const recolour = []; // called when the page turns from light to dark, or is printed
+
+  // "var(--name)" as the colour that the page's scheme gives it now.
+  function resolved(colour) {
+    const name = /^var\((--[a-z-]+)\)$/.exec(colour);
+    return name ? getComputedStyle(document.documentElement).getPropertyValue(name[1]).trim() : colour;
+  }
 
   function unpack(packed) {
     const bytes = atob(packed.base64);
@@ -91,21 +98,48 @@
       addElement(content, "b", "", panel.label);
       data.series.forEach(function (series, index) {
         const item = addElement(content, "span");
-        addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : "")).style.background =
-          panel.series[index].colour;
+        addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : "")
+          ).style.background = panel.series[index].colour;
         addElement(item, "span", "", series.label);
         const chosen = data.x !== undefined && series.y !== undefined && series.y !== null && !isNaN(series.y);
-        addElement(item, "span", "reading", chosen ? formatted(series.y) : "");
+        const own = panel.series[index];
+        const samples = chosen && own.samples ? own.samples[own.x.indexOf(data.x)] : undefined;
+        const reading = chosen ? formatted(series.y) + (samples ? " (" + samples + " samples)" : "") : "";
+        addElement(item, "span", "reading", reading);
       });
       if (data.x !== undefined) addElement(content, "span", "at", "at " + formatted(data.x) + (xUnit ? " " + xUnit : ""));
       return content;
     };
   }
 
+  function coloursOf(panel) {
+    return {
+      colors: panel.series.map((series) => resolved(series.colour)),
+      gridLineColor: resolved("var(--grid)"),
+      axisLineColor: resolved("var(--axis)"),
+    };
+  }
+
+  function keep(chart, panel) {
+    charts.push(chart);
+    recolour.push(() => chart.updateOptions(coloursOf(panel)));
+    return chart;
+  }
+
+  // What a reader who does not see the plot is told: what is drawn, and between which values.
+  function spoken(label, xLabel, series) {
+    const ranges = series.map(function (one) {
+      const values = one.values.filter((value) => value !== null && isFinite(value));
+      const text = values.reduce((range, value) => [Math.min(range[0], value), Math.max(range[1], value)], [Infinity, -Infinity]);
+      return one.name + (values.length ? " from " + formatted(text[0]) + " to " + formatted(text[1]) : " without values");
+    });
+    return label + " over " + xLabel + ": " + ranges.join("; ");
+  }
+
   function commonOptions(plot, panel, elements, isLowest, xUnit) {
     return {
       labels: [plot.xLabel, ...panel.series.map((series) => series.name)],
-      colors: panel.series.map((series) => series.colour),
+      ...coloursOf(panel),
       labelsDiv: elements.legend,
       legend: "always",
       legendFormatter: legendOf(plot, panel, xUnit),
@@ -116,8 +150,6 @@
       },
       axisLabelFontSize: 12,
       xLabelHeight: 20,
-      gridLineColor: "#dfe4ea",
-      axisLineColor: "#9aa5b1",
       highlightCircleSize: 3,
       animatedZooms: false,
     };
@@ -131,15 +163,29 @@
     return elements;
   }
 
+  // How many samples stand behind each point, as grey columns at the foot; the tallest is the fullest bin of the plot.
+  function drawSampleStrip(context, area, chart, series) {
+    const most = Math.max(...series.flatMap((one) => one.samples || [0]));
+    if (!(most > 0)) return;
+    context.fillStyle = resolved("var(--grid)");
+    for (const one of series)
+      (one.samples || []).forEach(function (count, k) {
+        if (!count) return;
+        const height = Math.max(2, 0.1 * area.h * Math.sqrt(count / most));
+        context.fillRect(chart.toDomXCoord(one.x[k]) - 2, area.y + area.h - height, 4, height);
+      });
+  }
+
   // Behind the traces: the shaded spans, and a line at zero.
-  function background(spans) {
+  function background(spans, series) {
     return function (context, area, chart) {
+      drawSampleStrip(context, area, chart, series || []);
       const zero = chart.toDomYCoord(0);
       if (zero > area.y && zero < area.y + area.h) {
-        context.fillStyle = "#b8c1cc";
+        context.fillStyle = resolved("var(--axis)");
         context.fillRect(area.x, Math.round(zero), area.w, 1);
       }
-      context.fillStyle = "rgba(230, 159, 0, 0.18)";
+      context.fillStyle = resolved("var(--shade)");
       for (const span of spans) {
         const left = chart.toDomXCoord(span[0]);
         const right = chart.toDomXCoord(span[1]);
@@ -151,7 +197,11 @@
   function drawPanel(frame, plot, panel, isLowest) {
     const x = unpack(panel.x);
     const columns = panel.series.map((series) => unpack(series.y));
-    const elements = panelElements(frame, panel.label + " over time", isLowest ? "lowest" : "");
+    const elements = panelElements(
+      frame,
+      spoken(panel.label, "time", panel.series.map((series, index) => ({ name: series.name, values: columns[index] }))),
+      isLowest ? "lowest" : ""
+    );
     let drawnWindow = null;
     let timer = 0;
     const options = commonOptions(plot, panel, elements, isLowest, "s");
@@ -168,9 +218,7 @@
         chart.updateOptions({ file: drawnRows(x, columns, window) });
       }, 30);
     };
-    const chart = new Dygraph(elements.canvas, drawnRows(x, columns, null), options);
-    charts.push(chart);
-    return chart;
+    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null), options), panel);
   }
 
   function drawTimePlot(frame, plot) {
@@ -247,17 +295,39 @@
 
   function drawScatterPlot(frame, plot) {
     const withBars = plot.series.some((series) => series.lower);
-    const elements = panelElements(frame, plot.label + " over " + plot.xLabel, "scatter");
+    const elements = panelElements(
+      frame,
+      spoken(plot.label, plot.xLabel, plot.series.map((series) => ({ name: series.name, values: series.y }))),
+      plot.equal ? "plane" : "scatter"
+    );
     const options = commonOptions(plot, plot, elements, true, plot.xUnit);
     options.customBars = withBars;
     options.connectSeparatedPoints = true;
     options.logscale = plot.logarithmic;
-    if (!plot.logarithmic) options.underlayCallback = background([]);
+    if (!plot.logarithmic) options.underlayCallback = background([], plot.series);
     options.series = {};
     plot.series.forEach((series) => (options.series[series.name] = seriesOptions(series)));
     options.xRangePad = 12;
-    options.yRangePad = plot.logarithmic ? null : 12;
-    charts.push(new Dygraph(elements.canvas, mergedRows(plot, withBars), options));
+    options.yRangePad = plot.logarithmic || plot.equal ? null : 12;
+    const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot);
+    if (plot.equal) equaliseScales(chart, plot);
+  }
+
+  // A unit of x as long as a unit of y, the drawing in the middle.
+  function equaliseScales(chart, plot) {
+    const range = function (name) {
+      const values = plot.series.flatMap((series) => series[name]).filter((value) => value !== null);
+      return values.reduce((r, value) => [Math.min(r[0], value), Math.max(r[1], value)], [Infinity, -Infinity]);
+    };
+    const x = range("x");
+    const y = range("y");
+    const apply = function () {
+      const area = chart.getArea();
+      const unit = 1.08 * Math.max((x[1] - x[0]) / area.w, (y[1] - y[0]) / area.h);
+      const about = (r, pixels) => [(r[0] + r[1] - unit * pixels) / 2, (r[0] + r[1] + unit * pixels) / 2];
+      chart.updateOptions({ dateWindow: about(x, area.w), valueRange: about(y, area.h) });
+    };
+    new ResizeObserver(apply).observe(chart.graphDiv.parentElement); // after dygraphs' own, which was there first
   }
 
   JSON.parse(document.getElementById("plots").textContent).forEach(function (plot, index) {
@@ -265,5 +335,18 @@
     if (plot.kind === "time") drawTimePlot(frame, plot);
     else drawScatterPlot(frame, plot);
   });
+  for (const query of ["(prefers-color-scheme: dark)", "print"])
+    matchMedia(query).addEventListener("change", () => recolour.forEach((again) => again()));
+  // What report.css prints by: the width of the contents, and how much smaller they fit a page in landscape.
+  function notePrintSize() {
+    const main = document.querySelector("main");
+    const style = getComputedStyle(main);
+    const width = main.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+    const root = document.documentElement.style;
+    root.setProperty("--screen-width", width + "px");
+    root.setProperty("--print-zoom", Math.min(1, 960 / width));
+  }
+  notePrintSize();
+  window.addEventListener("resize", () => matchMedia("print").matches || notePrintSize());
   window.axisCharts = charts;
 })();

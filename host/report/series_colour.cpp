@@ -5,24 +5,24 @@ namespace host {
 const char* series_colour(SeriesRole role) {
   switch (role) {
     case SeriesRole::measured:
-      return "#4a5560";
+      return "var(--measured)";
     case SeriesRole::predicted:
     case SeriesRole::before:
-      return "#d55e00";
+      return "var(--predicted)";
     case SeriesRole::residual:
-      return "#aa3377";
+      return "var(--residual)";
     case SeriesRole::after:
     case SeriesRole::model:
     case SeriesRole::validate:
-      return "#0072b2";
+      return "var(--model)";
     case SeriesRole::train:
-      return "#56b4e9";
+      return "var(--train)";
     case SeriesRole::floor:
-      return "#9aa5b1";
+      return "var(--floor)";
     case SeriesRole::other:
       break;
   }
-  return "#009e73";
+  return "var(--other)";
 }
 
 }  // namespace host

@@ -49,6 +49,17 @@ std::string script_safe_json(const nlohmann::json& value) {
   return safe;
 }
 
+std::string shell_word(std::string_view text) {
+  const bool plain = !text.empty() && std::ranges::all_of(text, [](char letter) {
+    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') ||
+           std::string_view("-_./,:=+@%").find(letter) != std::string_view::npos;
+  });
+  if (plain) return std::string(text);
+  std::string quoted = "'";
+  for (const char letter : text) quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return quoted + "'";
+}
+
 std::string format_value(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";

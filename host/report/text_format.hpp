@@ -14,6 +14,9 @@ std::string escape_html(std::string_view text);
 /// Text that is not UTF-8 is shown with replacement characters.
 std::string script_safe_json(const nlohmann::json& value);
 
+/// One word of a command line that a reader may paste into a shell: quoted where it holds anything unusual.
+std::string shell_word(std::string_view text);
+
 /// A number for people: `digits` significant digits, no exponent between 0.001 and 1 000 000; "–" when not finite.
 std::string format_value(double value, int digits = 3);
 

@@ -119,6 +119,34 @@ TEST_F(Compare, WritesAReportAndLeavesTheModelAlone) {
   EXPECT_THAT(text.str(), HasSubstr("What is missing, as torque"));
 }
 
+/// A second model used to be taken for a record.
+TEST_F(Compare, SeveralModelsStandBesideEachOther) {
+  std::string heavy = host::read_file(model);
+  const std::size_t at = heavy.find("J_kg_m2 = ") + 10;
+  heavy.replace(at, heavy.find('\n', at) - at, "0.02");
+  const std::string other = folder.write("heavy.toml", heavy), report = folder.path("r.html"),
+                    json = folder.path("c.json");
+  const ProgramRun run =
+      run_axistool("compare " + model + " " + other + " " + record + " --report " + report + " --json " + json);
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("model.toml predicts best"));
+  const auto both = nlohmann::json::parse(host::read_file(json));
+  ASSERT_EQ(both["models"].size(), 2u);
+  EXPECT_LT(both["models"][0]["combined"], both["models"][1]["combined"]);
+  const auto alone = nlohmann::json::parse(run_axistool("compare " + other + " " + record + " --json -", "").output);
+  EXPECT_EQ(both["models"][1]["channels"], alone["channels"]) << "company changes no figure";
+  EXPECT_EQ(both["combined"], both["models"][0]["combined"]);
+  EXPECT_THAT(host::read_file(report), HasSubstr("\"name\":\"heavy.toml\""));
+}
+
+TEST_F(Compare, TheNextCommandNamesTheFilesThatWereGiven) {
+  const std::string copy = folder.path("my drive.toml");
+  fs::copy_file(model, copy);
+  const ProgramRun run = run_axistool("compare '" + copy + "' " + record);
+  EXPECT_THAT(run.output, testing::AnyOf(HasSubstr("axistool diagnose '" + copy + "' --train " + record),
+                                         HasSubstr("as well as any could")));
+}
+
 TEST_F(Compare, WorksWithoutATachometer) {
   std::string text = "# format: axis-record/1\n# sample_period_s: 0.001\n";
   for (const std::string& line : lines_of(record)) text += line.substr(0, line.rfind(',')) + "\n";

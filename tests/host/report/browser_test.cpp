@@ -114,15 +114,15 @@ class Browser : public testing::Test {
   }
 
   /// The page as it stands after `visitor_script`; what the browser logged is in `log_`.
-  std::string visit(std::string html) {
-    html.replace(html.rfind("</body>"), 7, visitor_script);
+  std::string visit(std::string html, const char* script = visitor_script, const char* settings = "") {
+    html.replace(html.rfind("</body>"), 7, script);
     std::ofstream(folder_ / "report.html", std::ios::binary) << html;
     const std::string command = fmt::format(
         "timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
         "--disable-background-networking --disable-component-update --disable-sync --disable-dev-shm-usage "
-        "--window-size=1280,1000 --enable-logging=stderr --user-data-dir={0}/profile --virtual-time-budget=20000 "
+        "--window-size=1280,1000 --enable-logging=stderr --user-data-dir={0}/profile --virtual-time-budget=20000 {1} "
         "--dump-dom file://{0}/report.html >{0}/dom.html 2>{0}/log.txt </dev/null",
-        folder_.string());
+        folder_.string(), settings);
     EXPECT_EQ(std::system(command.c_str()), 0) << content_of(folder_ / "log.txt");
     log_ = content_of(folder_ / "log.txt");
     return content_of(folder_ / "dom.html");
@@ -192,6 +192,41 @@ TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
   EXPECT_EQ(seen["charts"], 9);
   // The last curve lies on top: of a tachometer that no effect concerns, both are the same.
   for (const nlohmann::json& chart : seen["pixels"]) EXPECT_GT(chart.back().get<int>(), 30) << seen["pixels"];
+}
+
+/// What a reader of a dark screen sees, and one who sees nothing hears; a unit of x as long as a unit of y.
+constexpr const char* dark_script = R"(
+<pre id="seen"></pre><script>
+  const light = (colour) => colour.match(/[\d.]+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0) / 765;
+  const plane = axisCharts[1], area = plane.getArea(), x = plane.xAxisRange(), y = plane.yAxisRange();
+  document.getElementById("seen").textContent = encodeURIComponent(JSON.stringify({
+    ground: light(getComputedStyle(document.body).backgroundColor),
+    figure: light(getComputedStyle(document.querySelector("figure")).backgroundColor),
+    ink: light(getComputedStyle(document.body).color),
+    measured: axisCharts[0].getColors()[0],
+    spoken: document.querySelector("[role=img]").getAttribute("aria-label"),
+    scales: [(x[1] - x[0]) / area.w, (y[1] - y[0]) / area.h],
+  }));
+</script></body>)";
+
+TEST_F(Browser, ADarkScreenGetsADarkPageThatTellsWhatItShows) {
+  Report report("Dark");
+  report.add(TimePlot{"", "", {0.0, 1.0}, {{"speed", "rad/s", {{"measured", SeriesRole::measured, {-2.0, 3.0}}}}}, {}});
+  ScatterPlot plane{"",
+                    "",
+                    {"x", "mm"},
+                    {"y", "mm"},
+                    {{"path", SeriesRole::model, SeriesStyle::points, {0, 70, 35}, {0, 0, 35}, {}, {}}}};
+  plane.equal_scales = true;
+  report.add(plane);
+  const nlohmann::json seen = seen_in(visit(report.html(), dark_script, "--blink-settings=preferredColorScheme=0"));
+  ASSERT_TRUE(seen.is_object()) << log_;
+  EXPECT_LT(seen["ground"].get<double>(), 0.2);
+  EXPECT_LT(seen["figure"].get<double>(), 0.2);
+  EXPECT_GT(seen["ink"].get<double>(), 0.8);
+  EXPECT_EQ(seen["measured"], "#b4c0cc") << "lines are lighter too";
+  EXPECT_EQ(seen["spoken"], "speed [rad/s] over time: measured from -2 to 3");
+  EXPECT_NEAR(seen["scales"][0].get<double>(), seen["scales"][1].get<double>(), 1e-9);
 }
 
 TEST_F(Browser, AnEmptyReportIsStillAPage) {

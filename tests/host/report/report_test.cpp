@@ -63,8 +63,8 @@ TEST(Report, PlotsCarryUnitsSamplesAndErrorBars) {
 
 TEST(Report, BarsAreScaledToTheLongestAndMissingOnesSaySo) {
   const std::string html = sample::report().html();
-  EXPECT_THAT(html, HasSubstr("width:100.00%;background:#0072b2"));
-  EXPECT_THAT(html, HasSubstr("width:80.00%;background:#56b4e9"));
+  EXPECT_THAT(html, HasSubstr("width:100.00%;background:var(--model)"));
+  EXPECT_THAT(html, HasSubstr("width:80.00%;background:var(--train)"));
   EXPECT_THAT(html, HasSubstr("<i class=\"reference\" style=\"left:10.00%\">"));
   EXPECT_THAT(html, HasSubstr("title=\"validation\">–</span>"));
 }

@@ -74,11 +74,43 @@ TEST(BinnedCurve, MeanAndMiddleEightyPercentOfEachBin) {
   EXPECT_EQ(curve.upper, (std::vector<double>{9.0, 7.0}));
 }
 
-TEST(BinnedCurve, LeavesOutThinBinsAndSurvivesNothing) {
+TEST(BinnedCurve, LeavesOutThinStretchesAndSurvivesNothing) {
   const std::vector<double> x = {0.0, 0.1, 10.0};
   const std::vector<double> y = {1.0, 3.0, 5.0};
   EXPECT_EQ(binned_curve(x, y, 10, 2).mean, (std::vector<double>{2.0}));
   EXPECT_TRUE(binned_curve({}, {}, 10).x.empty());
+}
+
+TEST(BinnedCurve, AGapStaysAGapAndThinBinsJoinTheirNeighbours) {
+  // Dense from 0 to 9, thin from 9 to 12, nothing until 90, dense from 90 to 100: bins of one unit.
+  std::vector<double> x, y;
+  for (int k = 0; k < 90; ++k) x.push_back(0.1 * k);
+  for (const double thin : {9.5, 10.5, 11.5}) x.push_back(thin);
+  for (int k = 0; k <= 100; ++k) x.push_back(90.0 + 0.1 * k);
+  for (const double at : x) y.push_back(at > 9.2 && at < 12.0 ? 100.0 : 1.0);
+  const BinnedCurve curve = binned_curve(x, y, 100, 10);
+  std::size_t gaps = 0;
+  double samples = 0.0;
+  for (std::size_t k = 0; k < curve.x.size(); ++k) {
+    samples += curve.samples[k];
+    if (std::isnan(curve.mean[k])) {
+      ++gaps;
+      EXPECT_NEAR(curve.x[k], 50.75, 1e-9) << "between the stretches";
+      EXPECT_TRUE(std::isnan(curve.lower[k]) && std::isnan(curve.upper[k]));
+      continue;
+    }
+    EXPECT_GE(curve.samples[k], 10.0);
+    EXPECT_LT(curve.mean[k], 30.0) << "three outliers are no bin of their own";
+  }
+  EXPECT_EQ(gaps, 1u);
+  EXPECT_EQ(samples, static_cast<double>(x.size())) << "none is lost";
+}
+
+TEST(ShellWord, QuotesWhatAShellWouldTakeApart) {
+  EXPECT_EQ(shell_word("run-1/x_2.csv"), "run-1/x_2.csv");
+  EXPECT_EQ(shell_word("my drive.toml"), "'my drive.toml'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word(""), "''");
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+// Figures of a comparison, of one model or of several on top of each other.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "host/compare/model_comparison.hpp"
+#include "host/report/report.hpp"
+
+namespace host {
+
+/// A model, the records as it reads them, and how it fares on them.
+struct ComparedModel {
+  std::string path;             ///< as the user named it
+  sim::DriveDescription model;  ///< with_measured_sensors
+  Measurements measured;
+  RecordSet set;  ///< refers to `measured`
+  ModelComparison comparison;
+
+  std::string name() const;  ///< of the file
+};
+
+/// Roles that differ in colour, one a model; further models take their turn again.
+SeriesRole role_of_model(std::size_t index);
+
+/// Measured and predicted rows of one record, and the errors.
+TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record);
+
+/// What the motor gave beyond each model, against speed, position, acceleration and time; of one model by direction.
+/// The tachometer's error likewise, where there is one.
+void add_missing_effort(std::span<const ComparedModel> models, Report& report);
+
+}  // namespace host

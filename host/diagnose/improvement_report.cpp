@@ -1,0 +1,105 @@
+#include "host/diagnose/improvement_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "host/diagnose/diagnosis_figures.hpp"
+#include "host/diagnose/verdict.hpp"
+#include "host/report/text_format.hpp"
+
+namespace host {
+
+namespace {
+
+std::string join_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
+  return text;
+}
+
+/// "18.6 → 0.78 × floor"; empty where nothing could be judged.
+std::string fall(const Improvement& improvement) {
+  const double before = improvement.first.given_validate, after = improvement.ladder.back().validate;
+  if (!(before > 0.0) || !std::isfinite(before) || !std::isfinite(after)) return "";
+  return fmt::format("{} → {} × floor", format_value(before), format_value(after));
+}
+
+std::string headline(const Improvement& improvement) {
+  std::vector<std::string> added;
+  for (const Rung& rung : improvement.ladder) added.insert(added.end(), rung.added.begin(), rung.added.end());
+  if (!added.empty()) return fmt::format("{} by adding {}", fall(improvement), join_words(added));
+  switch (improvement.verdict.status) {
+    case Status::adequate:
+      return "Nothing had to be added: the model explains these measurements";
+    case Status::parameters:
+      return fmt::format("{} by fitting the parameters again: {} were off", fall(improvement),
+                         join_words(improvement.verdict.parameters));
+    case Status::insufficient_data:
+      return "Nothing was added: these motions show too little";
+    case Status::missing:
+    case Status::ambiguous:
+    case Status::unexplained:
+      break;
+  }
+  return "Nothing was added: no effect of the catalogue explains what is left";
+}
+
+std::string parameters_file(const std::string& model) {
+  const std::filesystem::path path(model);
+  return (path.parent_path() / (path.stem().string() + "-params.toml")).string();
+}
+
+}  // namespace
+
+Verdict improvement_verdict(const Improvement& improvement, const ImprovementFiles& files) {
+  Verdict verdict;
+  const bool added = improvement.ladder.size() > 1;
+  const bool fits = improvement.ladder.back().validate <= kExplained;
+  const Status last = improvement.verdict.status;
+  const bool done = last == Status::adequate || last == Status::parameters || fits;
+  verdict.tone = done ? Tone::good : added ? Tone::attention : last == Status::unexplained ? Tone::bad : Tone::neutral;
+  verdict.label = added ? "improved" : std::string(status_name(last));
+  verdict.headline = headline(improvement);
+  for (const LogFault& fault : improvement.first.log)
+    verdict.sentences.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
+  verdict.sentences.push_back(
+      fmt::format("Stopped because {}. {}", improvement.stopped_because, improvement.verdict.explanation));
+  if (!done) verdict.sentences.push_back("To go on: " + improvement.verdict.next_experiment);
+  verdict.sentences.push_back(
+      fmt::format("The model is in {}. Next, the parameters of the board from it:", files.output));
+  verdict.command =
+      fmt::format("axistool design {} -o {}", shell_word(files.output), shell_word(parameters_file(files.output)));
+  return verdict;
+}
+
+BarChart ladder_chart(const Improvement& improvement) {
+  BarChart chart;
+  chart.title = "The ladder";
+  chart.caption = "Error over floor, rung by rung. 1 is what sensor noise and the restart leave to a perfect model.";
+  chart.series = {{"train", SeriesRole::train}, {"validation", SeriesRole::validate}};
+  chart.reference = {"floor", 1.0};
+  chart.rows = {{"as given", {improvement.first.given_train, improvement.first.given_validate}, ""}};
+  for (const Rung& rung : improvement.ladder)
+    chart.rows.push_back({rung.added.empty() ? "base re-fitted" : fmt::format("+ {}", fmt::join(rung.added, " + ")),
+                          {rung.train, rung.validate},
+                          ""});
+  return chart;
+}
+
+void write_improvement_report(const Improvement& improvement, const ImprovementFiles& files, const std::string& path) {
+  Report report("Improvement of " + std::filesystem::path(files.model).filename().string(),
+                fmt::format("{} → {}", files.model, files.output));
+  report.verdict(improvement_verdict(improvement, files));
+  report.section("The error falls");
+  report.add(ladder_chart(improvement));
+  if (!improvement.first.candidates.empty()) report.add(candidate_chart(improvement.first));
+  add_residuals(report, improvement.first, improvement.model);
+  add_traces(report, improvement.first, improvement.model);
+  report.write(path);
+}
+
+}  // namespace host

@@ -1,0 +1,20 @@
+// Files that come with the program: scenarios, the demonstration's record.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace host {
+
+/// `name` below the folder that belongs to this program: AXISTOOL_SHARE where it is set, else ../share/axistool beside
+/// the program's own folder. Need not exist.
+std::string shipped_file(const std::string& name);
+
+/// Names, without .toml, of the scenarios that are shipped, sorted.
+std::vector<std::string> shipped_scenarios();
+
+/// A file of this name, else the shipped scenario that is called so, with or without .toml. Throws Failure(usage)
+/// naming those that there are.
+std::string scenario_file(const std::string& name);
+
+}  // namespace host

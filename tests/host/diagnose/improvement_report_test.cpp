@@ -1,0 +1,53 @@
+// What an improvement says of itself: figures, file and the next command, in place of what was missing before it.
+#include "host/diagnose/improvement_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace host {
+namespace {
+
+using testing::HasSubstr;
+
+Improvement by_adding(const std::vector<std::string>& kinds, double left) {
+  Improvement improvement;
+  improvement.first.given_train = 10.0;
+  improvement.first.given_validate = 18.6;
+  improvement.ladder.push_back({{}, 9.0, 17.0, {}});
+  if (!kinds.empty()) improvement.ladder.push_back({kinds, left, left, {}});
+  improvement.stopped_because = "nothing is left";
+  improvement.verdict.status = Status::adequate;
+  return improvement;
+}
+
+TEST(ImprovementVerdict, TellsTheFallAndWhatWasAdded) {
+  const Verdict verdict = improvement_verdict(by_adding({"cogging"}, 0.78), {"x.toml", "out dir/x2.toml"});
+  EXPECT_EQ(verdict.headline, "18.6 → 0.780 × floor by adding cogging");
+  EXPECT_EQ(verdict.tone, Tone::good);
+  EXPECT_EQ(verdict.command, "axistool design 'out dir/x2.toml' -o 'out dir/x2-params.toml'");
+  EXPECT_THAT(verdict.sentences, testing::Contains(HasSubstr("out dir/x2.toml")));
+}
+
+TEST(ImprovementVerdict, WhatStaysFarAboveTheFloorIsNotCalledGood) {
+  Improvement improvement = by_adding({"cogging"}, 5.0);
+  improvement.verdict.status = Status::unexplained;
+  EXPECT_EQ(improvement_verdict(improvement, {"x.toml", "y.toml"}).tone, Tone::attention);
+}
+
+TEST(ImprovementVerdict, NothingAddedIsSaid) {
+  EXPECT_THAT(improvement_verdict(by_adding({}, 0.0), {"x.toml", "y.toml"}).headline,
+              HasSubstr("Nothing had to be added"));
+  Improvement unexplained = by_adding({}, 0.0);
+  unexplained.verdict.status = Status::unexplained;
+  EXPECT_EQ(improvement_verdict(unexplained, {"x.toml", "y.toml"}).tone, Tone::bad);
+}
+
+TEST(LadderChart, BeginsWithTheModelAsGiven) {
+  const BarChart chart = ladder_chart(by_adding({"cogging"}, 0.78));
+  ASSERT_EQ(chart.rows.size(), 3u);
+  EXPECT_EQ(chart.rows[0].label, "as given");
+  EXPECT_EQ(chart.rows[0].values, (std::vector<double>{10.0, 18.6}));
+}
+
+}  // namespace
+}  // namespace host
