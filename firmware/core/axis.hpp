@@ -117,10 +117,12 @@ class Axis {
     if (velocity == 0) return;
     const std::int64_t here = preview_.position().counts;
     const std::int64_t room = velocity > 0 ? max_counts - here : here - min_counts;
-    if (room > farthest_stop_) return;  // nearly always
     const std::int32_t delay = generator_.jog_profile().run_out_samples() + kPreviewSamples;
     if (room <= stopping_.counts(velocity, delay)) generator_.jog(0);
   }
+
+  /// Counts, from the velocity limit: where no end of travel is as near, keep_inside() has nothing to do.
+  constexpr std::int64_t farthest_stop() const { return farthest_stop_; }
 
   /// Slows down to standstill within the limits.
   constexpr void stop() { generator_.stop(); }
@@ -148,20 +150,20 @@ class Axis {
     return generator_.at_rest() && preview_.position() == preview_.leading() && !backlash_.is_crossing();
   }
 
-  /// Reads the encoder for the step that follows, so that several axes are read at one instant; a step without it
-  /// reads its encoder itself.
-  constexpr void latch() {
-    encoder_ = hal_.encoder().read();
-    is_latched_ = true;
+  /// One control period with the axis's own reference. The encoder's reading comes from outside where several axes are
+  /// read at one instant.
+  constexpr const AxisTelemetry<Scalar>& step(const hal::EncoderReading& encoder) {
+    return follow(encoder, telemetry_.enabled ? generator_.next() : 0);
   }
-
-  /// One control period with the axis's own reference.
-  constexpr const AxisTelemetry<Scalar>& step() { return follow(telemetry_.enabled ? generator_.next() : 0); }
+  constexpr const AxisTelemetry<Scalar>& step() { return step(hal_.encoder().read()); }
 
   /// The same with an increment on top, for kPreviewSamples from now, that comes from an interpolator which coordinates
   /// several axes; |increment| < 2^61.
+  constexpr const AxisTelemetry<Scalar>& step_with(Increment increment, const hal::EncoderReading& encoder) {
+    return follow(encoder, telemetry_.enabled ? increment + generator_.next() : 0);
+  }
   constexpr const AxisTelemetry<Scalar>& step_with(Increment increment) {
-    return follow(telemetry_.enabled ? increment + generator_.next() : 0);
+    return step_with(increment, hal_.encoder().read());
   }
 
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return telemetry_; }
@@ -183,9 +185,8 @@ class Axis {
  private:
   using Traits = ScalarTraits<Scalar>;
 
-  constexpr const AxisTelemetry<Scalar>& follow(Increment increment) {
-    if (!is_configured_) return telemetry_;
-    if (!measure()) return telemetry_;
+  constexpr const AxisTelemetry<Scalar>& follow(const hal::EncoderReading& encoder, Increment increment) {
+    if (!measure(encoder)) return telemetry_;
     if (!telemetry_.enabled) {
       hold_reference_here();
       put_out_zero();
@@ -196,18 +197,10 @@ class Axis {
     return telemetry_;
   }
 
-  constexpr bool measure() {
-    if (!is_latched_) latch();
-    is_latched_ = false;
-    const hal::EncoderReading encoder = encoder_;
+  constexpr bool measure(const hal::EncoderReading& encoder) {
+    if (!is_synchronised_ && !is_configured_) return false;
     if (!encoder.valid) return fail(AxisFault::encoder_invalid);
-    if (!is_synchronised_) {
-      telemetry_.estimate = estimator_.at_rest(counter_.extend(encoder.counts));
-      preview_.reset(CountPosition::at(counter_.counts()));
-      model_input_V_ = Scalar(0);
-      backlash_.reset();
-      is_synchronised_ = true;
-    }
+    if (!is_synchronised_) synchronise(encoder);
     telemetry_.encoder_travel = counter_.advance(encoder.counts);
     telemetry_.encoder_counts = counter_.counts();
     if (parameters_.tachometer_fitted) {
@@ -220,6 +213,14 @@ class Axis {
       estimator_.update(telemetry_.estimate, model_input_V_, telemetry_.encoder_counts);
     }
     return true;
+  }
+
+  [[gnu::noinline]] constexpr void synchronise(const hal::EncoderReading& encoder) {
+    telemetry_.estimate = estimator_.at_rest(counter_.extend(encoder.counts));
+    preview_.reset(CountPosition::at(counter_.counts()));
+    model_input_V_ = Scalar(0);
+    backlash_.reset();
+    is_synchronised_ = true;
   }
 
   constexpr void control() {
@@ -239,7 +240,7 @@ class Axis {
                        feedforward_V + telemetry_.friction_V;
     if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
     telemetry_.control_V = control_V;
-    if (Traits::is_nan(control_V)) {
+    if (!dac_.is_within(control_V) && Traits::is_nan(control_V)) {
       fail(Traits::is_nan(estimate.offset + estimate.velocity + estimate.disturbance)
                ? AxisFault::state_not_a_number
                : AxisFault::control_signal_not_a_number);
@@ -292,8 +293,6 @@ class Axis {
   ReferenceFeedforward<Scalar> feedforward_{};
   DacConversion<Scalar> dac_;
   CountExtender counter_;
-  hal::EncoderReading encoder_{};
-  bool is_latched_ = false;
   Scalar model_input_V_{};
   AxisTelemetry<Scalar> telemetry_{};
   bool is_configured_ = false;

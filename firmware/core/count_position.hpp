@@ -39,6 +39,24 @@ struct CountPosition {
   }
 };
 
+/// Whole counts from `first` to `last`, by one comparison.
+class CountRange {
+ public:
+  constexpr CountRange() = default;  ///< all counts
+  constexpr CountRange(std::int64_t first, std::int64_t last)
+      : first_(static_cast<std::uint64_t>(first)), span_(static_cast<std::uint64_t>(last) - first_) {
+    if (last < first) {  // empty: one count that no axis reaches
+      first_ = std::uint64_t{1} << 63;
+      span_ = 0;
+    }
+  }
+  constexpr bool contains(std::int64_t counts) const { return static_cast<std::uint64_t>(counts) - first_ <= span_; }
+
+ private:
+  std::uint64_t first_ = 0;
+  std::uint64_t span_ = std::numeric_limits<std::uint64_t>::max();
+};
+
 /// Distance from a whole count to a position, counts, as a scalar. Beyond 2^31 counts it stays at that limit.
 template <typename Scalar>
 constexpr Scalar counts_from(std::int64_t origin, const CountPosition& position) {

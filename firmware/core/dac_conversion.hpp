@@ -30,11 +30,15 @@ class DacConversion {
 
   /// `volts` is a number; the caller has excluded not-a-number.
   constexpr DacWord<Scalar> operator()(Scalar volts) const {
-    if (volts > limit_V_) return {max_code_, limit_V_, true};
-    if (volts < Scalar(0) - limit_V_) return {-max_code_, Scalar(0) - limit_V_, true};
+    if (!is_within(volts))
+      return volts > Scalar(0) ? DacWord<Scalar>{max_code_, limit_V_, true}
+                               : DacWord<Scalar>{-max_code_, Scalar(0) - limit_V_, true};
     const std::int32_t code = Traits::nearest_product(volts, codes_per_volt_);
     return {code, Traits::times(code, resolution_V_), false};
   }
+
+  /// False for what is no number, too.
+  constexpr bool is_within(Scalar volts) const { return Traits::magnitude(volts) <= limit_V_; }
 
   constexpr std::int32_t max_code() const { return max_code_; }
 

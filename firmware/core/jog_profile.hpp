@@ -28,6 +28,7 @@ class JogProfile {
     velocity_ = target_ = velocity;
     level();
     settling_ = true;
+    is_steady_ = false;
   }
 
   /// Standing, from now on.
@@ -35,15 +36,18 @@ class JogProfile {
     velocity_ = target_ = 0;
     level();
     settling_ = false;
+    is_steady_ = false;
   }
 
   /// Limited to the velocity limit; 0 stops.
   constexpr void set_target(Increment velocity) {
     target_ =
         velocity > velocity_limit_ ? velocity_limit_ : (velocity < -velocity_limit_ ? -velocity_limit_ : velocity);
+    is_steady_ = false;
   }
 
   constexpr Increment next() {
+    if (is_steady_) return velocity_;  // nearly always
     const Increment missing = target_ - velocity_;
     if (settling_) {  // the last sample's acceleration was off the lattice: pass through zero before the next step
       settling_ = false;
@@ -52,6 +56,7 @@ class JogProfile {
     const Increment amount = missing < 0 ? -missing : missing;
     if (step_ == 0 && amount < acceleration_step_) {
       settling_ = amount != 0;
+      is_steady_ = !settling_;
       velocity_ = target_;
       return velocity_;
     }
@@ -106,6 +111,7 @@ class JogProfile {
   Increment velocity_ = 0;
   Increment target_ = 0;
   bool settling_ = false;
+  bool is_steady_ = false;  ///< at the target, with nothing left to do
 };
 
 }  // namespace firmware

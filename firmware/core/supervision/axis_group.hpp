@@ -30,15 +30,16 @@ class AxisGroup {
   /// One control period; each axis follows its own reference.
   constexpr void step(const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, outputs_on());
-    latch();
-    for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer)); });
+    const Readings readings = read_encoders();
+    for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer), readings[i]); });
   }
 
   /// One control period; an interpolator leads all axes.
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, outputs_on());
-    latch();
-    for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer)); });
+    const Readings readings = read_encoders();
+    for (std::size_t i = 0; i < kAxes; ++i)
+      settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer), readings[i]); });
   }
 
   /// Enables all axes of the mask or none of them; returns the first that refuses, or kAxes. An axis that is enabled
@@ -62,9 +63,12 @@ class AxisGroup {
   template <typename HalOf, std::size_t... index>
   constexpr AxisGroup(HalOf hal_of, std::index_sequence<index...>) : axes_{BoardAxis(hal_of(index))...} {}
 
+  using Readings = std::array<hal::EncoderReading, kAxes>;
   /// All positions belong to one instant, whatever the steps then take.
-  constexpr void latch() {
-    for (BoardAxis& axis : axes_) axis.latch();
+  constexpr Readings read_encoders() {
+    Readings readings;
+    for (std::size_t i = 0; i < kAxes; ++i) readings[i] = axes_[i].read_encoder();
+    return readings;
   }
 
   /// A fault of one axis stops the other; its own and the board's faults come first.

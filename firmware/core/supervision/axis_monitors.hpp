@@ -44,7 +44,9 @@ class AxisMonitors {
     if (magnitude(difference) > limits_.encoder_jump)
       return which_jumped(encoder_velocity_, measured, seen.reference_velocity);
     disagreement_ = disagreement_ + (difference - disagreement_) * kFilterShare;
-    if (magnitude(disagreement_) > limits_.disagreement_floor + limits_.disagreement_share * magnitude(measured))
+    const Scalar parted = magnitude(disagreement_);
+    if (parted > limits_.disagreement_floor &&
+        parted > limits_.disagreement_floor + limits_.disagreement_share * magnitude(measured))
       return AxisFault::encoder_tachometer_disagreement;
     return AxisFault::none;
   }
@@ -52,10 +54,7 @@ class AxisMonitors {
   /// Faults of a closed loop. `seen` is this sample's, which watch_sensors() has seen already.
   constexpr AxisFault watch_motion(const AxisTelemetry<Scalar>& seen) {
     const Scalar error = magnitude(seen.tracking_error);
-    if (error > high_water_) high_water_ = error;
-    if (error >
-        limits_.following_error_floor + limits_.following_error_per_velocity * magnitude(seen.reference_velocity))
-      return AxisFault::following_error;
+    if (error > noted_error_ && !may_follow(error, seen.reference_velocity)) return AxisFault::following_error;
     if (magnitude(encoder_velocity_) > limits_.overspeed ||
         (tachometer_fitted_ && magnitude(seen.tachometer_velocity) > limits_.overspeed))
       return AxisFault::overspeed;
@@ -86,7 +85,7 @@ class AxisMonitors {
 
   /// Largest following error since the parameters were accepted, mm (m).
   constexpr Scalar high_water() const { return high_water_; }
-  constexpr void forget_high_water() { high_water_ = Scalar(0); }
+  constexpr void forget_high_water() { high_water_ = noted_error_ = Scalar(0); }
 
   constexpr const TravelMonitor<Scalar>& travel() const { return travel_; }
   constexpr const EffortMonitor<Scalar>& effort() const { return effort_; }
@@ -104,6 +103,13 @@ class AxisMonitors {
                : AxisFault::encoder_tachometer_disagreement;
   }
 
+  constexpr bool may_follow(Scalar error, Scalar reference_velocity) {
+    if (error > high_water_) high_water_ = error;
+    const Scalar floor = limits_.following_error_floor;
+    noted_error_ = high_water_ < floor ? high_water_ : floor;
+    return error <= floor || error <= floor + limits_.following_error_per_velocity * magnitude(reference_velocity);
+  }
+
   constexpr void restart_motion() {
     saturated_samples_ = 0;
     effort_.restart(encoder_velocity_);
@@ -114,6 +120,7 @@ class AxisMonitors {
   Scalar encoder_velocity_{};
   Scalar disagreement_{};
   Scalar high_water_{};
+  Scalar noted_error_{};  ///< up to here an error is neither a fault nor new
   std::int32_t saturated_samples_ = 0;
   bool tachometer_fitted_ = true;
   EffortMonitor<Scalar> effort_;

@@ -28,6 +28,7 @@ class EffortMonitor {
     if (debt_limit_ < count * Scalar(3)) debt_limit_ = count * Scalar(3);
     largest_step_ = debt_limit_ * Scalar(0.24f);
     oscillation_square_ = m.oscillation_V * m.oscillation_V;
+    quiet_square_ = oscillation_square_ * Scalar(1.0f / 64);
     promised_per_volt_ = p.drive.Bd2 * Scalar(0.5f);
     load_share_ = m.load_share;
     power_share_ = m.load_share * Scalar(kLoadTime_s / kSwingTime_s);
@@ -79,13 +80,15 @@ class EffortMonitor {
   constexpr AxisFault watch_swing(Scalar feedback_V) {
     const Scalar swing = feedback_V - mean_V_;
     mean_V_ = mean_V_ + swing * mean_share_;
-    const Scalar most = oscillation_square_ * Scalar(4);
     const Scalar square = swing * swing;
+    if (square <= quiet_square_ && power_ == Scalar(0)) return AxisFault::none;  // nearly always
+    const Scalar most = oscillation_square_ * Scalar(4);
     power_ = power_ + ((square < most ? square : most) - power_) * power_share_;
+    if (power_ <= quiet_square_ && square <= quiet_square_) power_ = Scalar(0);
     return power_ > oscillation_square_ ? AxisFault::limit_cycle : AxisFault::none;
   }
 
-  Scalar friction_V_{}, debt_limit_{}, largest_step_{}, oscillation_square_{}, promised_per_volt_{};
+  Scalar friction_V_{}, debt_limit_{}, largest_step_{}, oscillation_square_{}, quiet_square_{}, promised_per_volt_{};
   Scalar load_share_{}, power_share_{}, mean_share_{};
   Scalar applied_V_{}, load_V_{}, last_velocity_{};
   Scalar debt_{};  ///< speed that the command has promised and the encoder has not shown, rad/s (m/s)

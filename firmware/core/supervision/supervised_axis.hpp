@@ -48,6 +48,9 @@ class SupervisedAxis {
     fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
     largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
     longest_stop_ = longest_ramp(limits) + kLongestSettling;
+    const TravelMonitor<Scalar>& travel = monitors_.travel();
+    const std::int64_t margin = travel.play() + axis_.farthest_stop();
+    far_inside_ = CountRange(travel.min_counts() + margin, travel.max_counts() - margin);
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
     happen(SupervisorEvent::configured);
@@ -122,27 +125,32 @@ class SupervisedAxis {
   constexpr bool is_homed() const { return axis_.telemetry().homed; }
   constexpr bool is_homing() const { return homing_.is_active(); }
 
-  /// As of Axis: the encoder's reading for the step that follows.
-  constexpr void latch() { axis_.latch(); }
+  /// For steps of several axes, which are read at one instant.
+  constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
-  constexpr void step(AxisFault outer = AxisFault::none) {
-    if (state_ == SupervisorState::enabled && is_homed()) keep_inside();
-    axis_.step();
+  constexpr void step(AxisFault outer = AxisFault::none) { step(outer, read_encoder()); }
+  constexpr void step(AxisFault outer, const hal::EncoderReading& encoder) {
+    if (state_ == SupervisorState::enabled && is_homed() && !far_inside_.contains(axis_.telemetry().reference.counts))
+      keep_inside();
+    axis_.step(encoder);
     supervise(homing_.is_active() && outer == AxisFault::none ? guide_home() : outer);
   }
 
   /// One control period with an interpolator's increment on top; a stopping or homing axis goes its own way.
   constexpr void step_with(Increment increment, AxisFault outer = AxisFault::none) {
-    if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer);
+    step_with(increment, outer, read_encoder());
+  }
+  constexpr void step_with(Increment increment, AxisFault outer, const hal::EncoderReading& encoder) {
+    if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer, encoder);
     is_interpolated_ = true;
     if (!is_within_limits(increment)) {
       axis_.stop_interpolated();  // what cannot be right never reaches the drive
-      axis_.step();
+      axis_.step(encoder);
       return supervise(outer == AxisFault::none ? AxisFault::reference_out_of_limits : outer);
     }
     last_increment_ = increment;
-    axis_.step_with(increment);
+    axis_.step_with(increment, encoder);
     supervise(outer);
   }
 
@@ -171,7 +179,7 @@ class SupervisedAxis {
   static constexpr std::int32_t kStandingSamples = 20;
 
   /// A jog ends where the play of a loop that holds its place does not reach beyond the limit.
-  constexpr void keep_inside() {
+  [[gnu::noinline]] constexpr void keep_inside() {
     const TravelMonitor<Scalar>& travel = monitors_.travel();
     axis_.keep_inside(travel.min_counts() + travel.play(), travel.max_counts() - travel.play());
   }
@@ -349,6 +357,7 @@ class SupervisedAxis {
   AxisFault second_fault_ = AxisFault::none;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
+  CountRange far_inside_;  ///< no jog reaches an end of travel from here, however it is stopped
   Increment fastest_ = 0;
   Increment largest_change_ = 0;
   Increment last_increment_ = 0;

@@ -6,6 +6,7 @@
 
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
+#include "firmware/core/count_position.hpp"
 #include "hal/limit_inputs.hpp"
 
 namespace firmware {
@@ -19,6 +20,7 @@ class TravelMonitor {
   constexpr void configure(const AxisParameters<Scalar>& p) {
     min_counts_ = p.monitors.travel_min_counts;
     max_counts_ = p.monitors.travel_max_counts;
+    inside_ = CountRange(min_counts_, max_counts_);
     play_ = play_in_counts(p);
     restart();
   }
@@ -46,18 +48,29 @@ class TravelMonitor {
   constexpr void restart() {
     upper_bound_ = std::numeric_limits<std::int64_t>::max();
     lower_bound_ = std::numeric_limits<std::int64_t>::min();
+    is_beyond_ = false;
   }
 
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
+    const bool is_at_switch = switches.positive_end || switches.negative_end;
+    if (!is_at_switch && !is_beyond_ && (!seen.homed || inside_.contains(seen.encoder_counts))) return AxisFault::none;
+    return watch_ends(seen, switches);
+  }
+
+ private:
+  [[gnu::noinline]] constexpr AxisFault watch_ends(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
     const std::int64_t counts = seen.encoder_counts;
-    if (switches.positive_end || (seen.homed && counts > max_counts_)) {
+    const bool is_above = switches.positive_end || (seen.homed && counts > max_counts_);
+    const bool is_below = switches.negative_end || (seen.homed && counts < min_counts_);
+    is_beyond_ = is_above || is_below;
+    if (is_above) {
       if (counts + play_ < upper_bound_) upper_bound_ = counts + play_;
       if (seen.reference_velocity > Scalar(0) || counts > upper_bound_)
         return switches.positive_end ? AxisFault::limit_switch_positive : AxisFault::travel_limit;
     } else {
       upper_bound_ = std::numeric_limits<std::int64_t>::max();
     }
-    if (switches.negative_end || (seen.homed && counts < min_counts_)) {
+    if (is_below) {
       if (counts - play_ > lower_bound_) lower_bound_ = counts - play_;
       if (seen.reference_velocity < Scalar(0) || counts < lower_bound_)
         return switches.negative_end ? AxisFault::limit_switch_negative : AxisFault::travel_limit;
@@ -67,7 +80,8 @@ class TravelMonitor {
     return AxisFault::none;
   }
 
- private:
+  CountRange inside_;
+  bool is_beyond_ = false;  ///< one of the bounds is set
   std::int64_t min_counts_ = 0, max_counts_ = 0, play_ = 0;
   std::int64_t upper_bound_ = 0, lower_bound_ = 0;
 };

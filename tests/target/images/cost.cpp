@@ -119,7 +119,10 @@ void start_motion() {
       axes[i].step();
     }
   }
-  for (std::size_t i = 0; i < Axes::kAxes; ++i) axes[i].enable();
+  for (std::size_t i = 0; i < Axes::kAxes; ++i) {
+    axes[i].set_position(0);  // travel is watched
+    axes[i].enable();
+  }
 }
 
 /// Every way the reference can move: standing, a jog, a cut, a move.
