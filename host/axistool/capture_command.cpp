@@ -10,6 +10,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/capture.hpp"
+#include "host/device/motion.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/progress.hpp"
 
@@ -66,6 +67,7 @@ void run(const CaptureArguments& arguments) {
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
   const host::CaptureSettings settings = settings_of(arguments, values);
+  for (const host::JogStep& jog : settings.jogs) host::require_reachable(values, settings.axis, jog.velocity);
   const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
   const double reports_Hz = rate_Hz / std::floor(static_cast<double>(firmware::kWordsPerReport) /
                                                  static_cast<double>(settings.channels.size()));

@@ -7,22 +7,14 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/model/effect_forms.hpp"
-#include "host/nearest_name.hpp"
 #include "host/report/effect_pages.hpp"
-#include "sim/catalogue.hpp"
 
 namespace axistool {
 
 namespace {
 
-const sim::EffectInfo& known_effect(const std::string& kind) {
-  if (const sim::EffectInfo* info = sim::find_effect(kind)) return *info;
-  throw host::Failure(host::ExitCode::usage, fmt::format("effect '{}' is unknown{}; `axistool effects` lists all kinds",
-                                                         kind, host::did_you_mean(kind, host::effect_kinds())));
-}
-
 void run(const std::string& kind, const std::string& json) {
-  const sim::EffectInfo* info = kind.empty() ? nullptr : &known_effect(kind);
+  const sim::EffectInfo* info = kind.empty() ? nullptr : &host::known_effect(kind);
   if (!json.empty()) write_json(info ? host::effects_json(*info) : host::effects_json(), json);
   if (json == "-") return;
   const host::Terminal terminal = host::terminal_of(stdout);

@@ -10,6 +10,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/improvement_report.hpp"
 #include "host/identify/plausibility.hpp"
+#include "host/model/effect_forms.hpp"
 #include "host/report/terminal.hpp"
 
 namespace axistool {
@@ -47,6 +48,7 @@ void run_improve(const InsightArguments& arguments) {
 }
 
 void run_add(const InsightArguments& arguments, const std::string& kind) {
+  host::known_effect(kind);
   const InsightRecords records(arguments);
   const host::Addition addition = host::add_effect(records.model, kind, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;

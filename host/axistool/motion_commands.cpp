@@ -69,6 +69,7 @@ void jog(const MotionArguments& arguments) {
   const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
+  host::require_reachable(values, axis, arguments.value);
   const double before = position_of(board, axis, values);
   catch_interrupts();
   if (!arguments.dry_run && arguments.take_over) board.take_over();

@@ -35,11 +35,11 @@ void get_params(const ParameterArguments& arguments) {
       if (full == name || full.starts_with(name + ".")) places.push_back(place);
     }
     if (places.size() == before)
-      throw host::Failure(host::ExitCode::bad_input,
-                          host::place_named(name) ? fmt::format("{}: the board has no such axis", name)
-                                                  : fmt::format("no parameter of the board is called {}; `axistool "
-                                                                "get-params` lists them",
-                                                                name));
+      throw host::Failure(host::ExitCode::bad_input, host::place_named(name)
+                                                         ? fmt::format("{}: the board has no such axis", name)
+                                                         : fmt::format("no parameter of the board is called {}{}; "
+                                                                       "`axistool get-params` lists them",
+                                                                       name, host::parameter_hint(name)));
   }
   if (arguments.names.empty())
     for (std::size_t place = 0; place < values.size(); ++place) places.push_back(place);

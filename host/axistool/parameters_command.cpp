@@ -35,9 +35,9 @@ void run(const ParametersArguments& arguments) {
                host::unit_text(info), "", info.doc);
   }
   if (!found)
-    throw host::Failure(
-        host::ExitCode::usage,
-        fmt::format("no parameter's name contains '{}'; `axistool parameters` lists all", arguments.filter));
+    throw host::Failure(host::ExitCode::usage,
+                        fmt::format("no parameter's name contains '{}'{}; `axistool parameters` lists all",
+                                    arguments.filter, host::parameter_hint(arguments.filter)));
 }
 
 }  // namespace

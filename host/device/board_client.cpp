@@ -9,6 +9,7 @@
 
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
+#include "host/device/device_users.hpp"
 #include "host/exit_codes.hpp"
 #include "host/parameters/parameter_names.hpp"
 
@@ -60,8 +61,8 @@ std::string refusing_axis(const Message& reply) {
   return is_named ? fmt::format("axis {}: ", firmware::kAxisNames[refused.axis]) : "";
 }
 
-/// Throws what a status other than ok means.
-void require_ok(const Message& reply) {
+/// Throws what a status other than ok means; `others` may name the programs that have the board open too.
+void require_ok(const Message& reply, const std::string& others = "") {
   switch (reply.status) {
     case Status::ok:
       return;
@@ -86,8 +87,8 @@ void require_ok(const Message& reply) {
                "the axis is not fitted: give it the parameters of a design (axistool design, axistool set-params)");
     case Status::others_motion:
       fail(ExitCode::refused,
-           "another program moves the axes: wait until they rest, stop them (`axistool disable`), or take the motion "
-           "over (--take-over of enable, jog, move)");
+           "another program moves the axes" + others +
+               ". Or stop them (`axistool disable`), or take the motion over (--take-over of enable, jog, move)");
     case Status::restarting:
       fail(ExitCode::refused, "the board is about to restart: try again in a second");
     case Status::not_homed:
@@ -160,7 +161,7 @@ Message BoardClient::request(MessageType type) {
 
 Message BoardClient::exchange(Message message, milliseconds patience) {
   const Message reply = reply_to(message, patience);
-  require_ok(reply);
+  require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
   return reply;
 }
 
@@ -180,9 +181,10 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
       return *reply;
     }  // else an answer to a request that was given up: of no use any more
   }
+  const std::string others = other_users();
   fail(ExitCode::time_out,
-       fmt::format("{} does not answer within {} ms: unplug it and plug it in again; `axistool doctor` looks further",
-                   link_->name(), patience.count()));
+       fmt::format("{} does not answer within {} ms{}", link_->name(), patience.count(),
+                   others.empty() ? ": unplug it and plug it in again; `axistool doctor` looks further" : others));
 }
 
 std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
@@ -203,6 +205,8 @@ std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
   }
   fail(ExitCode::protocol, "a report arrived damaged (checksum): try again, and another cable or port");
 }
+
+std::string BoardClient::other_users() const { return host::other_users(link_->file()); }
 
 void BoardClient::keep_samples(const Message& message) {
   constexpr std::size_t kMostWaiting = 100'000;  // more than a minute's worth: nobody takes them

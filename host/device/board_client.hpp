@@ -76,6 +76,8 @@ class BoardClient {
   std::optional<Samples> next_samples(std::chrono::milliseconds patience);
 
   std::string name() const { return link_->name(); }
+  /// As host::other_users() has it.
+  std::string other_users() const;
 
  private:
   template <typename Payload>

@@ -84,7 +84,7 @@ class CaptureRun {
       const double silence_s =
           2.0 + std::chrono::duration<double>(board_.patience()).count() + 20.0 * capture_.row_period_s;
       if (now - std::max(last_row_, began) > std::chrono::duration<double>(silence_s))
-        throw Failure(ExitCode::time_out, "the board sends no more samples");
+        throw Failure(ExitCode::time_out, "the board sends no more samples" + board_.other_users());
       if (progress) progress(capture_.number.size());
     }
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <thread>
 
 #include "firmware/core/supervision/fault_table.hpp"
@@ -103,6 +104,18 @@ void disable_and_wait(BoardClient& board, std::uint8_t mask) {
     return for_all(mask, [&](std::uint8_t axis) { return !firmware::outputs_are_on(state_of(status, axis)); });
   });
   if (!off) throw Failure(ExitCode::time_out, "the axis does not come to rest: press the emergency stop");
+}
+
+void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity) {
+  const double limit = static_cast<double>(values.axis(axis).get<"limits.velocity">());
+  constexpr double kRounding = 1.0 + 1e-6;  // of the board's single precision
+  if (std::abs(velocity) <= limit * kRounding) return;
+  const char* name = firmware::kAxisNames.at(axis).data();
+  throw Failure(
+      ExitCode::refused,
+      fmt::format("{:g} is beyond {}.limits.velocity = {:g}: jog at {:g} at most, or, where the machine may go "
+                  "faster, set {}.limits.velocity",
+                  velocity, name, limit, limit, name));
 }
 
 void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,

@@ -16,6 +16,10 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask);
 /// Slows down, drops the enables and waits until they are off.
 void disable_and_wait(BoardClient& board, std::uint8_t mask);
 
+/// Throws Failure(refused) naming the limit where `velocity` (mm/s or m/s) is beyond the axis's limits.velocity: the
+/// board would go slower than it was told.
+void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity);
+
 /// Jogs for a time or until `stop` says so, then slows down to rest. Throws Failure(device_fault) when the axis faults;
 /// whatever ends it, the axis is told to stop.
 void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,

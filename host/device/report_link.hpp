@@ -27,6 +27,9 @@ class ReportLink {
 
   /// As --device names it: usb:SERIAL, socket:PATH.
   virtual std::string name() const = 0;
+
+  /// What other programs that use the board have open too; empty where that cannot be told.
+  virtual std::string file() const { return ""; }
 };
 
 }  // namespace host

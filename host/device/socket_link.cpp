@@ -1,5 +1,6 @@
 #include "host/device/socket_link.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -19,7 +20,8 @@ namespace {
 
 class SocketLink : public ReportLink {
  public:
-  SocketLink(OwnedDescriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
+  SocketLink(OwnedDescriptor socket, std::string path)
+      : socket_(std::move(socket)), path_(std::move(path)), mark_(::open(path_.c_str(), O_PATH | O_CLOEXEC)) {}
 
   void send(const hal::HidReport& report) override {
     constexpr int kPatience_ms = 1000;
@@ -40,6 +42,7 @@ class SocketLink : public ReportLink {
   }
 
   std::string name() const override { return "socket:" + path_; }
+  std::string file() const override { return path_; }
 
  private:
   [[noreturn]] void gone() const {
@@ -49,6 +52,7 @@ class SocketLink : public ReportLink {
 
   OwnedDescriptor socket_;
   std::string path_;
+  OwnedDescriptor mark_;  ///< a connection does not tell its path; this does, to users_of()
 };
 
 sockaddr_un address_of(const std::string& path) {

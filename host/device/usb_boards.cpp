@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "hal/usb_identity.hpp"
+#include "host/device/device_users.hpp"
 #include "host/device/udev_rule.hpp"
 #include "host/device/usb_link.hpp"
 #include "host/exit_codes.hpp"
@@ -47,7 +48,8 @@ std::string device_file(const std::string& path) {
                   fmt::format("{} may not be opened by this user. Install the udev rule: {}\nwhich writes to {}:\n{}",
                               file, kInstallUdevRule, kUdevRuleFile, udev_rule()));
   throw Failure(ExitCode::no_such_device,
-                fmt::format("{} cannot be opened; is the board still plugged in, does another program use it?", file));
+                fmt::format("{} cannot be opened; is the board still plugged in{}", file,
+                            other_users(file).empty() ? ", does another program use it?" : "?" + other_users(file)));
 }
 
 const UsbBoard& choose(const std::vector<UsbBoard>& boards, const std::string& serial_number) {
@@ -86,7 +88,7 @@ std::unique_ptr<ReportLink> open_usb_board(const std::string& serial_number, con
   const UsbBoard& board = unreadable ? boards.front() : choose(boards, serial_number);
   hid_device* device = library.open_path(board.path.c_str());
   if (device == nullptr) explain_open(board);
-  return std::make_unique<UsbLink>(library, device, board.serial_number);
+  return std::make_unique<UsbLink>(library, device, board.serial_number, device_file(board.path));
 }
 
 }  // namespace host

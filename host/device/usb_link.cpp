@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "host/exit_codes.hpp"
 
@@ -15,8 +16,10 @@ Failure gone(const std::string& name) {
 
 }  // namespace
 
-UsbLink::UsbLink(const HidLibrary& library, hid_device* device, const std::string& serial_number)
-    : library_(library), device_(device), name_("usb:" + serial_number), reader_([this] { read(); }) {}
+UsbLink::UsbLink(const HidLibrary& library, hid_device* device, const std::string& serial_number, std::string file)
+    : library_(library), device_(device), name_("usb:" + serial_number), file_(std::move(file)), reader_([this] {
+        read();
+      }) {}
 
 UsbLink::~UsbLink() {
   {

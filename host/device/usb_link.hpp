@@ -14,19 +14,20 @@ namespace host {
 class UsbLink : public ReportLink {
  public:
   /// Takes over `device`, which `library` has opened.
-  UsbLink(const HidLibrary& library, hid_device* device, const std::string& serial_number);
+  UsbLink(const HidLibrary& library, hid_device* device, const std::string& serial_number, std::string file = "");
   ~UsbLink() override;
 
   void send(const hal::HidReport& report) override;
   std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) override;
   std::string name() const override { return name_; }
+  std::string file() const override { return file_; }
 
  private:
   void read();
 
   const HidLibrary& library_;
   hid_device* device_;
-  std::string name_;
+  std::string name_, file_;
   std::mutex mutex_;
   std::condition_variable news_;
   std::deque<hal::HidReport> reports_;

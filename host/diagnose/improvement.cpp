@@ -81,8 +81,7 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const sim::EffectInfo* info = sim::find_effect(kind);
-  if (info == nullptr)
-    throw Failure(ExitCode::usage, fmt::format("{}: no such effect; axistool effects lists them", kind));
+  if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
   PreparedSets sets;
   std::vector<Candidate> found;
   const auto search = [&](double window_s, Measure measure) {

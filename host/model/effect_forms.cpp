@@ -1,7 +1,11 @@
 #include "host/model/effect_forms.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "host/exit_codes.hpp"
+#include "host/nearest_name.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -23,6 +27,12 @@ std::vector<std::string_view> effect_kinds() {
   std::vector<std::string_view> kinds;
   for (const sim::EffectInfo* info : sim::catalogue()) kinds.push_back(info->kind);
   return kinds;
+}
+
+const sim::EffectInfo& known_effect(std::string_view kind) {
+  if (const sim::EffectInfo* info = sim::find_effect(kind)) return *info;
+  throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown{}; `axistool effects` lists all kinds", kind,
+                                             did_you_mean(kind, effect_kinds())));
 }
 
 bool holds(const std::array<double, 2>& interval, double value) {

@@ -18,6 +18,9 @@ bool may_repeat(const sim::EffectInfo& info);
 /// All kinds of the catalogue, for messages.
 std::vector<std::string_view> effect_kinds();
 
+/// Throws Failure(usage) with the nearest kind where the catalogue has none of this name.
+const sim::EffectInfo& known_effect(std::string_view kind);
+
 /// Whether an interval is one of this value: it holds it, to the rounding of its ends.
 bool holds(const std::array<double, 2>& interval, double value);
 

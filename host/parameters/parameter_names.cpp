@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "host/exit_codes.hpp"
 #include "host/nearest_name.hpp"
@@ -40,6 +42,19 @@ std::vector<std::string> all_parameter_names() {
   for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place)
     names.push_back(full_name(place));
   return names;
+}
+
+std::string parameter_hint(std::string_view name) {
+  std::set<std::string> names;
+  for (const std::string& full : all_parameter_names()) {
+    const std::string without_axis = full.substr(full.find('.', 0) + 1);
+    for (const std::string& one : {full, without_axis})
+      for (std::size_t dot = one.find('.'); dot != std::string::npos; dot = one.find('.', dot + 1))
+        names.insert(one.substr(0, dot));
+    names.insert({full, without_axis});
+  }
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  return did_you_mean(name, known);
 }
 
 std::string unit_text(const firmware::ParameterInfo& info) {

@@ -26,6 +26,9 @@ std::size_t require_place(std::string_view name, const std::string& where = "");
 /// Of a board with as many axes as the axis board.
 std::vector<std::string> all_parameter_names();
 
+/// "; did you mean x.kalman?": the nearest parameter, group ("x.kalman"), or either without its axis; "" where none is.
+std::string parameter_hint(std::string_view name);
+
 /// "V/mm", or "V/mm; linear drive: V/m" where the unit depends on the kind of drive; "1" for a pure number.
 std::string unit_text(const firmware::ParameterInfo& info);
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "host/parameters/monitor_relations.hpp"
 #include "host/parameters/parameter_names.hpp"
 
 namespace host {
@@ -73,20 +74,11 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
       return fmt::format("with feedback.k1 and feedback.k2 the loop is {}; its poles are {}. Design the gains again",
                          words(firmware::loop_problem(p)), loop_poles_text(p));
     case ParameterError::following_error:
-      return fmt::format(
-          "it must be above 0, and at most what full command moves the axis in {:g} s or {:g} s of limits.velocity; "
-          "per speed at most {:g} s; more would not protect",
-          ceilings::kFollowing_s, ceilings::kFollowingTime_s, ceilings::kFollowingTime_s);
+      return following_error_relation(p);
     case ParameterError::disagreement:
-      return fmt::format(
-          "it must be below monitor.encoder_jump, and both at most the speed that full command reaches in {:g} s and "
-          "{:g} s, or once and twice limits.velocity; more would not protect",
-          ceilings::kDisagreement_s, ceilings::kJump_s);
+      return disagreement_relation(p);
     case ParameterError::overspeed:
-      return fmt::format(
-          "it must be above limits.velocity and a count a sample, and at most three times that limit or the speed that "
-          "full command reaches in {:g} s; more would not protect",
-          ceilings::kOverspeed_s);
+      return overspeed_relation(p);
     case ParameterError::polarity_command:
       return fmt::format("above {:g} of drive.dac_limit, {:.4g} V, no command would reach it", ceilings::kCommandShare,
                          ceilings::kCommandShare * p.dac_limit_V);

@@ -123,6 +123,10 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_NEAR(moved["to"].get<double>(), 5.0, 0.01);
   EXPECT_NEAR(json("move x -2 --relative")["to"].get<double>(), 3.0, 0.01);
   EXPECT_EQ(run("jog z 10").exit_code, 2);
+  const ProgramRun fast = run("jog x 5000");
+  EXPECT_EQ(fast.exit_code, 8) << "the board would go slower than it was told, and nobody would know";
+  EXPECT_THAT(fast.output, HasSubstr("x.limits.velocity = 250"));
+  EXPECT_EQ(run("capture -o " + file("fast.csv") + " --jog 20:0.1,-5000:0.1").exit_code, 8);
   EXPECT_EQ(run("disable").exit_code, 0);
   EXPECT_EQ(json("faults")["axes"][0]["fault"], "none");
 }

@@ -31,6 +31,14 @@ TEST(EffectsCommand, UnknownKindIsAUsageErrorWithASuggestion) {
   EXPECT_THAT(run.output, AllOf(HasSubstr("'baklash' is unknown"), HasSubstr("did you mean backlash?")));
 }
 
+TEST(AddCommand, UnknownKindIsAUsageErrorWithASuggestion) {
+  const std::string folder = AXIS_TEST_DATA "/drive-cases/none/case-01";
+  const ProgramRun run = run_axistool("add " + folder + "/model.toml baklash --train " + folder +
+                                      "/train-jog.csv -o /tmp/never-written.toml");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.output, HasSubstr("did you mean backlash?"));
+}
+
 TEST(EffectsCommand, JsonOnStandardOutputStandsAlone) {
   for (const char* arguments : {"effects --json -", "effects tach_gain --json -"}) {
     const ProgramRun run = run_axistool(arguments, "2>/dev/null");

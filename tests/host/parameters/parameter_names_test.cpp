@@ -58,6 +58,13 @@ TEST(ParameterNames, ValuesReadBackAsTheSameBits) {
   }
 }
 
+TEST(ParameterNames, ATypoIsAnsweredWithTheNearestParameterOrGroup) {
+  EXPECT_EQ(host::parameter_hint("x.feedbak.k1"), "; did you mean x.feedback.k1?");
+  EXPECT_EQ(host::parameter_hint("kalmna"), "; did you mean kalman?");
+  EXPECT_EQ(host::parameter_hint("y.fricton"), "; did you mean y.friction?");
+  EXPECT_EQ(host::parameter_hint("entirely else"), "");
+}
+
 TEST(ParameterPage, IsTheOneInTheRepository) {
   EXPECT_EQ(host::read_file(AXIS_TEST_DATA "/../../firmware/app/parameters/README.md"), host::parameter_page())
       << "write it anew: build/bin/axistool parameters --markdown > firmware/app/parameters/README.md";

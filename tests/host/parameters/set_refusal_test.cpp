@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "host/exit_codes.hpp"
 #include "host/parameters/parameter_file.hpp"
 #include "tests/firmware/app/paper_values.hpp"
@@ -50,6 +52,34 @@ TEST(SetRefusal, MonitorsThatWouldNotProtectAreRefusedWithTheirCeiling) {
   EXPECT_TRUE(says(said_after({{"x.monitor.polarity_command", 9.5}}), "9 V"));
   EXPECT_TRUE(says(said_after({{"x.monitor.oscillation", 8}}), "7 V"));
   EXPECT_TRUE(says(said_after({{"x.monitor.saturation_time", 2}}), "would not protect"));
+}
+
+/// The figure between `before` and what follows it.
+double figure_after(const std::string& text, const std::string& before) {
+  const std::size_t at = text.find(before);
+  return at == std::string::npos ? -1.0 : std::strtod(text.c_str() + at + before.size(), nullptr);
+}
+
+/// A smaller lead makes the same limit a higher shaft speed: the message names the relation, and its figures are true.
+TEST(SetRefusal, WhatWouldFitIsSaidAndFits) {
+  const std::string said = said_after({{"x.drive.lead", 0.1}});
+  EXPECT_TRUE(says(said, "limits.velocity / drive.lead = 250 / 0.1 = 2500")) << said;
+  const double above = figure_after(said, "more, ") > 0 ? figure_after(said, ": above ") : -1.0;
+  const double slower = figure_after(said, "limits.velocity below ");
+  ASSERT_GT(above, 2500.0) << said;
+  ASSERT_GT(slower, 0.0) << said;
+  EXPECT_TRUE(says(said_after({{"x.drive.lead", 0.1}, {"x.monitor.overspeed", 0.999 * above}}), "monitor.overspeed"));
+  EXPECT_FALSE(says(said_after({{"x.drive.lead", 0.1}, {"x.monitor.overspeed", 1.001 * above}}), "monitor.overspeed"));
+  EXPECT_FALSE(says(said_after({{"x.drive.lead", 0.1}, {"x.limits.velocity", 0.99 * slower}}), "monitor.overspeed"));
+}
+
+TEST(SetRefusal, TheCeilingsThatAreSaidAreThoseThatHold) {
+  for (const char* name : {"x.monitor.overspeed", "x.monitor.following_error"}) {
+    const double most = figure_after(said_after({{name, 9000}}), "at most ");
+    ASSERT_GT(most, 0.0) << name;
+    EXPECT_EQ(said_after({{name, 0.999 * most}}), "") << name;
+    EXPECT_NE(said_after({{name, 1.001 * most}}), "") << name;
+  }
 }
 
 TEST(SetRefusal, ASlowerVelocityLimitNeedsNoOtherMonitors) {

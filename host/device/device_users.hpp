@@ -1,0 +1,21 @@
+// Which other programs have a board open.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace host {
+
+struct DeviceUser {
+  int process = 0;
+  std::string command;  ///< its command line, shortened
+};
+
+/// Processes other than this one that hold `file` open, as far as /proc lets this user see them.
+std::vector<DeviceUser> users_of(const std::string& file);
+
+/// "; process 4711 has it open too (axistool capture -o jog.csv): let it end, or end it (kill 4711)" of all of them; ""
+/// where there is none.
+std::string other_users(const std::string& file);
+
+}  // namespace host
