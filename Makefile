@@ -91,7 +91,8 @@ hil: ## Run the scenarios: the firmware around simulated drives (SCENARIO=files;
 soak: ## The long form of the fault tests: 20000 trials of one fault and of two, in every order (TRIALS=n)
 	$(NEED) build test
 	$(call configure,$(BUILD))
-	ninja -C $(BUILD) -j $(JOBS) test_host_hil
+	ninja -C $(BUILD) -j $(JOBS) test_host_hil test_firmware_app
+	AXIS_EXCITATION_TRIALS=5000 $(BUILD)/bin/test_firmware_app --gtest_filter='ExcitedBoard.*'
 	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
 
 .PHONY: hidden-effect

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "firmware/app/capture_stream.hpp"
+#include "firmware/app/excitation_service.hpp"
 #include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/protocol/messages.hpp"
@@ -42,6 +43,7 @@ class BoardApplication {
 
   void control_period() {
     const std::uint32_t now_us = board_.clock().now_us();
+    if (excitation_.is_active()) excitation_.before_step(axes_);
     axes_.step({now_us, board_.emergency_stop().is_pressed(), board_.supply().is_low(), !store_is_usable()});
     capture_.take(axes_);
     note_timing(now_us);
@@ -132,6 +134,7 @@ class BoardApplication {
 
   void stop() {
     const typename Board::ControlShutOut guard;
+    excitation_.stop();
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].stop();
   }
 
@@ -140,6 +143,7 @@ class BoardApplication {
     if (!ScalarTraits<float>::is_finite(velocity)) return Status::malformed;
     const Scalar wanted = in_core_units(axis, velocity);
     const typename Board::ControlShutOut guard;
+    if (is_excited(axis)) return Status::wrong_state;
     if (axes_[axis].state() == SupervisorState::enabled && !axes_[axis].has_room_towards(wanted))
       return Status::outside_travel;
     if (!axes_[axis].jog(wanted)) return refusal(axis);
@@ -151,7 +155,8 @@ class BoardApplication {
   Status move(std::size_t axis, std::int64_t counts, bool relative) {
     {
       const typename Board::ControlShutOut guard;
-      if (axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis)) return refusal(axis);
+      if (axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis) || is_excited(axis))
+        return refusal(axis);
       if (!relative && !axes_[axis].is_homed()) return Status::not_homed;
     }
     // At rest the reference stands still, and only this background can change that.
@@ -163,6 +168,45 @@ class BoardApplication {
     if (!axes_[axis].start(planned.plan)) return refusal(axis);
     axes_.board().host_commands(true);
     return Status::ok;
+  }
+
+  // Excitation, of one axis at a time.
+  Status load_excitation(const ExcitationEntriesRequest& request) {
+    if (excitation_.is_active()) return Status::wrong_state;
+    return excitation_.load(request, active_.axis(request.axis), rate_Hz()) ? Status::ok : Status::malformed;
+  }
+
+  /// In open loop of an axis that stands, disabled, and needs no design; in closed loop of one that is enabled and at
+  /// rest.
+  Status excite(const ExcitationRequest& request) {
+    if (excitation_.is_active()) return Status::wrong_state;
+    const std::size_t axis = request.axis;
+    if (!excitation_.plan(request, active_.axis(axis), rate_Hz())) return Status::malformed;
+    const typename Board::ControlShutOut guard;
+    const SupervisorState state = axes_[axis].state();
+    if (request.input != static_cast<std::uint8_t>(ExcitationInput::open_loop)) {
+      if (state != SupervisorState::enabled || is_in_motion(axis)) return refusal(axis);
+    } else {
+      if (!store_is_usable() || state == SupervisorState::fault) return Status::device_fault;
+      if (outputs_are_on(state)) return Status::drive_enabled;
+      if (!is_fitted(axis)) {
+        const float per_count = request.drive_velocity / request.speed;
+        axes_[axis].configure_bare(
+            bare_axis_parameters<Scalar>(active_.axis(axis), rate_Hz(), per_count, request.drive_velocity));
+      }
+    }
+    excitation_.start();
+    axes_.board().host_commands(true);
+    return Status::ok;
+  }
+
+  void stop_excitation() {
+    const typename Board::ControlShutOut guard;
+    excitation_.stop();
+  }
+  ExcitationStatePayload excitation_state() const {
+    const typename Board::ControlShutOut guard;
+    return excitation_.state();
   }
 
   /// The limit of travel on one side of an axis.
@@ -184,6 +228,7 @@ class BoardApplication {
     if (!is_fitted(axis)) return Status::not_fitted;
     const bool is_told = active_.axis(axis).template get<"homing.mode">() == static_cast<int>(HomingMode::none);
     if (here != is_told) return Status::homing_mode;
+    if (excitation_.is_active()) return Status::wrong_state;
     const typename Board::ControlShutOut guard;
     if (here) return axes_[axis].set_position(axes_[axis].parameters().homing.position) ? Status::ok : refusal(axis);
     if (!axes_[axis].home()) return refusal(axis);
@@ -261,7 +306,7 @@ class BoardApplication {
   bool any_enabled() const {
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (axes_[axis].is_or_will_be_on()) return true;
-    return false;
+    return excitation_.is_active();
   }
   std::uint32_t control_periods() const { return control_periods_; }
 
@@ -280,8 +325,13 @@ class BoardApplication {
  private:
   static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
+  float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
+
+  bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
+
   bool is_in_motion() {
     const typename Board::ControlShutOut guard;
+    if (excitation_.is_active()) return true;
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_in_motion(axis)) return true;
     return false;
@@ -376,6 +426,7 @@ class BoardApplication {
   Store store_;
   Axes axes_;
   CaptureStream capture_;
+  ExcitationService<Scalar> excitation_;
   MotionOwner owner_;
   ParameterValues active_{kAxes};
   ParameterValues staged_{kAxes};

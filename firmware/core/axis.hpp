@@ -68,6 +68,7 @@ class Axis {
     if (telemetry_.fault != AxisFault::none) return false;
     if (!telemetry_.enabled) {
       telemetry_.enabled = true;
+      is_closed_loop_ = !is_open_loop_;
       hal_.drive_enable().set(true);
     }
     return true;
@@ -76,9 +77,21 @@ class Axis {
   /// Opens the loop at once: 0 V, enable line off.
   constexpr void disable() {
     telemetry_.enabled = false;
+    forget_excitation();
     hal_.drive_enable().set(false);
     put_out_zero();
   }
+
+  /// Added to the control signal of every step from now on, V; in an open loop it is all of it.
+  constexpr void excite(Scalar volts) { excitation_V_ = volts; }
+  /// From the next enable() until the axis is disabled the command is what excite() was told, and the reference stays
+  /// where the axis is. Only while disabled.
+  constexpr void open_loop() { is_open_loop_ = true; }
+  constexpr void forget_excitation() {
+    is_open_loop_ = is_closed_loop_ = false;
+    excitation_V_ = Scalar(0);
+  }
+  constexpr bool is_open_loop() const { return is_open_loop_; }
 
   constexpr void clear_fault() {
     telemetry_.fault = AxisFault::none;
@@ -187,9 +200,12 @@ class Axis {
 
   constexpr const AxisTelemetry<Scalar>& follow(const hal::EncoderReading& encoder, Increment increment) {
     if (!measure(encoder)) return telemetry_;
-    if (!telemetry_.enabled) {
+    if (!is_closed_loop_) {
       hold_reference_here();
-      put_out_zero();
+      if (telemetry_.enabled)
+        put_out_excitation();
+      else
+        put_out_zero();
       return telemetry_;
     }
     preview_.push(backlash_.is_on() ? increment + backlash_.next(increment) : increment);
@@ -235,9 +251,9 @@ class Axis {
           compensation_.advance(friction_, backlash_, preview_.velocity(1), preview_.halfway(), telemetry_.homed);
     else
       telemetry_.friction_V = parameters_.friction_feedforward_on ? friction_(preview_.velocity(1)) : Scalar(0);
-    const Scalar feedforward_V = preview_.weighted_sum(feedforward_);
-    Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity +
-                       feedforward_V + telemetry_.friction_V;
+    const Scalar added_V = preview_.weighted_sum(feedforward_) + excitation_V_;
+    Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity + added_V +
+                       telemetry_.friction_V;
     if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
     telemetry_.control_V = control_V;
     if (!dac_.is_within(control_V) && Traits::is_nan(control_V)) {
@@ -251,7 +267,7 @@ class Axis {
     telemetry_.saturated = word.saturated;
     telemetry_.output_V = word.volts;
     model_input_V_ = word.volts - telemetry_.friction_V;
-    telemetry_.feedback_V = model_input_V_ - feedforward_V + parameters_.Kc[1] * telemetry_.reference_velocity;
+    telemetry_.feedback_V = model_input_V_ - added_V + parameters_.Kc[1] * telemetry_.reference_velocity;
     if (!hal_.dac().write(word.code)) fail(AxisFault::dac_write_failed);
   }
 
@@ -271,6 +287,16 @@ class Axis {
     telemetry_.dac_code = 0;
     telemetry_.saturated = false;
     if (!hal_.dac().write(0) && telemetry_.fault == AxisFault::none) telemetry_.fault = AxisFault::dac_write_failed;
+  }
+
+  constexpr void put_out_excitation() {
+    const DacWord<Scalar> word = dac_(excitation_V_);
+    telemetry_.control_V = excitation_V_;
+    telemetry_.dac_code = word.code;
+    telemetry_.saturated = word.saturated;
+    telemetry_.output_V = model_input_V_ = word.volts;
+    telemetry_.friction_V = telemetry_.feedback_V = Scalar(0);
+    if (!hal_.dac().write(word.code)) fail(AxisFault::dac_write_failed);
   }
 
   /// Latches the first fault and opens the loop. Always false, for the caller to return.
@@ -297,6 +323,9 @@ class Axis {
   AxisTelemetry<Scalar> telemetry_{};
   bool is_configured_ = false;
   bool is_synchronised_ = false;
+  bool is_open_loop_ = false;
+  bool is_closed_loop_ = false;  ///< enabled, and not in open loop
+  Scalar excitation_V_{};
   BacklashCrossing backlash_;
   DriveCompensation<Scalar> compensation_;
   FrictionFeedforward<Scalar> friction_;  // its tables last, so that one load reaches each of the others

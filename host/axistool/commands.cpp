@@ -42,6 +42,7 @@ void add_all_commands(CLI::App& app) {
   add_jog(app);
   add_move(app);
   add_capture(app);
+  add_excite(app);
   add_faults(app);
   add_clear_faults(app);
   add_bench(app);

@@ -9,14 +9,18 @@
 
 #include "host/axistool/json_output.hpp"
 #include "host/device/open_device.hpp"
+#include "host/device/simulated_link.hpp"
 #include "host/exit_codes.hpp"
+#include "host/model/model_file.hpp"
 
 namespace axistool {
 
 void add_device_options(CLI::App& command, DeviceArguments& arguments) {
   command
       .add_option("--device", arguments.device,
-                  "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH; default: the only one on USB")
+                  "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH, model:FILE (simulated within this "
+                  "command); "
+                  "default: the only one on USB")
       ->envname("AXIS_DEVICE");
   command.add_flag_callback(
       "--sim", [&arguments] { arguments.device = "sim"; }, "the same as --device sim");
@@ -34,10 +38,24 @@ void add_change_options(CLI::App& command, DeviceArguments& arguments) {
   command.add_flag("-y,--yes", arguments.yes, "do not ask");
 }
 
+namespace {
+
+/// With this drive on every axis; it lives as long as the command.
+std::unique_ptr<host::ReportLink> simulated_board(const std::string& model) {
+  const host::SimulatedDrive drive{host::read_model(model)};
+  return std::make_unique<host::SimulatedLink>(
+      host::SimulatedDeviceOptions{std::vector<host::SimulatedDrive>(hal::kAxisCount, drive), "", 1});
+}
+
+}  // namespace
+
 host::BoardClient open_board(const DeviceArguments& arguments) {
   const std::chrono::duration<double> patience(arguments.patience_s);
-  return host::BoardClient(host::open_device(arguments.device),
-                           std::chrono::duration_cast<std::chrono::milliseconds>(patience));
+  constexpr std::string_view kModel = "model:";
+  const bool is_model = arguments.device.starts_with(kModel);
+  return host::BoardClient(
+      is_model ? simulated_board(arguments.device.substr(kModel.size())) : host::open_device(arguments.device),
+      std::chrono::duration_cast<std::chrono::milliseconds>(patience));
 }
 
 bool talks(const DeviceArguments& arguments) { return arguments.json != "-"; }

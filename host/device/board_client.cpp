@@ -353,6 +353,22 @@ void BoardClient::heartbeat() { request(MessageType::heartbeat); }
 void BoardClient::take_over() { request(MessageType::take_over); }
 void BoardClient::restart() { request(MessageType::restart); }
 
+void BoardClient::load_excitation(const firmware::ExcitationEntriesRequest& part) {
+  request(MessageType::load_excitation, part);
+}
+
+void BoardClient::start_excitation(const firmware::ExcitationRequest& wanted) {
+  request(MessageType::start_excitation, wanted);
+}
+
+firmware::ExcitationStatePayload BoardClient::stop_excitation() {
+  return payload_of<firmware::ExcitationStatePayload>(request(MessageType::stop_excitation));
+}
+
+firmware::ExcitationStatePayload BoardClient::excitation_state() {
+  return payload_of<firmware::ExcitationStatePayload>(request(MessageType::excitation_state));
+}
+
 void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
   samples_.clear();
   request(MessageType::start_capture, wanted);

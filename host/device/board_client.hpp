@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/app/parameters/parameter_values.hpp"
+#include "firmware/app/protocol/excitation_messages.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/store/stored_set.hpp"
 #include "host/device/report_link.hpp"
@@ -60,6 +61,11 @@ class BoardClient {
   /// Motion that another program commanded is this one's from now on.
   void take_over();
   void restart();
+
+  void load_excitation(const firmware::ExcitationEntriesRequest& part);
+  void start_excitation(const firmware::ExcitationRequest& wanted);
+  firmware::ExcitationStatePayload stop_excitation();
+  firmware::ExcitationStatePayload excitation_state();
 
   void start_capture(const firmware::CaptureRequest& request);
   firmware::CaptureReply stop_capture();

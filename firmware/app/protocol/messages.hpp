@@ -36,6 +36,10 @@ enum class MessageType : std::uint8_t {
   stop_capture = 0x31,
   read_fault_capture = 0x32,
   restart = 0x3E,
+  load_excitation = 0x40,
+  start_excitation = 0x41,
+  stop_excitation = 0x42,
+  excitation_state = 0x43,
   samples = 0x70,   ///< from the board, unasked, while a capture runs
   rejected = 0x7F,  ///< from the board: a report that could not be decoded
 };

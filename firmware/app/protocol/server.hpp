@@ -86,7 +86,7 @@ class ProtocolServer {
 
   static constexpr bool begins_motion(MessageType type) {
     return type == MessageType::enable || type == MessageType::jog || type == MessageType::move ||
-           type == MessageType::home || type == MessageType::take_over;
+           type == MessageType::home || type == MessageType::start_excitation || type == MessageType::take_over;
   }
 
   /// Looking, stopping and disabling are everybody's; the rest waits for the end of another client's motion.
@@ -96,6 +96,8 @@ class ProtocolServer {
       case MessageType::jog:
       case MessageType::move:
       case MessageType::home:
+      case MessageType::load_excitation:
+      case MessageType::start_excitation:
       case MessageType::clear_faults:
       case MessageType::commit:
       case MessageType::save:
@@ -135,8 +137,31 @@ class ProtocolServer {
       case MessageType::heartbeat:
       case MessageType::take_over:
         return Status::ok;
+      case MessageType::load_excitation:
+      case MessageType::start_excitation:
+      case MessageType::stop_excitation:
+      case MessageType::excitation_state:
+        return handle_excitation(request, reply);
       default:
         return handle_motion(request, reply);
+    }
+  }
+
+  Status handle_excitation(const Message& request, Message& reply) {
+    switch (request.type) {
+      case MessageType::load_excitation:
+        return with<ExcitationEntriesRequest>(request, [&](const ExcitationEntriesRequest& r) {
+          return r.axis < kAxes ? app_.load_excitation(r) : Status::malformed;
+        });
+      case MessageType::start_excitation:
+        return with<ExcitationRequest>(
+            request, [&](const ExcitationRequest& r) { return r.axis < kAxes ? app_.excite(r) : Status::malformed; });
+      case MessageType::stop_excitation:
+        app_.stop_excitation();
+        [[fallthrough]];
+      default:
+        reply.put(app_.excitation_state());
+        return Status::ok;
     }
   }
 

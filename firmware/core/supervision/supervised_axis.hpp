@@ -40,25 +40,25 @@ class SupervisedAxis {
     if (error == ParameterError::none) error = check_monitors(parameters);
     if (error == ParameterError::none) error = check_poles(parameters);
     if (error == ParameterError::none) error = check_homing(parameters.homing);
-    if (error == ParameterError::none) error = axis_.configure(parameters);
-    if (error != ParameterError::none) return error;
-    monitors_.configure(parameters);
-    homing_.configure(parameters.homing);
-    const MotionLimits limits = motion_limits(parameters);
-    fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
-    largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
-    longest_stop_ = longest_ramp(limits) + kLongestSettling;
-    const TravelMonitor<Scalar>& travel = monitors_.travel();
-    const std::int64_t margin = travel.play() + axis_.farthest_stop();
-    far_inside_ = CountRange(travel.min_counts() + margin, travel.max_counts() - margin);
-    capture_.configure(parameters.monitors.capture_stride);
-    begin_self_test();
-    happen(SupervisorEvent::configured);
-    return error;
+    return error == ParameterError::none ? take(parameters) : error;
+  }
+
+  /// Likewise for an axis that has no controller yet and is to be excited in open loop alone: gains and thresholds mean
+  /// nothing, and whoever lets it be enabled otherwise is wrong.
+  constexpr ParameterError configure_bare(const AxisParameters<Scalar>& parameters) {
+    return outputs_are_on(state_) ? ParameterError::controller_is_enabled : take(parameters);
   }
 
   // What comes of a request shows in the next control period. False where the state does not allow it.
   constexpr bool enable() { return may_be_enabled() && request(SupervisorEvent::enable_request); }
+  /// Likewise without the controller: the command is what excite() is told.
+  constexpr bool enable_open_loop() {
+    if (!enable()) return false;
+    axis_.open_loop();
+    return true;
+  }
+  /// As of Axis.
+  constexpr void excite(Scalar volts) { axis_.excite(volts); }
   /// Ready, and the encoder has stood for a while: a loop that closes on a moving axis would jerk it to a stop.
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands(); }
   constexpr bool stands() const { return still_samples_ >= kStandingSamples; }
@@ -128,9 +128,16 @@ class SupervisedAxis {
   /// For steps of several axes, which are read at one instant.
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
 
+  /// The next step is a step_with() of this increment.
+  constexpr void lead(Increment increment) {
+    led_increment_ = increment;
+    is_led_ = true;
+  }
+
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) { step(outer, read_encoder()); }
   constexpr void step(AxisFault outer, const hal::EncoderReading& encoder) {
+    if (is_led_) return step_with(led_increment_, outer, encoder);
     if (state_ == SupervisorState::enabled && is_homed() && !far_inside_.contains(axis_.telemetry().reference.counts))
       keep_inside();
     axis_.step(encoder);
@@ -142,6 +149,7 @@ class SupervisedAxis {
     step_with(increment, outer, read_encoder());
   }
   constexpr void step_with(Increment increment, AxisFault outer, const hal::EncoderReading& encoder) {
+    is_led_ = false;
     if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer, encoder);
     is_interpolated_ = true;
     if (!is_within_limits(increment)) {
@@ -177,6 +185,24 @@ class SupervisedAxis {
       hal::IndexedEncoder<std::remove_reference_t<decltype(std::declval<Hal&>().encoder())>>;
   static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
   static constexpr std::int32_t kStandingSamples = 20;
+
+  constexpr ParameterError take(const AxisParameters<Scalar>& parameters) {
+    const ParameterError error = axis_.configure(parameters);
+    if (error != ParameterError::none) return error;
+    monitors_.configure(parameters);
+    homing_.configure(parameters.homing);
+    const MotionLimits limits = motion_limits(parameters);
+    fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
+    largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
+    longest_stop_ = longest_ramp(limits) + kLongestSettling;
+    const TravelMonitor<Scalar>& travel = monitors_.travel();
+    const std::int64_t margin = travel.play() + axis_.farthest_stop();
+    far_inside_ = CountRange(travel.min_counts() + margin, travel.max_counts() - margin);
+    capture_.configure(parameters.monitors.capture_stride);
+    begin_self_test();
+    happen(SupervisorEvent::configured);
+    return error;
+  }
 
   /// A jog ends where the play of a loop that holds its place does not reach beyond the limit.
   [[gnu::noinline]] constexpr void keep_inside() {
@@ -316,6 +342,7 @@ class SupervisedAxis {
 
   constexpr bool has_stopped() {
     if (++stopping_samples_ > longest_stop_) return true;
+    if (axis_.is_open_loop()) settling_samples_ = 0;  // nothing holds its place: it stands once it has come to rest
     if (!axis_.is_at_rest()) {
       settling_samples_ = standing_samples_ = 0;
       return false;
@@ -344,6 +371,7 @@ class SupervisedAxis {
     if (!outputs_are_on(state_)) {
       is_interpolated_ = limiting_.velocity_limited = false;
       last_increment_ = 0;
+      axis_.forget_excitation();
       if (axis_.telemetry().enabled) axis_.disable();
     }
   }
@@ -361,6 +389,8 @@ class SupervisedAxis {
   Increment fastest_ = 0;
   Increment largest_change_ = 0;
   Increment last_increment_ = 0;
+  Increment led_increment_ = 0;
+  bool is_led_ = false;
   std::int64_t standing_at_ = 0;
   std::int32_t self_test_samples_ = 0;
   std::int32_t settling_samples_ = 0;

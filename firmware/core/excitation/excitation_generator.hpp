@@ -1,0 +1,138 @@
+// The excitation itself, one value a sample.
+#pragma once
+
+#include "firmware/core/excitation/excitation_plan.hpp"
+
+namespace firmware {
+
+/// No division and no library call in next(); its loop is bounded by kExcitationEntries. Periodic kinds are exactly
+/// periodic: phases are whole numbers, and those of a multisine begin anew with each of its periods.
+template <typename Scalar>
+class ExcitationGenerator {
+ public:
+  /// `plan` is possible, and outlives its use. Divides: for the background.
+  constexpr void start(const ExcitationPlan<Scalar>& plan) {
+    plan_ = &plan;
+    level_ = 0;
+    left_ = plan.kind == ExcitationKind::train ? plan.entry[0].first : plan.period;
+    value_ = Scalar(0);
+    slope_ = plan.amplitude / ScalarTraits<Scalar>::from_integer(bounded(plan.period));
+    fade_step_ = Scalar(1) / ScalarTraits<Scalar>::from_integer(bounded(plan.fade_samples));
+    fade_ = Scalar(0);
+    is_fading_ = false;
+    phase_ = 0;
+    step_ = std::uint64_t{plan.step} << 32;
+    const std::int64_t sweep = std::int64_t{plan.last_step} - std::int64_t{plan.step};
+    // Half of a 64-bit turn is out of reach: below a quarter turn a sample the difference has 31 bits.
+    rate_ = (sweep * (std::int64_t{1} << 31) / plan.samples) * 2;
+    rewind_lines();
+  }
+
+  /// `turn`: the axis is on its way out of the box, or near its speed.
+  constexpr Scalar next(bool turn) {
+    switch (plan_->kind) {
+      case ExcitationKind::train:
+        return next_level(turn);
+      case ExcitationKind::ramp:
+        return next_of_ramp(turn);
+      case ExcitationKind::chirp:
+        return faded(next_of_chirp());
+      case ExcitationKind::multisine:
+        return faded(next_of_lines());
+      case ExcitationKind::triangle:
+        return faded(next_of_triangle());
+    }
+    return Scalar(0);
+  }
+
+  /// What is periodic goes away within the time of its fade; the others end at once.
+  constexpr void end() { is_fading_ = true; }
+  constexpr bool is_gone() const {
+    const bool ends_at_once = plan_->kind == ExcitationKind::train || plan_->kind == ExcitationKind::ramp;
+    return is_fading_ && (ends_at_once || fade_ <= Scalar(0));
+  }
+
+ private:
+  using Traits = ScalarTraits<Scalar>;
+
+  /// As many as a scalar holds.
+  static constexpr std::int32_t bounded(std::uint32_t samples) {
+    constexpr std::uint32_t kMost = std::uint32_t{1} << 24;
+    return static_cast<std::int32_t>(samples < kMost ? samples : kMost);
+  }
+
+  constexpr Scalar faded(Scalar value) {
+    if (is_fading_)
+      fade_ = fade_ > fade_step_ ? fade_ - fade_step_ : Scalar(0);
+    else if (fade_ < Scalar(1))
+      fade_ = fade_ + fade_step_ < Scalar(1) ? fade_ + fade_step_ : Scalar(1);
+    return value * fade_;
+  }
+
+  constexpr Scalar next_level(bool turn) {
+    if (turn || left_ == 0) {
+      level_ = level_ + 1 < plan_->count ? level_ + 1 : 0;
+      left_ = plan_->entry[level_].first;
+    }
+    --left_;
+    return plan_->entry[level_].value;
+  }
+
+  constexpr Scalar next_of_ramp(bool turn) {
+    if (turn || left_ == 0) {
+      slope_ = Scalar(0) - slope_;
+      value_ = Scalar(0);
+      left_ = plan_->period;
+    }
+    --left_;
+    value_ = value_ + slope_;
+    return value_;
+  }
+
+  constexpr Scalar next_of_chirp() {
+    const Scalar value = plan_->amplitude * sine_of<Scalar>(static_cast<Turn>(phase_ >> 32));
+    phase_ += step_;
+    step_ += static_cast<std::uint64_t>(rate_);
+    return value;
+  }
+
+  constexpr void rewind_lines() {
+    if (plan_->kind != ExcitationKind::multisine) return;
+    for (std::size_t i = 0; i < plan_->count; ++i) line_phase_[i] = plan_->entry[i].second;
+  }
+
+  constexpr Scalar next_of_lines() {
+    if (left_ == 0) {
+      rewind_lines();
+      left_ = plan_->period;
+    }
+    --left_;
+    Scalar sum{};
+    for (std::size_t i = 0; i < plan_->count; ++i) {
+      sum = sum + plan_->entry[i].value * sine_of<Scalar>(line_phase_[i]);
+      line_phase_[i] += plan_->entry[i].first;
+    }
+    return sum;
+  }
+
+  constexpr Scalar next_of_triangle() {
+    const auto turn = static_cast<Turn>(phase_ >> 32);
+    phase_ += step_;
+    // From 0 up to 1 at a quarter turn, down to -1 at three quarters.
+    const Turn folded = turn > kQuarterTurn && turn < 3 * kQuarterTurn ? 2 * kQuarterTurn - turn : turn;
+    const auto quarters = std::int64_t{static_cast<std::int32_t>(folded)} << (kFractionBits - 30);
+    return plan_->amplitude * Traits::from_increment(quarters);
+  }
+
+  const ExcitationPlan<Scalar>* plan_ = nullptr;
+  std::size_t level_ = 0;
+  std::uint32_t left_ = 0;  ///< samples of the level, of the ramp, of the period
+  Scalar value_{}, slope_{};
+  Scalar fade_{}, fade_step_{};
+  bool is_fading_ = false;
+  std::uint64_t phase_ = 0, step_ = 0;  ///< 2^-64 turns
+  std::int64_t rate_ = 0;               ///< 2^-64 turns a sample^2
+  std::array<Turn, kExcitationEntries> line_phase_{};
+};
+
+}  // namespace firmware

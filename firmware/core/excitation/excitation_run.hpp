@@ -1,0 +1,325 @@
+// One excitation of one axis, from its beginning to standstill, within its box.
+#pragma once
+
+#include "firmware/core/count_position.hpp"
+#include "firmware/core/excitation/excitation_generator.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+
+namespace firmware {
+
+/// Numbers are permanent: they stand in replies.
+enum class ExcitationPhase : std::uint8_t {
+  idle = 0,
+  opening = 1,  ///< the amplifier gets its enable
+  running = 2,
+  stopping = 3,  ///< the excitation goes away, and the axis comes to rest
+  done = 4,
+};
+
+enum class ExcitationEnd : std::uint8_t {
+  none = 0,
+  completed = 1,  ///< its time is over
+  asked = 2,      ///< somebody stopped it
+  travel = 3,     ///< the axis left the box
+  speed = 4,
+  no_motion = 5,  ///< the command was large for long, and the encoder showed nothing
+  fault = 6,      ///< the axis stopped for another reason: its fault, or a disable
+  refused = 7,    ///< the axis could not be enabled
+  blind = 8,      ///< the tachometer shows motion that the encoder does not
+};
+
+/// Before each step it is asked what goes into that step. The box is judged by the encoder's raw counts, and by the
+/// tachometer where its scale is known, so it needs neither model nor estimate.
+///
+/// In an open loop the axis is stopped by the command that accelerated it, turned round: which way a command
+/// accelerates the drive shows in the excitation itself, as the sign of the sum of command times change of speed. The
+/// command falls to 0 when the axis turns back, when it has slowed to the encoder's resolution, or when braking makes
+/// it faster. A closed loop stops as its reference does.
+///
+/// A train turns round in time: a drive that took a way to reach its speed needs no longer way, under the command
+/// turned round, to lose it again; friction helps it. The half more is for levels of unequal size.
+template <typename Scalar>
+class ExcitationRun {
+ public:
+  /// `plan` is possible, and outlives the run. In an open loop the axis is enabled once it may be; a closed loop is
+  /// enabled already.
+  constexpr void start(const ExcitationPlan<Scalar>& plan) {
+    plan_ = &plan;
+    generator_.start(plan);
+    phase_ = ExcitationPhase::opening;
+    end_ = ExcitationEnd::none;
+    elapsed_ = waited_ = longest_silence_ = 0;
+    still_samples_ = still_before_ = 0;
+    moved_by_ = Scalar(0);
+    farthest_ = fastest_ = 0;
+    sum_of_effects_ = 0;
+    last_value_ = ride_ = last_ride_ = unseen_ = Scalar(0);
+    earlier_value_ = {};
+    last_reference_ = 0;
+    is_braking_ = is_asked_ = is_requested_ = false;
+    may_turn_ = true;
+    slowest_ = 0;
+  }
+
+  constexpr void stop() {
+    is_asked_ = phase_ == ExcitationPhase::opening;
+    if (phase_ == ExcitationPhase::running) leave(ExcitationEnd::asked);
+  }
+
+  constexpr bool is_active() const { return phase_ != ExcitationPhase::idle && phase_ != ExcitationPhase::done; }
+  constexpr ExcitationPhase phase() const { return phase_; }
+  constexpr ExcitationEnd end() const { return end_; }
+  constexpr std::uint32_t elapsed() const { return elapsed_; }
+  constexpr std::int32_t farthest() const { return farthest_; }  ///< counts from where it began
+  constexpr std::int32_t fastest() const { return fastest_; }    ///< counts in kSpeedSamples
+
+  /// Before the axis's step: puts the excitation in. A SupervisedAxis.
+  template <typename Axis>
+  constexpr void before_step(Axis& axis) {
+    const bool is_on = axis.state() == SupervisorState::enabled;
+    if (phase_ == ExcitationPhase::opening) return open(axis, is_on);
+    see(axis.telemetry());
+    if (!is_on && phase_ == ExcitationPhase::running) leave(ExcitationEnd::fault);
+    if (phase_ == ExcitationPhase::running) {
+      judge(axis.telemetry());
+      if (++elapsed_ >= plan_->samples) leave(ExcitationEnd::completed);
+    }
+    if (phase_ == ExcitationPhase::stopping && has_ended(axis)) {
+      axis.excite(Scalar(0));
+      phase_ = ExcitationPhase::done;
+    } else if (plan_->input == ExcitationInput::open_loop) {
+      drive_open(axis);
+    } else {
+      drive_closed(axis);
+    }
+  }
+
+ private:
+  using Traits = ScalarTraits<Scalar>;
+  static constexpr std::uint32_t kLongestOpening = 1000;  ///< samples
+  static constexpr std::int32_t kStill = 20;              ///< samples without a count
+
+  template <typename Axis>
+  constexpr void open(Axis& axis, bool is_on) {
+    if (plan_->input == ExcitationInput::open_loop && !is_on && !is_requested_) is_requested_ = axis.enable_open_loop();
+    if (is_on) {
+      begin(axis.telemetry().encoder_counts);
+      phase_ = ExcitationPhase::running;
+      if (is_asked_) leave(ExcitationEnd::asked);
+    } else if (axis.state() == SupervisorState::fault || ++waited_ > kLongestOpening) {
+      end_ = ExcitationEnd::refused;
+      phase_ = ExcitationPhase::done;
+    }
+  }
+
+  constexpr void begin(std::int64_t counts) {
+    start_ = turned_at_ = counts;
+    for (std::int64_t& earlier : seen_) earlier = counts;
+    speed_ = speed_before_ = 0;
+    waited_ = 0;
+  }
+
+  template <typename Telemetry>
+  constexpr void see(const Telemetry& seen) {
+    const std::int64_t counts = seen.encoder_counts;
+    still_before_ = still_samples_;
+    still_samples_ = seen.encoder_travel != 0 ? 0 : still_samples_ + 1;
+    const std::int32_t last_speed = speed_;
+    const std::int64_t middle = seen_[(place_ + kSpeedSamples) % seen_.size()];
+    speed_ = static_cast<std::int32_t>(counts - middle);
+    speed_before_ = static_cast<std::int32_t>(middle - seen_[place_]);
+    seen_[place_] = counts;
+    place_ = (place_ + 1) % seen_.size();
+    way_ = counts - start_;
+    if ((speed_ > 0) != is_forward_ && speed_ != 0) {
+      is_forward_ = speed_ > 0;
+      turned_at_ = counts;
+    }
+    if (phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
+    farthest_ = larger(farthest_, magnitude(way_));
+    fastest_ = larger(fastest_, magnitude(speed_));
+  }
+
+  /// Which way a command accelerates: the sum of signs of command times change of speed. The speed's middle is two
+  /// samples older than the last command.
+  constexpr void learn(std::int32_t change) {
+    const Scalar value = earlier_value_[0];
+    earlier_value_[0] = earlier_value_[1];
+    earlier_value_[1] = last_value_;
+    if (value > Scalar(0)) sum_of_effects_ += change;
+    if (value < Scalar(0)) sum_of_effects_ -= change;
+  }
+
+  template <typename Telemetry>
+  constexpr void judge(const Telemetry& seen) {
+    if (magnitude(way_) > plan_->box.travel_counts) return leave(ExcitationEnd::travel);
+    // One count is the encoder's resolution, and no speed.
+    if ((magnitude(speed_) - 1) * 256 > plan_->box.speed) return leave(ExcitationEnd::speed);
+    if (plan_->box.drive_velocity > Scalar(0) &&
+        Traits::magnitude(seen.tachometer_velocity) > plan_->box.drive_velocity)
+      return leave(ExcitationEnd::speed);
+    if (is_blind(seen)) return leave(ExcitationEnd::blind);
+    if (plan_->input != ExcitationInput::open_loop) return;
+    if (does_nothing(seen.encoder_travel)) leave(ExcitationEnd::no_motion);
+  }
+
+  /// A command near the largest, or well above what has moved the axis before, and no count: for as long as the plan
+  /// says, or, once the axis has moved, for four times the longest such silence until then.
+  constexpr bool does_nothing(std::int32_t travel) {
+    const Scalar command = Traits::magnitude(last_value_);
+    const bool is_large = command >= plan_->amplitude * Scalar(0.9f) ||
+                          (moved_by_ > Scalar(0) && command > moved_by_ + moved_by_ * Scalar(0.25f));
+    if (travel == 0) {
+      if (is_large) ++waited_;
+      const std::uint32_t patience = 4 * longest_silence_ + kStill;
+      return waited_ > (moved_by_ > Scalar(0) && patience < plan_->stall_samples ? patience : plan_->stall_samples);
+    }
+    if (still_before_ >= kStill && command > moved_by_) moved_by_ = command;
+    if (waited_ > longest_silence_) longest_silence_ = waited_;
+    waited_ = 0;
+    return false;
+  }
+
+  /// The travel that the tachometer shows and the encoder does not. An eighth of all travel is forgiven, so that a
+  /// tachometer's scale may be off by as much.
+  template <typename Telemetry>
+  constexpr bool is_blind(const Telemetry& seen) {
+    if (plan_->box.drive_velocity <= Scalar(0)) return false;
+    const Scalar travel = Traits::from_integer(seen.encoder_travel);
+    unseen_ = unseen_ + seen.tachometer_velocity * plan_->box.counts_per_velocity - travel;
+    const Scalar forgiven = Traits::magnitude(travel) * Scalar(0.125f);
+    if (Traits::magnitude(unseen_) <= forgiven)
+      unseen_ = Scalar(0);
+    else
+      unseen_ = unseen_ > Scalar(0) ? unseen_ - forgiven : unseen_ + forgiven;
+    constexpr std::int32_t kMost = 1000;  // a scalar of fixed point holds it
+    const std::int32_t part = plan_->box.travel_counts >> kBlindShift;
+    return Traits::magnitude(unseen_) > Traits::from_integer(part < kMost ? part : kMost) + Scalar(4);
+  }
+
+  constexpr void leave(ExcitationEnd why) {
+    end_ = why;
+    phase_ = ExcitationPhase::stopping;
+    generator_.end();
+    is_braking_ = true;
+    brake_from_ = magnitude(speed_);
+    waited_ = 0;
+  }
+
+  /// On its way out, so far that it must turn round now; or nearly as fast as it may be.
+  constexpr bool must_turn() {
+    const bool is_outward = way_ > 0 ? speed_ > 0 : speed_ < 0;
+    const std::int64_t taken = magnitude(way_ - (turned_at_ - start_));
+    const std::int64_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
+    const std::int64_t room = plan_->box.travel_counts - plan_->box.travel_counts / 10;
+    const bool is_far = is_outward && magnitude(way_) + needed > room;
+    const std::int64_t ahead = magnitude(2 * std::int64_t{speed_} - speed_before_);  // in kSpeedSamples from now
+    const bool is_fast = ahead * 320 > plan_->box.speed && ahead >= magnitude(speed_);
+    const std::int64_t speed = magnitude(speed_);
+    if (speed < slowest_) slowest_ = speed;
+    // What turned it round still slows it down, until it goes the other way or gains speed again.
+    if (is_forward_ != turned_forward_ || speed > slowest_ + slowest_ / 4 + kSpeedSamples) may_turn_ = true;
+    if (!may_turn_ || !(is_far || is_fast)) return false;
+    may_turn_ = false;
+    turned_forward_ = is_forward_;
+    slowest_ = speed;
+    return true;
+  }
+
+  template <typename Axis>
+  constexpr void drive_open(Axis& axis) {
+    Scalar value{};
+    if (phase_ == ExcitationPhase::running)
+      value = within(generator_.next(must_turn()), plan_->box.volts);
+    else
+      value = brake();
+    axis.excite(value);
+    last_value_ = value;
+  }
+
+  constexpr Scalar brake() {
+    const std::int64_t speed = magnitude(speed_);
+    const bool has_turned = (speed_ > 0) != brakes_forward_ && waited_ > 0;
+    if (waited_++ == 0) brakes_forward_ = speed_ > 0;
+    if (speed <= 1 || has_turned || speed > brake_from_ + brake_from_ / 4 + kSpeedSamples || sum_of_effects_ == 0)
+      is_braking_ = false;
+    if (!is_braking_) return Scalar(0);
+    const Scalar most = within(plan_->amplitude, plan_->box.volts);
+    return (speed_ > 0) == (sum_of_effects_ > 0) ? Scalar(0) - most : most;
+  }
+
+  template <typename Axis>
+  constexpr void drive_closed(Axis& axis) {
+    if (plan_->input == ExcitationInput::jog) {
+      follow(axis, phase_ == ExcitationPhase::running ? generator_.next(must_turn()) : Scalar(0));
+      return;
+    }
+    if (plan_->ride != Scalar(0)) {
+      if (last_ride_ == Scalar(0)) last_ride_ = plan_->ride;
+      if (must_turn()) last_ride_ = Scalar(0) - last_ride_;
+      follow(axis, phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0));
+    }
+    const Scalar value = generator_.next(false);
+    if (plan_->input == ExcitationInput::output) {
+      axis.excite(within(value, plan_->box.volts));
+      return;
+    }
+    const Increment reference = Traits::to_increment(value);
+    axis.lead(reference - last_reference_);
+    last_reference_ = reference;
+  }
+
+  /// A jog is told only what is new to it.
+  template <typename Axis>
+  constexpr void follow(Axis& axis, Scalar velocity) {
+    if (velocity == ride_) return;
+    ride_ = velocity;
+    axis.jog(velocity);
+  }
+
+  template <typename Axis>
+  constexpr bool has_ended(Axis& axis) {
+    if (plan_->input != ExcitationInput::open_loop)
+      return !outputs_are_on(axis.state()) || (generator_.is_gone() && axis.is_at_rest() && ride_ == Scalar(0));
+    if (!is_braking_ && still_samples_ >= kStill) axis.disable();
+    return !outputs_are_on(axis.state());
+  }
+
+  static constexpr std::int64_t magnitude(std::int64_t value) { return value < 0 ? -value : value; }
+  static constexpr std::int32_t larger(std::int32_t a, std::int64_t b) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 30;
+    return b > a ? static_cast<std::int32_t>(b < kMost ? b : kMost) : a;
+  }
+  static constexpr Scalar within(Scalar value, Scalar limit) {
+    if (value > limit) return limit;
+    return value < Scalar(0) - limit ? Scalar(0) - limit : value;
+  }
+
+  const ExcitationPlan<Scalar>* plan_ = nullptr;
+  ExcitationGenerator<Scalar> generator_;
+  ExcitationPhase phase_ = ExcitationPhase::idle;
+  ExcitationEnd end_ = ExcitationEnd::none;
+  std::uint32_t elapsed_ = 0;                          ///< samples of the excitation
+  std::uint32_t waited_ = 0;                           ///< samples: for the enable, for a first count, of braking
+  std::uint32_t longest_silence_ = 0;                  ///< under a large command, samples
+  std::int32_t still_samples_ = 0, still_before_ = 0;  ///< without a count: now, and a sample ago
+  Scalar moved_by_{};                                  ///< largest command that has ended a standstill
+  std::int64_t start_ = 0;                             ///< counts
+  std::int64_t turned_at_ = 0;                         ///< where the axis last went the other way
+  std::int64_t way_ = 0;                               ///< from the start
+  std::array<std::int64_t, 2 * kSpeedSamples> seen_{};
+  std::size_t place_ = 0;
+  std::int32_t speed_ = 0, speed_before_ = 0;  ///< counts in kSpeedSamples: the last, and those before
+  std::int32_t farthest_ = 0, fastest_ = 0;
+  std::int64_t sum_of_effects_ = 0;
+  std::int64_t slowest_ = 0;     ///< since it was told to turn round
+  std::int64_t brake_from_ = 0;  ///< speed at which braking began
+  Scalar last_value_{}, ride_{}, last_ride_{};
+  std::array<Scalar, 2> earlier_value_{};
+  Scalar unseen_{};  ///< counts
+  Increment last_reference_ = 0;
+  bool is_asked_ = false, is_requested_ = false, is_braking_ = false, brakes_forward_ = true;
+  bool is_forward_ = true, turned_forward_ = true, may_turn_ = true;
+};
+
+}  // namespace firmware

@@ -1,0 +1,222 @@
+// axistool excite: an experiment on an axis, within a box that the board enforces -> record.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "firmware/app/parameters/axis_values.hpp"
+#include "firmware/core/excitation/excitation_run.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/excitation.hpp"
+#include "host/device/motion.hpp"
+#include "host/model/model_file.hpp"
+#include "host/parameters/data_sheet_values.hpp"
+#include "host/record/read_record.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct ExciteArguments : DeviceArguments {
+  std::string axis, kind, box, output, drive, closed_loop;
+  std::vector<std::string> numbers;
+  unsigned seed = 1;
+  int countdown_s = 3;
+  bool linear = false, as_set = false;
+};
+
+std::atomic<bool> interrupted = false;
+
+/// The board's parameters, with the data sheet's where one is given.
+firmware::ParameterValues scaled_values(const ExciteArguments& arguments, host::BoardClient& board, std::uint8_t axis,
+                                        std::optional<sim::DriveDescription>& drive) {
+  firmware::ParameterValues values = board.read_values();
+  if (!arguments.drive.empty()) {
+    drive = host::read_drive(arguments.drive);
+    return host::with_data_sheet(values, axis, drive->data);
+  }
+  if (!values.axis(axis).get<"drive.fitted">() && !arguments.as_set && host::has_initial_scales(values, axis))
+    throw host::Failure(
+        host::ExitCode::refused,
+        fmt::format("axis {} has its initial parameters: nobody knows what a count or a volt is. Give the data sheet "
+                    "with --drive DRIVE.toml, or set {}.drive.encoder_resolution and the like, or say --as-set if the "
+                    "initial values are right",
+                    arguments.axis, arguments.axis));
+  return values;
+}
+
+host::ExcitationScale scale_of(const ExciteArguments& arguments, const firmware::ParameterValues& values,
+                               std::uint8_t axis, const std::optional<sim::DriveDescription>& drive) {
+  const firmware::AxisValues v = values.axis(axis);
+  host::ExcitationScale scale;
+  scale.kind = drive ? drive->data.kind : arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
+  scale.encoder_resolution = static_cast<double>(v.get<"drive.encoder_resolution">());
+  scale.dac_resolution_V = static_cast<double>(v.get<"drive.dac_resolution">());
+  scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
+  const bool knows_lead = drive || v.get<"drive.fitted">();
+  scale.lead = knows_lead ? static_cast<double>(v.get<"drive.lead">()) : 0.0;
+  scale.has_tachometer = v.get<"tachometer.fitted">();
+  if (v.get<"drive.fitted">()) {
+    scale.acceleration = static_cast<double>(v.get<"limits.acceleration">());
+    scale.jerk = static_cast<double>(v.get<"limits.jerk">());
+  }
+  return scale;
+}
+
+std::string box_text(const host::ExcitationLimits& box, sim::DriveKind kind) {
+  const char* unit = kind == sim::DriveKind::rotary ? "mm" : "m";
+  return fmt::format("{:g} {} of travel ({:g} to either side of where it stands), {:g} {}/s, {:g} V, {:g} s",
+                     box.travel, unit, box.travel / 2.0, box.speed, unit, box.volts, box.time_s);
+}
+
+void count_down(int seconds) {
+  for (; seconds > 0 && !interrupted; --seconds) {
+    fmt::print(stderr, "{} … ", seconds);
+    std::fflush(stderr);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
+  fmt::print(stderr, "\n");
+  if (interrupted) throw host::Failure(host::ExitCode::refused, "interrupted before anything moved");
+}
+
+/// Closes the loop where the excitation needs it closed; opens it again at the end, if it was open.
+class Loop {
+ public:
+  Loop(host::BoardClient& board, std::uint8_t axis, bool is_needed) : board_(board), axis_(axis) {
+    if (!is_needed) return;
+    const auto state = static_cast<firmware::SupervisorState>(board.status().axis.at(axis).state);
+    was_open_ = state != firmware::SupervisorState::enabled;
+    if (was_open_) host::enable_and_wait(board, static_cast<std::uint8_t>(1u << axis));
+  }
+  void open() {
+    if (was_open_) host::disable_and_wait(board_, static_cast<std::uint8_t>(1u << axis_));
+  }
+
+ private:
+  host::BoardClient& board_;
+  std::uint8_t axis_;
+  bool was_open_ = false;
+};
+
+nlohmann::json document_of(const ExciteArguments& arguments, const host::ExcitationOutcome& outcome,
+                           const host::ExcitationScale& scale, std::size_t rows) {
+  return {{"format", "axis-excitation/1"},
+          {"axis", arguments.axis},
+          {"kind", arguments.kind},
+          {"file", arguments.output},
+          {"ended", host::end_name(outcome.state)},
+          {"duration_s", outcome.state.elapsed / scale.rate_Hz},
+          {"farthest", outcome.state.farthest * scale.encoder_resolution},
+          {"fastest", static_cast<double>(outcome.state.fastest) * scale.encoder_resolution * scale.rate_Hz},
+          {"rows", rows},
+          {"lost_rows", outcome.capture.lost},
+          {"dropped_by_board", outcome.capture.dropped_by_board}};
+}
+
+[[noreturn]] void fail_for_end(host::BoardClient& board, std::uint8_t axis, const ExciteArguments& arguments,
+                               const host::ExcitationOutcome& outcome) {
+  const auto end = static_cast<firmware::ExcitationEnd>(outcome.state.end);
+  if (end == firmware::ExcitationEnd::fault || end == firmware::ExcitationEnd::refused)
+    host::require_no_fault(board.status(), axis);
+  if (end == firmware::ExcitationEnd::no_motion)
+    throw host::Failure(host::ExitCode::refused,
+                        fmt::format("nothing moved under the largest command: free the axis, look at motor, amplifier "
+                                    "and encoder, or raise the volts of the box ({} holds what there is)",
+                                    arguments.output));
+  if (end == firmware::ExcitationEnd::travel || end == firmware::ExcitationEnd::speed)
+    throw host::Failure(host::ExitCode::refused,
+                        fmt::format("the axis {}, and was stopped: less volts, or a wider box ({} holds what there is)",
+                                    host::end_name(outcome.state), arguments.output));
+  throw host::Failure(host::ExitCode::answer_is_no, fmt::format("{} before its time ({} holds what there is)",
+                                                                host::end_name(outcome.state), arguments.output));
+}
+
+void run(const ExciteArguments& arguments) {
+  if (arguments.box.empty())
+    throw host::Failure(host::ExitCode::refused,
+                        "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
+  std::optional<sim::DriveDescription> drive;
+  if (!arguments.drive.empty()) drive = host::read_drive(arguments.drive);
+  const bool is_linear = drive ? drive->data.kind == sim::DriveKind::linear : arguments.linear;
+  const host::ExcitationLimits box =
+      host::parse_box(arguments.box, is_linear ? sim::DriveKind::linear : sim::DriveKind::rotary);
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
+  const firmware::ParameterValues values = scaled_values(arguments, board, axis, drive);
+  const host::ExcitationScale scale = scale_of(arguments, values, axis, drive);
+  const host::Excitation excitation = host::design_excitation(arguments.kind, host::parse_numbers(arguments.numbers),
+                                                              box, scale, arguments.closed_loop, arguments.seed);
+  if (talks(arguments)) fmt::print("{}\nbox: {}\n", excitation.summary, box_text(box, scale.kind));
+  if (arguments.dry_run) return;
+  require_consent(arguments, fmt::format("Excite axis {}? It moves within this box: {}.", arguments.axis,
+                                         box_text(box, scale.kind)));
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  count_down(arguments.countdown_s);
+  Loop loop(board, axis, excitation.request.input != static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop));
+  const host::ExcitationOutcome outcome =
+      host::run_excitation(board, axis, excitation, values, scale, [] { return interrupted.load(); });
+  loop.open();
+  host::Record record = host::capture_record(outcome.capture, outcome.settings, arguments.axis);
+  record.header["source"] = "axistool excite";
+  record.header.insert(excitation.header.begin(), excitation.header.end());
+  record.header["excitation_ended"] = std::string(host::end_name(outcome.state));
+  host::write_record(record, arguments.output);
+  if (!arguments.json.empty()) write_json(document_of(arguments, outcome, scale, record.size()), arguments.json);
+  if (talks(arguments))
+    fmt::print("{}: {} rows in {}, {} lost\n", host::end_name(outcome.state), record.size(), arguments.output,
+               outcome.capture.lost);
+  if (outcome.state.end != static_cast<std::uint8_t>(firmware::ExcitationEnd::completed))
+    fail_for_end(board, axis, arguments, outcome);
+  if (outcome.capture.lost > 0)
+    throw host::Failure(host::ExitCode::protocol,
+                        fmt::format("{} rows were lost; the record has gaps there", outcome.capture.lost));
+}
+
+std::string footer() {
+  std::string text =
+      "Examples:\n"
+      "  axistool excite x steps --box travel=40,speed=150,volts=3,time=5 --drive x.toml -o steps.csv\n"
+      "  axistool excite x multisine amplitude=0.5 from=5 to=200 --closed-loop output --box … -o lines.csv\n"
+      "  axistool excite x ladder 5 20 80 --box travel=100,speed=120,volts=5,time=20 -o ladder.csv\n"
+      "KIND and its numbers, all of which may be left out:\n";
+  for (const host::ExcitationKindText& kind : host::kExcitationKindTexts)
+    text += fmt::format("  {:<10} {}: {}\n", kind.name, kind.does, kind.numbers);
+  return text +
+         "Steps and ramps need no controller: they make the first record of a drive. travel is the width of a window "
+         "around where the axis stands. Leaving the box stops the axis, ends with code 8 and keeps the record.";
+}
+
+}  // namespace
+
+void add_excite(CLI::App& app) {
+  auto arguments = std::make_shared<ExciteArguments>();
+  CLI::App* command = app.add_subcommand("excite", "Move an axis by an experiment, within a box -> record");
+  command->add_option("AXIS", arguments->axis, "x, y, …")->required();
+  command->add_option("KIND", arguments->kind, "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell")
+      ->required();
+  command->add_option("NUMBERS", arguments->numbers, "of the kind: values, or name=value");
+  command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s");
+  add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
+  add_input(*command, "--drive", arguments->drive, "data sheet of the drive: units of counts, volts and travel");
+  command->add_flag("--as-set", arguments->as_set, "an axis without a design: the units on the board are right");
+  command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
+  command->add_option("--closed-loop", arguments->closed_loop,
+                      "add it to the 'reference', or to the controller's 'output'");
+  command->add_option("--seed", arguments->seed, "of a multisine's phases")->capture_default_str();
+  command->add_option("--countdown", arguments->countdown_s, "seconds before anything moves")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 60));
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer(footer());
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,144 @@
+#include "host/device/excitation.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "firmware/core/excitation/excitation_run.hpp"
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+using firmware::Channel;
+using firmware::ExcitationEnd;
+using firmware::ExcitationPhase;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kHeartbeat{20};
+
+void load(BoardClient& board, std::uint8_t axis, const Excitation& excitation) {
+  firmware::ExcitationEntriesRequest part;
+  part.axis = axis;
+  part.input = excitation.request.input;
+  for (std::size_t i = 0; i < excitation.entries.size(); i += part.count) {
+    part.first = static_cast<std::uint8_t>(i);
+    part.count = static_cast<std::uint8_t>(std::min(firmware::kEntriesPerReport, excitation.entries.size() - i));
+    for (std::size_t k = 0; k < part.count; ++k) part.entry[k] = excitation.entries[i + k];
+    board.load_excitation(part);
+  }
+}
+
+/// Rows of a capture as they come, in the order of the channels.
+class Rows {
+ public:
+  Rows(BoardClient& board, const CaptureSettings& settings, ChannelScale scale, Capture& capture)
+      : board_(board), settings_(settings), scale_(std::move(scale)), capture_(capture) {
+    capture_.channel.resize(settings.channels.size());
+  }
+
+  bool fetch(milliseconds patience) {
+    const auto samples = board_.next_samples(patience);
+    if (!samples) return false;
+    const std::size_t words = settings_.channels.size();
+    if (samples->words.size() % words != 0)
+      throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
+    for (std::size_t row = 0; row * words < samples->words.size(); ++row) {
+      const std::uint32_t number = samples->first_row + static_cast<std::uint32_t>(row);
+      if (!capture_.number.empty()) capture_.lost += number - capture_.number.back() - 1;
+      capture_.number.push_back(number);
+      for (std::size_t i = 0; i < words; ++i)
+        capture_.channel[i].push_back(scale_(settings_.channels[i], samples->words[row * words + i]));
+    }
+    return true;
+  }
+
+ private:
+  BoardClient& board_;
+  const CaptureSettings& settings_;
+  ChannelScale scale_;
+  Capture& capture_;
+};
+
+}  // namespace
+
+std::string_view end_name(firmware::ExcitationStatePayload state) {
+  switch (static_cast<ExcitationEnd>(state.end)) {
+    case ExcitationEnd::none:
+      return "not ended";
+    case ExcitationEnd::completed:
+      return "completed";
+    case ExcitationEnd::asked:
+      return "stopped";
+    case ExcitationEnd::travel:
+      return "left the box: travel";
+    case ExcitationEnd::speed:
+      return "left the box: speed";
+    case ExcitationEnd::no_motion:
+      return "no motion";
+    case ExcitationEnd::fault:
+      return "fault";
+    case ExcitationEnd::refused:
+      return "not enabled";
+    case ExcitationEnd::blind:
+      return "encoder and tachometer show different motion";
+  }
+  return "unknown";
+}
+
+ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Excitation& excitation,
+                                 const firmware::ParameterValues& values, const ExcitationScale& scale,
+                                 const std::function<bool()>& stop, const std::function<void(std::size_t)>& progress) {
+  ExcitationOutcome outcome;
+  outcome.settings.axis = axis;
+  outcome.settings.kind = scale.kind;
+  outcome.settings.channels = usual_channels(scale.has_tachometer);
+  if (excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop))
+    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference
+  outcome.capture.row_period_s = 1.0 / scale.rate_Hz;
+  Rows rows(board, outcome.settings,
+            ChannelScale(values.axis(axis), board.identify().fixed_point != 0, board.status().axis.at(axis).counts()),
+            outcome.capture);
+  load(board, axis, excitation);
+  firmware::ExcitationRequest request = excitation.request;
+  request.axis = axis;
+  firmware::CaptureRequest capture;
+  for (const Channel channel : outcome.settings.channels)
+    capture.channels[axis] |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
+  const auto is_over = [](const firmware::ExcitationStatePayload& state) {
+    return state.phase == static_cast<std::uint8_t>(ExcitationPhase::done);
+  };
+  try {
+    board.start_capture(capture);
+    board.start_excitation(request);
+    bool is_asked = false;
+    for (auto heard = steady_clock::time_point{}; !is_over(outcome.state);) {
+      const bool came = rows.fetch(milliseconds(10));
+      if (progress) progress(outcome.capture.number.size());
+      const auto now = steady_clock::now();
+      // A simulated board in this process has its own time: rows tell it.
+      if (came && now - heard < kHeartbeat && outcome.capture.number.size() % 16 != 0) continue;
+      heard = now;
+      outcome.state = board.excitation_state();
+      if (stop() && !is_asked) {
+        board.stop_excitation();
+        is_asked = true;
+      }
+    }
+    outcome.capture.dropped_by_board = board.stop_capture().dropped;
+    while (rows.fetch(milliseconds(50))) continue;
+  } catch (const Failure&) {
+    try {
+      board.stop_excitation();
+      board.stop_capture();
+    } catch (const Failure&) {  // the board has gone: the first failure says so
+    }
+    throw;
+  }
+  return outcome;
+}
+
+}  // namespace host

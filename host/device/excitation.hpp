@@ -1,0 +1,83 @@
+// Experiments on an axis: what excites it, the box that the board keeps it in, and the record of all samples.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/core/excitation/excitation_plan.hpp"
+#include "host/device/board_client.hpp"
+#include "host/device/capture.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// What the board itself enforces, from where the axis stands at the beginning. Every value is > 0.
+struct ExcitationLimits {
+  double travel = 0.0;  ///< width of the window, half of it to either side; mm (m)
+  double speed = 0.0;   ///< mm/s (m/s)
+  double volts = 0.0;   ///< of the command in open loop, or of what is added to a controller's output
+  double time_s = 0.0;
+};
+
+/// "travel=20,speed=100,volts=3,time=5"; a value may carry its unit (mm, m, um, mm/s, m/s, V, s). Throws
+/// Failure(usage), and Failure(refused) for a box that lacks a side.
+ExcitationLimits parse_box(std::string_view text, sim::DriveKind kind);
+
+/// "amplitude=2", "hold=0.3": by name; and the plain numbers in their order.
+struct ExcitationNumbers {
+  std::vector<double> list;
+  std::map<std::string, double> named;
+};
+ExcitationNumbers parse_numbers(const std::vector<std::string>& words);
+
+/// What turns physical units into the board's counts, converter steps and samples.
+struct ExcitationScale {
+  sim::DriveKind kind = sim::DriveKind::rotary;
+  double encoder_resolution = 0.0;  ///< mm (m) a count
+  double dac_resolution_V = 0.0;
+  double lead = 0.0;  ///< mm/rad; 1 for a linear drive; 0: not known
+  double rate_Hz = 0.0;
+  bool has_tachometer = true;
+  double acceleration = 0.0, jerk = 0.0;  ///< limits of references, mm/s^2, mm/s^3 (m); of a closed loop
+};
+
+struct Excitation {
+  firmware::ExcitationRequest request;
+  std::vector<firmware::ExcitationEntriesRequest::Entry> entries;
+  std::map<std::string, std::string> header;  ///< of the record: what analysis needs to know
+  std::string summary;                        ///< a line for the user
+};
+
+/// The kinds of `axistool excite`, with what each does and its numbers.
+struct ExcitationKindText {
+  std::string_view name, does, numbers;
+};
+extern const std::array<ExcitationKindText, 8> kExcitationKindTexts;
+
+/// Makes an excitation of a kind that fits its box. `closed_loop`: "" or "reference" or "output". Throws Failure(usage)
+/// for unknown kinds and numbers, and Failure(refused) where the numbers do not fit the box.
+Excitation design_excitation(std::string_view kind, const ExcitationNumbers& numbers, const ExcitationLimits& box,
+                             const ExcitationScale& scale, std::string_view closed_loop = {}, unsigned seed = 1);
+
+struct ExcitationOutcome {
+  Capture capture;
+  CaptureSettings settings;
+  firmware::ExcitationStatePayload state;
+};
+
+/// Why it ended, in words.
+std::string_view end_name(firmware::ExcitationStatePayload state);
+
+/// Runs it and captures every sample, from shortly before until the axis stands. The axis is enabled already if the
+/// excitation is in closed loop. `values`: with the scales of the drive. Throws what BoardClient throws; then the board
+/// is told to stop.
+ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Excitation& excitation,
+                                 const firmware::ParameterValues& values, const ExcitationScale& scale,
+                                 const std::function<bool()>& stop,
+                                 const std::function<void(std::size_t)>& progress = {});
+
+}  // namespace host
