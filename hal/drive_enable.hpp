@@ -14,4 +14,17 @@ concept DriveEnable = requires(T& drive, bool on) {
   { drive.is_faulted() } -> std::same_as<bool>;
 };
 
+/// An amplifier that says when it drives. Contract: `is_ready()` is its ready signal; a broken wire reads as not ready.
+template <typename T>
+concept ReadyInput = requires(T& drive) {
+  { drive.is_ready() } -> std::same_as<bool>;
+};
+
+/// A brake that holds without current. Contract: `release_brake(true)` lets it go, `release_brake(false)` applies it;
+/// applied after reset. The call does not wait.
+template <typename T>
+concept BrakeOutput = requires(T& drive, bool released) {
+  { drive.release_brake(released) } -> std::same_as<void>;
+};
+
 }  // namespace hal

@@ -122,7 +122,10 @@ class BoardApplication {
     }
     const typename Board::ControlShutOut guard;
     refused = axes_.enable(mask);
-    if (refused == Axes::kAxes) return Status::ok;
+    if (refused == Axes::kAxes) {
+      axes_.board().host_heard();  // before the next period watches for it
+      return Status::ok;
+    }
     return axes_[refused].state() == SupervisorState::ready ? Status::not_standing : refusal(refused);
   }
 

@@ -69,10 +69,13 @@ class Axis {
     if (!telemetry_.enabled) {
       telemetry_.enabled = true;
       is_closed_loop_ = !is_open_loop_;
-      hal_.drive_enable().set(true);
+      energise();
     }
     return true;
   }
+
+  /// The enable line alone, for an amplifier that takes a while: the loop stays open, at 0 V.
+  constexpr void energise() { hal_.drive_enable().set(true); }
 
   /// Opens the loop at once: 0 V, enable line off.
   constexpr void disable() {
@@ -109,6 +112,18 @@ class Axis {
   }
   /// Nothing is known of where the axis is, but of how far it moves.
   constexpr void forget_home() { telemetry_.homed = false; }
+
+  /// The encoder's counter in the last step.
+  constexpr std::uint32_t encoder_reading() const { return counter_.last_reading(); }
+  /// Before a step that comes late: the travel of the periods that were lost is nobody's surprise. The reference goes
+  /// along, so that a stop begins from where the axis is, at the speed that it has.
+  constexpr void bridge_gap(const hal::EncoderReading& encoder) {
+    if (!telemetry_.enabled || !encoder.valid || !is_synchronised_) return;
+    const std::int64_t missed = counter_.counts_at(encoder.counts) - counter_.counts() - telemetry_.encoder_travel;
+    counter_.skip(static_cast<std::int32_t>(missed));
+    telemetry_.estimate.anchor_counts += missed;
+    preview_.shift(missed);
+  }
 
   /// What a reading of the encoder means in this axis's counts.
   constexpr std::int64_t counts_at(std::uint32_t reading) const { return counter_.counts_at(reading); }

@@ -121,6 +121,11 @@ constexpr ParameterError check_homing(const HomingParameters<Scalar>& h) {
   return moves && h.travel > 0 && h.index_travel > 0 ? ParameterError::none : ParameterError::homing;
 }
 
+constexpr ParameterError check_sequence(const DriveSequenceParameters& s) {
+  const bool is_sound = s.amplifier_wait >= 0 && s.brake_release >= 0 && s.brake_application >= 0;
+  return is_sound && (!s.ready_input || s.amplifier_wait > 0) ? ParameterError::none : ParameterError::amplifier_ready;
+}
+
 /// Beyond these a monitor would not protect: what an axis at full command, from standstill, does in the times below, or
 /// what a moving one needs if that is more.
 namespace monitor_ceilings {
@@ -187,7 +192,8 @@ constexpr ParameterError check_monitors(const AxisParameters<Scalar>& p) {
   if (!is_positive(m.oscillation_V) || m.oscillation_V > p.dac_limit_V * Scalar(ceiling::kOscillationShare))
     return ParameterError::oscillation;
   if (m.travel_min_counts >= m.travel_max_counts) return ParameterError::travel;
-  if (m.saturation_samples <= 0 || m.capture_stride <= 0 ||
+  if (m.index_spacing < 0) return ParameterError::index_spacing;
+  if (m.saturation_samples <= 0 || m.capture_stride <= 0 || m.input_samples <= 0 ||
       Traits::times(m.saturation_samples, scaled.share) > Scalar(ceiling::kSaturation_s / kLoadTime_s))
     return ParameterError::saturation_time;
   return ParameterError::none;

@@ -37,6 +37,8 @@ enum class AxisFault : std::uint8_t {
   homing_switch_not_found = 27,
   homing_index_not_found = 28,
   homing_travel_exceeded = 29,
+  amplifier_not_ready = 30,
+  index_mismatch = 31,
 };
 
 }  // namespace firmware

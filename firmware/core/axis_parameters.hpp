@@ -10,6 +10,7 @@
 #include "firmware/core/kalman_estimator.hpp"
 #include "firmware/core/motion_limits.hpp"
 #include "firmware/core/reference_feedforward.hpp"
+#include "firmware/core/supervision/drive_sequence.hpp"
 #include "firmware/core/supervision/monitor_limits.hpp"
 
 namespace firmware {
@@ -36,8 +37,10 @@ struct AxisParameters {
   bool disturbance_cancellation_on = false;
   bool zero_phase_feedforward_on = false;  ///< off: the reference velocity alone, eqs. (50) and (52)
 
-  HomingParameters<Scalar> homing{};  ///< for SupervisedAxis
-  MonitorLimits<Scalar> monitors{};   ///< for SupervisedAxis; Axis alone has no monitors
+  // For SupervisedAxis; Axis alone has no monitors.
+  HomingParameters<Scalar> homing{};
+  DriveSequenceParameters sequence{};
+  MonitorLimits<Scalar> monitors{};
 
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
@@ -82,6 +85,8 @@ enum class ParameterError : std::uint8_t {
   estimator_poles = 29,        ///< unstable, undamped or slow (pole_check.hpp)
   loop_poles = 30,             ///< likewise
   homing = 31,                 ///< not by an operator, and a velocity 0, creep or a way not above 0
+  amplifier_ready = 32,        ///< the ready input on, and no time for it; or a time below 0
+  index_spacing = 33,          ///< below 0
 };
 
 }  // namespace firmware

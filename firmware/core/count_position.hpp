@@ -91,6 +91,12 @@ class CountExtender {
     return travel;
   }
 
+  /// The same travel as in the last sample comes next, whatever came between.
+  constexpr void skip(std::int32_t travel) {
+    last_reading_ += static_cast<std::uint32_t>(travel);
+    counts_ += travel;
+  }
+
   /// What a reading near the last one means.
   constexpr std::int64_t counts_at(std::uint32_t reading) const {
     return counts_ + static_cast<std::int32_t>(reading - last_reading_);
@@ -100,6 +106,7 @@ class CountExtender {
   constexpr void shift(std::int64_t by) { counts_ += by; }
 
   constexpr std::int64_t counts() const { return counts_; }
+  constexpr std::uint32_t last_reading() const { return last_reading_; }
 
  private:
   std::int64_t counts_ = 0;

@@ -43,9 +43,11 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   const auto fixed = [](Real value) { return FixedPoint::from(value); };
   const Real gain_velocity = unit.velocity / unit.volts;
   const auto direction = [&](const FrictionDirection<Real>& d) {
-    return FrictionDirection<FixedPoint>{fixed(d.static_V / unit.volts), fixed(d.coulomb_V / unit.volts),
-                                         fixed(d.viscous_V_s_per_rad * gain_velocity),
-                                         fixed(d.omega1_rad_s / unit.velocity), fixed(d.omega2_rad_s / unit.velocity)};
+    return FrictionDirection<FixedPoint>{.static_V = fixed(d.static_V / unit.volts),
+                                         .coulomb_V = fixed(d.coulomb_V / unit.volts),
+                                         .viscous_V_s_per_rad = fixed(d.viscous_V_s_per_rad * gain_velocity),
+                                         .omega1_rad_s = fixed(d.omega1_rad_s / unit.velocity),
+                                         .omega2_rad_s = fixed(d.omega2_rad_s / unit.velocity)};
   };
   AxisParameters<FixedPoint> q;
   q.sample_period_s = q.lead = q.encoder_resolution = FixedPoint(1);
@@ -54,19 +56,23 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.tachometer_fitted = p.tachometer_fitted;
   q.tachometer_gain = fixed(p.tachometer_gain / unit.velocity);
   q.tachometer_offset = fixed(p.tachometer_offset / unit.velocity);
-  q.drive = {fixed(p.drive.Ad12 * unit.velocity / unit.length), fixed(p.drive.Ad22),
-             fixed(p.drive.Bd1 * unit.volts / unit.length), fixed(p.drive.Bd2 * unit.volts / unit.velocity)};
+  q.drive = {.Ad12 = fixed(p.drive.Ad12 * unit.velocity / unit.length),
+             .Ad22 = fixed(p.drive.Ad22),
+             .Bd1 = fixed(p.drive.Bd1 * unit.volts / unit.length),
+             .Bd2 = fixed(p.drive.Bd2 * unit.volts / unit.velocity)};
   const Real row_unit[3] = {unit.length, unit.velocity, unit.volts};
   for (std::size_t row = 0; row < 3; ++row)
     q.Kobs[row] = {fixed(p.Kobs[row][0] * unit.length / row_unit[row]),
                    fixed(p.Kobs[row][1] * unit.velocity / row_unit[row])};
   q.Kc = {fixed(p.Kc[0] * unit.length / unit.volts), fixed(p.Kc[1] * gain_velocity)};
-  q.friction = {direction(p.friction.positive), direction(p.friction.negative),
-                fixed(p.friction.blend_velocity_rad_s / unit.velocity)};
+  q.friction = {.positive = direction(p.friction.positive),
+                .negative = direction(p.friction.negative),
+                .blend_velocity_rad_s = fixed(p.friction.blend_velocity_rad_s / unit.velocity)};
   const CompensationParameters<Real>& c = p.compensation;
   const auto harmonic = [&](const TravelHarmonic<Real>& h, Real unit_of_value) {
-    return TravelHarmonic<FixedPoint>{fixed(h.cosine / unit_of_value), fixed(h.sine / unit_of_value),
-                                      h.turns_per_count};
+    return TravelHarmonic<FixedPoint>{.cosine = fixed(h.cosine / unit_of_value),
+                                      .sine = fixed(h.sine / unit_of_value),
+                                      .turns_per_count = h.turns_per_count};
   };
   q.compensation.cogging_on = c.cogging_on;
   for (std::size_t i = 0; i < c.cogging_V.size(); ++i)
@@ -79,12 +85,13 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.friction_feedforward_on = p.friction_feedforward_on;
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
   q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;
-  q.homing = {p.homing.mode,
-              fixed(p.homing.velocity / unit.travel_velocity),
-              fixed(p.homing.creep_velocity / unit.travel_velocity),
-              p.homing.travel,
-              p.homing.index_travel,
-              p.homing.position};
+  q.homing = {.mode = p.homing.mode,
+              .velocity = fixed(p.homing.velocity / unit.travel_velocity),
+              .creep_velocity = fixed(p.homing.creep_velocity / unit.travel_velocity),
+              .travel = p.homing.travel,
+              .index_travel = p.homing.index_travel,
+              .position = p.homing.position};
+  q.sequence = p.sequence;
   const MonitorLimits<Real>& m = p.monitors;
   q.monitors = {.following_error_floor = fixed(m.following_error_floor / unit.length),
                 .following_error_per_velocity = fixed(m.following_error_per_velocity * unit.velocity / unit.length),
@@ -98,7 +105,9 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
                 .swing_share = fixed(m.swing_share),
                 .travel_min_counts = m.travel_min_counts,
                 .travel_max_counts = m.travel_max_counts,
+                .index_spacing = m.index_spacing,
                 .saturation_samples = m.saturation_samples,
+                .input_samples = m.input_samples,
                 .capture_stride = m.capture_stride};
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
   q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);

@@ -100,6 +100,8 @@ class FaultyAxis {
       apply();
     }
     bool is_faulted() { return axis_.defects.drive_faulted; }
+    bool is_ready() const { return axis_.sound_.drive_enable().is_ready(); }
+    void release_brake(bool released) { axis_.sound_.drive_enable().release_brake(released); }
     bool is_on() const { return is_on_; }
     void apply() { axis_.sound_.drive_enable().set(is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted); }
 

@@ -118,12 +118,16 @@ class SimulatedAxis {
       is_on_ = on;
       plant_.set_enabled(on);
     }
+    bool is_ready() const { return is_on_; }
+    void release_brake(bool released) { is_brake_released_ = released; }
+    bool is_brake_released() const { return is_brake_released_; }
     bool is_faulted() { return false; }
     bool is_on() const { return is_on_; }
 
    private:
     sim::Plant& plant_;
     bool is_on_ = false;
+    bool is_brake_released_ = false;
   };
 
   class SimulatedLimits {

@@ -1,4 +1,4 @@
-// The digital lines of one drive: enable out, fault and switches in.
+// The digital lines of one drive: enable and brake out, fault, ready and switches in.
 #pragma once
 
 #include <initializer_list>
@@ -11,22 +11,29 @@
 namespace hal::stm32f4 {
 
 /// Enable: high lets the amplifier drive, through the contact of the emergency-stop relay. Fault: the amplifier's
-/// contact pulls low while all is well, so an open wire reads as a fault.
+/// contact pulls low while all is well, so an open wire reads as a fault. Ready: its contact pulls low once it drives.
+/// Brake: high releases it.
 class DriveLines {
  public:
-  DriveLines(Pin enable, Pin fault) : enable_(enable), fault_(fault) {}
+  struct Pins {
+    Pin enable, fault, ready, brake;
+  };
+  explicit DriveLines(const Pins& pins) : pins_(pins) {}
   void start() {
-    enable_.make_output(false);
-    fault_.make_input(Pull::up);
+    pins_.enable.make_output(false);
+    pins_.brake.make_output(false);
+    pins_.fault.make_input(Pull::up);
+    pins_.ready.make_input(Pull::up);
   }
-  void set(bool on) { enable_.set(on); }
-  bool is_faulted() { return fault_.read(); }
+  void set(bool on) { pins_.enable.set(on); }
+  bool is_faulted() { return pins_.fault.read(); }
+  bool is_ready() { return !pins_.ready.read(); }
+  void release_brake(bool released) { pins_.brake.set(released); }
 
  private:
-  Pin enable_;
-  Pin fault_;
+  Pins pins_;
 };
-static_assert(DriveEnable<DriveLines>);
+static_assert(DriveEnable<DriveLines> && ReadyInput<DriveLines> && BrakeOutput<DriveLines>);
 
 /// End switches open when actuated; the home switch closes to ground.
 class SwitchInputs {

@@ -31,7 +31,9 @@ nlohmann::json faults_json(const host::BoardState& status) {
                     {"fault", fault.name},
                     {"number", status.axis[axis].fault},
                     {"cause", fault.cause},
-                    {"remedy", fault.remedy}});
+                    {"remedy", fault.remedy},
+                    {"second_fault",
+                     firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].second_fault)).name}});
   }
   return {{"format", "axis-faults/1"},
           {"axes", axes},
@@ -48,9 +50,8 @@ bool has_fault(const host::BoardState& status) {
 void print_faults(const host::BoardState& status) {
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const auto& fault = firmware::fault_info(static_cast<firmware::AxisFault>(status.axis[axis].fault));
-    fmt::print(
-        "{}: {}, {}\n", firmware::kAxisNames[axis], host::state_text(status.axis[axis]),
-        status.axis[axis].fault == 0 ? "no fault" : fmt::format("fault {} {}", status.axis[axis].fault, fault.name));
+    fmt::print("{}: {}, {}\n", firmware::kAxisNames[axis], host::state_text(status.axis[axis]),
+               status.axis[axis].fault == 0 ? "no fault" : host::fault_text(status.axis[axis]));
     if (status.axis[axis].fault != 0) fmt::print("   cause:  {}\n   remedy: {}\n", fault.cause, fault.remedy);
   }
   if (const auto problem = host::store_problem(status)) fmt::print("store: {}\n", *problem);

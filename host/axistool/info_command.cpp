@@ -45,8 +45,9 @@ void describe_board(const InfoArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   const firmware::IdentityPayload identity = board.identify();
   const host::BoardState status = board.status();
-  if (!arguments.json.empty()) write_json(host::board_json(board.name(), identity, status), arguments.json);
-  if (talks(arguments)) fmt::print("{}", host::board_text(board.name(), identity, status));
+  const firmware::TimingPayload timing = board.timing(false);
+  if (!arguments.json.empty()) write_json(host::board_json(board.name(), identity, status, timing), arguments.json);
+  if (talks(arguments)) fmt::print("{}", host::board_text(board.name(), identity, status, timing));
 }
 
 }  // namespace
@@ -54,6 +55,7 @@ void describe_board(const InfoArguments& arguments) {
 void add_info(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand("info", "What a board, or a firmware image, says about itself");
+  command->alias("status");
   add_input(*command, "IMAGE", arguments->image, "image file (.bin); without it, the board");
   add_device_options(*command, *arguments);
   command->footer(

@@ -91,6 +91,8 @@ void require_ok(const Message& reply, const std::string& others = "") {
                ". Or stop them (`axistool disable`), or take the motion over (--take-over of enable, jog, move)");
     case Status::restarting:
       fail(ExitCode::refused, "the board is about to restart: try again in a second");
+    case Status::others_capture:
+      fail(ExitCode::refused, "another program captures: wait until it has ended");
     case Status::not_homed:
       fail(ExitCode::refused,
            "the axis does not know where it is: `axistool home` first (or move it --relative, or jog it)");
@@ -255,7 +257,10 @@ std::size_t BoardClient::axis_count() {
 
 firmware::TimingPayload BoardClient::timing(bool begin_anew) {
   const firmware::TimingRequest anew{static_cast<std::uint8_t>(begin_anew ? 1 : 0)};
-  return payload_of<firmware::TimingPayload>(request(MessageType::timing, anew));
+  const Message reply = request(MessageType::timing, anew);
+  firmware::TimingPayload timing;  // older boards' ends before the cycles
+  std::memcpy(&timing, reply.payload.data(), std::min<std::size_t>(reply.length, sizeof timing));
+  return timing;
 }
 
 void BoardClient::require_same_table() {

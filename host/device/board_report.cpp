@@ -24,6 +24,10 @@ std::string nth(const Names& names, std::size_t n) {
   return n < names.size() ? std::string(names[n]) : fmt::format("number {}", n);
 }
 
+const char* fault_name(std::uint8_t fault) {
+  return firmware::fault_info(static_cast<firmware::AxisFault>(fault)).name;
+}
+
 }  // namespace
 
 std::string state_text(const firmware::AxisStatus& axis) {
@@ -59,14 +63,22 @@ std::optional<std::string> store_problem(const BoardState& status) {
   return std::nullopt;
 }
 
+std::string fault_text(const firmware::AxisStatus& axis) {
+  if (axis.fault == 0) return "";
+  std::string text = fmt::format("fault {} {}", axis.fault, fault_name(axis.fault));
+  if (axis.second_fault != 0) text += fmt::format(", then {} {}", axis.second_fault, fault_name(axis.second_fault));
+  return text;
+}
+
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
-                          const BoardState& status) {
+                          const BoardState& status, const firmware::TimingPayload& timing) {
   nlohmann::json axes = nlohmann::json::array();
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
     axes.push_back({{"axis", firmware::kAxisNames[axis]},
                     {"state", state_text(now)},
-                    {"fault", firmware::fault_info(static_cast<firmware::AxisFault>(now.fault)).name},
+                    {"fault", fault_name(now.fault)},
+                    {"second_fault", fault_name(now.second_fault)},
                     {"counts", now.counts()},
                     {"velocity", now.velocity},
                     {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
@@ -83,6 +95,8 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
           {"fixed_point", identity.fixed_point != 0},
           {"simulated", (status.flags & firmware::kBoardSimulated) != 0},
           {"control_periods", status.control_periods},
+          {"control_cycles",
+           {{"average", timing.cycles_average}, {"worst", timing.cycles_worst}, {"processor_Hz", timing.processor_Hz}}},
           {"store", store_text(status.store_state)},
           {"unsaved_changes", (status.flags & firmware::kBoardUnsaved) != 0},
           {"erases", status.store_erases},
@@ -92,7 +106,8 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
           {"axes", axes}};
 }
 
-std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status) {
+std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status,
+                       const firmware::TimingPayload& timing) {
   std::string text =
       fmt::format("device       {}\nboard        {}{}, version {} {}\nnumbers      {}\nparameters   table {:#010x}{}\n",
                   device, text_of(identity.board),
@@ -101,18 +116,18 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
                   identity.schema_hash == firmware::kSchemaHash ? ", as this axistool's" : ", NOT this axistool's");
   text += fmt::format("store        {}{}; flash erased {} times\n", store_text(status.store_state),
                       (status.flags & firmware::kBoardUnsaved) != 0 ? ", unsaved changes" : "", status.store_erases);
+  if (timing.processor_Hz != 0)
+    text += fmt::format("control      {} clocks of the processor on average, {} at worst, at {:g} MHz\n",
+                        timing.cycles_average, timing.cycles_worst, 1e-6 * timing.processor_Hz);
   text += fmt::format("last reset   {}; {} since power on\n", reset_text(status.reset_cause), status.resets);
   if ((status.flags & firmware::kBoardStopPressed) != 0) text += "emergency stop is pressed\n";
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
-    text += fmt::format(
-        "axis {}       {}, {} counts{}{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),
-        (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
-        : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
-                                                  : " from where it was (not homed)",
-        now.fault == 0
-            ? ""
-            : fmt::format(", fault {}", firmware::fault_info(static_cast<firmware::AxisFault>(now.fault)).name));
+    text += fmt::format("axis {}       {}, {} counts{}{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),
+                        (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
+                        : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
+                                                                  : " from where it was (not homed)",
+                        now.fault == 0 ? "" : ", " + fault_text(now));
   }
   if (const auto problem = store_problem(status)) text += *problem + "\n";
   return text;

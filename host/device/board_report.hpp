@@ -18,8 +18,11 @@ std::optional<std::string> store_problem(const BoardState& status);
 
 /// Name, version, table, store, axes: format "axis-board/1".
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
-                          const BoardState& status);
+                          const BoardState& status, const firmware::TimingPayload& timing);
 /// The same for people.
-std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status);
+std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status,
+                       const firmware::TimingPayload& timing);
+/// The axis's fault and what went wrong besides, or empty.
+std::string fault_text(const firmware::AxisStatus& axis);
 
 }  // namespace host

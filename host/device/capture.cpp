@@ -75,8 +75,8 @@ class CaptureRun {
       const auto now = steady_clock::now();
       if (samples) last_row_ = now;
       steer(now);
-      if (!settings_.jogs.empty() && now - heard > kHeartbeat) {
-        watch();
+      if (now - heard > kHeartbeat) {
+        settings_.jogs.empty() ? board_.heartbeat() : watch();  // the capture, too, is its living client's
         heard = now;
       }
       if (!triggered_ && now - began > std::chrono::duration<double>(settings_.patience_s))

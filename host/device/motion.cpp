@@ -89,7 +89,8 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
     });
   });
   board.enable(mask);
-  const bool closed = ask_until(board, std::chrono::seconds(2), [&](const auto& status) {
+  // The longest that an amplifier and a brake may take by their parameters, and a little more.
+  const bool closed = ask_until(board, std::chrono::seconds(17), [&](const auto& status) {
     return for_all(mask, [&](std::uint8_t axis) {
       require_no_fault(status, axis);
       return state_of(status, axis) == SupervisorState::enabled;

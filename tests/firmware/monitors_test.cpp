@@ -22,6 +22,7 @@ firmware::AxisParameters<float> parameters() {
   auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
   p.monitors.travel_min_counts = -1000;
   p.monitors.travel_max_counts = 2000;
+  p.monitors.input_samples = 1;
   return p;
 }
 
@@ -38,7 +39,7 @@ struct Watched {
 
   AxisFault fault() const {
     AxisMonitors<float> monitors;
-    monitors.configure(parameters());
+    monitors.configure(parameters(), 0);
     for (int k = 1; k < 10 && seen.tachometer_velocity != 0.0f; ++k) {  // up to its speed, not there at once
       AxisTelemetry<float> before = seen;
       before.encoder_travel = seen.encoder_travel * k / 10;
@@ -170,7 +171,7 @@ TEST(TravelMonitor, LetsAnAxisGoBackFromBeyondAnEnd) {
 
 TEST(FollowingErrorMonitor, RemembersTheLargest) {
   AxisMonitors<float> monitors;
-  monitors.configure(parameters());
+  monitors.configure(parameters(), 0);
   Watched w = moving_at(0.0f);
   for (const float error : {0.1f, -0.3f, 0.2f}) {
     w.seen.tracking_error = error;
@@ -183,8 +184,8 @@ class BoardMonitor : public testing::Test {
  protected:
   BoardMonitor() {
     watch.configure(firmware::BoardWatch::default_limits(0.001f));
-    watch.host_commands(true);
     watch.watch({}, false);
+    watch.host_commands(true);
   }
   AxisFault after(std::uint32_t us) { return watch.watch({now += us, false, false, false}, true); }
   firmware::BoardWatch watch;
@@ -214,6 +215,7 @@ TEST_F(BoardMonitor, SilenceIsNoFaultWhereTheHostCommandsNothingForAWhile) {
 }
 
 TEST_F(BoardMonitor, LinesOfTheBoard) {
+  for (std::uint32_t k = 1; k < 3; ++k) EXPECT_EQ(watch.watch({300 * k, true, false, false}, true), AxisFault::none);
   EXPECT_EQ(watch.watch({1000, true, false, false}, true), AxisFault::emergency_stop);
   EXPECT_EQ(watch.watch({2000, false, true, false}, true), AxisFault::supply_low);
   EXPECT_EQ(watch.watch({3000, false, false, true}, false), AxisFault::parameter_store_damaged);

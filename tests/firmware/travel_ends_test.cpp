@@ -3,10 +3,9 @@
 
 #include <cmath>
 
-#include "firmware/boards/pil/value_axis.hpp"
 #include "firmware/core/fixed_units.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
-#include "tests/firmware/paper_axes.hpp"
+#include "tests/firmware/driven_axis.hpp"
 
 namespace {
 
@@ -14,37 +13,7 @@ using firmware::AxisFault;
 using firmware::CountPosition;
 using firmware::SupervisorState;
 using firmware::boards::ValueAxis;
-
-/// An axis with the paper's drive, eq. (7), and without friction.
-class DrivenAxis {
- public:
-  explicit DrivenAxis(const firmware::AxisParameters<float>& parameters) {
-    io.encoder().reading = {0, true};
-    io.tachometer().reading = {0, true};
-    EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
-    for (int k = 0; k < firmware::kSelfTestSamples + 1; ++k) axis.step();
-    EXPECT_TRUE(axis.set_position(0));
-    EXPECT_TRUE(axis.enable());
-    step();
-  }
-  void step() {
-    axis.step();
-    const firmware_test::PaperAxis& drive = firmware_test::kPaperX;
-    const double u_V = io.dac().code * firmware_test::kDacResolution_V;
-    x_mm_ += drive.Ad12 * w_rad_s_ + drive.Bd1 * u_V;
-    w_rad_s_ = drive.Ad22 * w_rad_s_ + drive.Bd2 * u_V;
-    const double counts = std::floor(x_mm_ / firmware_test::kEncoderResolution_mm);
-    io.encoder().reading.counts = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts));
-    io.tachometer().reading.code = static_cast<std::int32_t>(std::lround(64.0 * w_rad_s_));
-  }
-  double at_mm() const { return x_mm_; }
-
-  ValueAxis io;
-  firmware::SupervisedAxis<float, ValueAxis> axis{io};
-
- private:
-  double x_mm_ = 0.0, w_rad_s_ = 0.0;
-};
+using firmware_test::DrivenAxis;
 
 firmware::AxisParameters<float> parameters(double travel_max_mm, float acceleration = 2000.0f, float jerk = 50000.0f) {
   auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
@@ -124,7 +93,7 @@ class TwoAxes : public testing::Test {
 
 TEST_F(TwoAxes, AreEnabledTogetherOrNotAtAll) {
   io[1].drive_enable().faulted = true;
-  run(1);
+  run(3);
   EXPECT_EQ(axes.enable(3), 1u) << "the second refuses";
   run(2);
   EXPECT_EQ(axes[0].state(), SupervisorState::ready);

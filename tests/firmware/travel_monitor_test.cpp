@@ -15,8 +15,9 @@ class Travel : public testing::Test {
     auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
     p.monitors.travel_min_counts = -1000;
     p.monitors.travel_max_counts = 2000;
+    p.monitors.input_samples = 1;
     play = firmware::TravelMonitor<float>::play_in_counts(p);
-    monitor.configure(p);
+    monitor.configure(p, 0);
   }
   AxisFault at(std::int64_t counts, float reference_velocity = 0.0f) {
     firmware::AxisTelemetry<float> seen;

@@ -33,6 +33,16 @@ constexpr HomingParameters<float> homing(const AxisValues& v) {
   return h;
 }
 
+constexpr DriveSequenceParameters sequence(const AxisValues& v) {
+  const float samples_a_second = 1.0F / v.get<"drive.sample_period">();
+  const auto samples = [=](float time_s) { return ScalarTraits<float>::nearest_product(time_s, samples_a_second); };
+  return {.ready_input = v.get<"amplifier.ready_input">(),
+          .brake_fitted = v.get<"brake.fitted">(),
+          .amplifier_wait = samples(v.get<"amplifier.ready_time">()),
+          .brake_release = samples(v.get<"brake.release_time">()),
+          .brake_application = samples(v.get<"brake.apply_time">())};
+}
+
 constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
   const float sample_period_s = v.get<"drive.sample_period">();
   const float samples_a_second = 1.0F / sample_period_s;
@@ -48,6 +58,7 @@ constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
   set_filters(m, sample_period_s);
   m.travel_min_counts = whole_counts(v.get<"monitor.travel_min">(), v.get<"drive.encoder_resolution">());
   m.travel_max_counts = whole_counts(v.get<"monitor.travel_max">(), v.get<"drive.encoder_resolution">());
+  m.index_spacing = v.get<"encoder.index_spacing">();
   m.saturation_samples = ScalarTraits<float>::nearest_product(v.get<"monitor.saturation_time">(), samples_a_second);
   m.capture_stride = capture_stride(samples_a_second);
   return m;
@@ -119,6 +130,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.acceleration_limit = v.get<"limits.acceleration">();
   p.jerk_limit = v.get<"limits.jerk">();
   p.homing = homing(v);
+  p.sequence = sequence(v);
   p.monitors = monitor_limits(v);
   return p;
 }

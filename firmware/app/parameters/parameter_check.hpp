@@ -92,6 +92,10 @@ constexpr std::uint16_t id_behind(ParameterError error) {
       return id_of<"backlash.crossing_time">();
     case ParameterError::homing:
       return id_of<"homing.velocity">();
+    case ParameterError::amplifier_ready:
+      return id_of<"amplifier.ready_time">();
+    case ParameterError::index_spacing:
+      return id_of<"encoder.index_spacing">();
     case ParameterError::none:
     case ParameterError::sample_period:
     case ParameterError::controller_is_enabled:
@@ -114,6 +118,7 @@ constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis)
   const AxisParameters<Scalar> parameters = axis_parameters<Scalar>(v);
   ParameterError error = check(parameters);
   if (error == ParameterError::none) error = check_homing(parameters.homing);
+  if (error == ParameterError::none) error = check_sequence(parameters.sequence);
   if (error == ParameterError::none) error = check_monitors(parameters);
   if (error == ParameterError::none) error = check_poles(parameters);
   if (error == ParameterError::none) return {};

@@ -175,6 +175,21 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {244, axis, "homing.index_travel", real, "mm", "m", 1e-6F, 1e6F, 10, while_disabled,
      "way within which an index pulse comes: a turn and a little more"},
     {245, axis, "homing.position", real, "mm", "m", -1e6F, 1e6F, 0, while_disabled, "of home"},
+
+    {246, axis, "amplifier.ready_input", toggle, "", "", 0, 1, 0, while_disabled,
+     "the amplifier's ready contact is wired: the loop closes once it says so, and opens when it no longer does"},
+    {247, axis, "amplifier.ready_time", real, "s", "s", 0, 10, 0, while_disabled,
+     "from the enable until the amplifier drives; with the ready input the longest that this may take"},
+
+    {248, axis, "brake.fitted", toggle, "", "", 0, 1, 0, while_disabled,
+     "released once the loop is closed, applied before it opens"},
+    {249, axis, "brake.release_time", real, "s", "s", 0, 5, 0.1F, while_disabled,
+     "until a released brake holds nothing: no motion before"},
+    {250, axis, "brake.apply_time", real, "s", "s", 0, 5, 0.1F, while_disabled,
+     "until an applied brake holds: the enable stays as long"},
+
+    {251, axis, "encoder.index_spacing", whole, "", "", 0, 1e6F, 0, while_disabled,
+     "counts from one index pulse to the next, which then are watched; 0: no index is wired"},
 });
 
 }  // namespace parameter_rows

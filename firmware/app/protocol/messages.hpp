@@ -74,6 +74,7 @@ enum class Status : std::uint8_t {
   not_standing = 19,    ///< an axis that is to be enabled moves
   not_homed = 20,       ///< a move to a position, of an axis that does not know where it is
   homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
+  others_capture = 22,  ///< another client's capture runs: wait for its end, or stop it
 };
 
 struct IdentityPayload {
@@ -142,6 +143,9 @@ struct TimingPayload {
   std::uint32_t rejected_reports = 0;
   std::uint32_t stack_used = 0;
   std::uint32_t stack_size = 0;
+  std::uint32_t cycles_average = 0;  ///< processor clocks that the control interrupt takes; 0: not measured
+  std::uint32_t cycles_worst = 0;
+  std::uint32_t processor_Hz = 0;
 };
 
 struct TimingRequest {

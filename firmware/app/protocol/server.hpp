@@ -19,8 +19,10 @@ struct BootFacts {
   bool simulated = false;
 };
 
-struct StackUse {
-  std::uint32_t used = 0, size = 0;
+/// What the program takes of the processor, as it runs. Cycles: of the control interrupt; 0 where nothing counts them.
+struct ProgramUse {
+  std::uint32_t stack_used = 0, stack_size = 0;
+  std::uint32_t cycles_average = 0, cycles_worst = 0, processor_Hz = 0;
 };
 
 template <typename Application>
@@ -31,8 +33,8 @@ class ProtocolServer {
 
   /// A round of the background: at most one report in and one out. Never waits.
   template <hal::UsbHid Usb>
-  void poll(Usb& usb, const StackUse& stack = {}) {
-    stack_ = stack;
+  void poll(Usb& usb, const ProgramUse& use = {}) {
+    use_ = use;
     if (!usb.is_configured()) {
       reply_waits_ = false;
       app_.capture().stop();
@@ -71,6 +73,7 @@ class ProtocolServer {
     reply.status = may_act(request);
     if (reply.status == Status::ok) reply.status = handle(request, reply);
     if (reply.status == Status::ok && begins_motion(request.type)) app_.become_owner(request.client);
+    if (request.client == capture_client_) capture_heard_at_ = app_.control_periods();
     app_.owner_heard(request.client);  // last: a reply that says "at rest" also ends the watch for the heart-beat
     return encode(reply);
   }
@@ -257,8 +260,11 @@ class ProtocolServer {
     TimingPayload payload = app_.timing();
     payload.reports = reports_;
     payload.rejected_reports = rejected_;
-    payload.stack_used = stack_.used;
-    payload.stack_size = stack_.size;
+    payload.stack_used = use_.stack_used;
+    payload.stack_size = use_.stack_size;
+    payload.cycles_average = use_.cycles_average;
+    payload.cycles_worst = use_.cycles_worst;
+    payload.processor_Hz = use_.processor_Hz;
     reply.put(payload);
     if (request.begin_anew != 0) app_.begin_timing_anew();
     return Status::ok;
@@ -344,14 +350,24 @@ class ProtocolServer {
 
   static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxes == 0; }
 
+  /// A capture is its client's as long as that one is heard now and then.
+  bool is_others_capture(ClientToken client) {
+    constexpr std::uint32_t kPatience_s = 2;
+    const auto patience = kPatience_s * static_cast<std::uint32_t>(app_.active().template get<"control.rate">());
+    return app_.capture().is_running() && client != capture_client_ &&
+           app_.control_periods() - capture_heard_at_ <= patience;
+  }
+
   Status start_capture(const CaptureRequest& request, ClientToken client) {
     bool has_unknown = false;
     for (std::size_t axis = 0; axis < request.channels.size(); ++axis)
       has_unknown = has_unknown || request.channels[axis] >> (axis < kAxes ? kChannels : 0) != 0;
     if (request.words() == 0 || request.words() > kWordsPerReport || has_unknown || request.every == 0)
       return Status::malformed;
+    if (is_others_capture(client)) return Status::others_capture;
     app_.start_capture(request);
     capture_client_ = client;
+    capture_heard_at_ = app_.control_periods();
     return Status::ok;
   }
 
@@ -399,7 +415,7 @@ class ProtocolServer {
   Application& app_;
   const ImageHeader& image_;
   BootFacts boot_;
-  StackUse stack_{};
+  ProgramUse use_{};
   hal::HidReport reply_{};
   hal::HidReport samples_{};
   bool reply_waits_ = false;
@@ -408,6 +424,7 @@ class ProtocolServer {
   std::uint32_t restart_asked_at_ = 0;
   std::uint16_t samples_sent_ = 0;
   ClientToken capture_client_ = 0;  ///< whose capture it is
+  std::uint32_t capture_heard_at_ = 0;
   std::uint32_t reports_ = 0;
   std::uint32_t rejected_ = 0;
 };

@@ -33,8 +33,7 @@ constexpr const char* name_of(hal::ConverterState state) {
 
 void connect_pins() {
   pins::dac_not_clear().make_output(false);  // the converter's own way to 0 V, whatever it holds
-  pins::enable_x().make_output(false);
-  pins::enable_y().make_output(false);
+  for (const Pin& pin : {pins::enable_x(), pins::enable_y(), pins::brake_x(), pins::brake_y()}) pin.make_output(false);
   for (const Pin& pin : {pins::encoder_x_a(), pins::encoder_x_b(), pins::encoder_x_index()})
     pin.make_alternate(kTimer2Function, Pull::up);
   for (const Pin& pin : {pins::encoder_y_a(), pins::encoder_y_b(), pins::encoder_y_index()})
@@ -172,10 +171,9 @@ ResetCause read_reset_cause() {
   return (flags & Rcc::kPinReset) != 0 ? ResetCause::reset_pin : ResetCause::unknown;
 }
 
-/// Pins alone: the enables, and the converter's clear input, which needs no transfer.
+/// Pins alone: the enables, the brakes, and the converter's clear input, which needs no transfer.
 void make_outputs_safe() noexcept {
-  pins::enable_x().set(false);
-  pins::enable_y().set(false);
+  for (const Pin& pin : {pins::enable_x(), pins::enable_y(), pins::brake_x(), pins::brake_y()}) pin.set(false);
   pins::dac_not_clear().set(false);
   pins::led_fault().set(true);
 }

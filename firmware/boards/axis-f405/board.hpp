@@ -98,6 +98,7 @@ class Board {
   hal::stm32f4::StopInput& emergency_stop() { return stop_; }
   hal::stm32f4::SupplyDetector& supply() { return supply_; }
   hal::stm32f4::MicrosecondClock& clock() { return clock_; }
+  static constexpr std::uint32_t processor_Hz() { return hal::stm32f4::kSystemClock_Hz; }
   Serial& serial() { return serial_; }
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::ParameterFlash& parameter_flash() { return parameter_flash_; }
@@ -118,18 +119,20 @@ class Board {
   hal::stm32f4::TachometerSamples samples_{};
   hal::stm32f4::SpiPort spi_{hal::stm32f4::spi1(), pins::dac_select()};
   Converter converter_{spi_};
-  BoardAxisHal x_{hal::stm32f4::timer2(),
-                  samples_,
-                  0,
-                  converter_.a(),
-                  {pins::enable_x(), pins::drive_fault_x()},
-                  {pins::positive_end_x(), pins::negative_end_x(), pins::home_x()}};
-  BoardAxisHal y_{hal::stm32f4::timer5(),
-                  samples_,
-                  1,
-                  converter_.b(),
-                  {pins::enable_y(), pins::drive_fault_y()},
-                  {pins::positive_end_y(), pins::negative_end_y(), pins::home_y()}};
+  BoardAxisHal x_{
+      hal::stm32f4::timer2(),
+      samples_,
+      0,
+      converter_.a(),
+      hal::stm32f4::DriveLines({pins::enable_x(), pins::drive_fault_x(), pins::drive_ready_x(), pins::brake_x()}),
+      {pins::positive_end_x(), pins::negative_end_x(), pins::home_x()}};
+  BoardAxisHal y_{
+      hal::stm32f4::timer5(),
+      samples_,
+      1,
+      converter_.b(),
+      hal::stm32f4::DriveLines({pins::enable_y(), pins::drive_fault_y(), pins::drive_ready_y(), pins::brake_y()}),
+      {pins::positive_end_y(), pins::negative_end_y(), pins::home_y()}};
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
   hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer4()};

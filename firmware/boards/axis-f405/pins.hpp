@@ -27,6 +27,10 @@ inline Pin enable_x() { return {gpio_c(), 4}; }
 inline Pin enable_y() { return {gpio_c(), 5}; }
 inline Pin drive_fault_x() { return {gpio_c(), 6}; }
 inline Pin drive_fault_y() { return {gpio_c(), 7}; }
+inline Pin drive_ready_x() { return {gpio_c(), 2}; }
+inline Pin drive_ready_y() { return {gpio_c(), 3}; }
+inline Pin brake_x() { return {gpio_a(), 3}; }
+inline Pin brake_y() { return {gpio_b(), 1}; }
 inline Pin positive_end_x() { return {gpio_b(), 12}; }
 inline Pin negative_end_x() { return {gpio_b(), 13}; }
 inline Pin home_x() { return {gpio_b(), 14}; }

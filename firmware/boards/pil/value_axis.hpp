@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "hal/axis_hal.hpp"
 #include "hal/limit_inputs.hpp"
@@ -12,7 +13,9 @@ class ValueAxis {
  public:
   struct Encoder {
     hal::EncoderReading reading;
+    hal::IndexReading index;
     hal::EncoderReading read() const { return {reading.counts, reading.valid}; }
+    hal::IndexReading read_index() { return std::exchange(index, {}); }
   };
   struct Tachometer {
     hal::TachometerReading reading;
@@ -31,8 +34,12 @@ class ValueAxis {
   struct Enable {
     bool on = false;
     bool faulted = false;
+    bool ready = true;
+    bool brake_released = false;
     void set(bool value) { on = value; }
     bool is_faulted() const { return faulted; }
+    bool is_ready() const { return ready; }
+    void release_brake(bool released) { brake_released = released; }
   };
   struct Limits {
     hal::LimitState state;

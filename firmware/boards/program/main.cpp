@@ -79,7 +79,8 @@ extern "C" [[noreturn]] void run_board() {
     supervise();
     if (liveness.may_feed()) board.feed_watchdog();
     board.usb().poll();
-    server.poll(board.usb(), {stack_used_bytes(), stack_size_bytes()});
+    server.poll(board.usb(), {stack_used_bytes(), stack_size_bytes(), control_cycles.average(), control_cycles.worst(),
+                              board.processor_Hz()});
     serve(last_run, image);
   }
 }

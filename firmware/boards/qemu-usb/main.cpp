@@ -109,16 +109,16 @@ extern "C" [[noreturn]] void run_board() {
   hal::cortex_m::set_exception_priority(hal::cortex_m::kSysTickException, 2);
   hal::cortex_m::sys_tick().CSR = SysTick::kEnable | SysTick::kInterrupt | SysTick::kProcessorClock;
   board.usb().say_hello();
-  firmware::StackUse stack{stack_used_bytes(), stack_size_bytes()};
+  firmware::ProgramUse use{stack_used_bytes(), stack_size_bytes()};
   constexpr unsigned kRestsPerLook = 100;  // at the whole stack, which takes long
   for (unsigned rests = 1;; ++rests) {
     constexpr int kRounds = 4;
     for (int rounds = kRounds; rounds > 0; --rounds) {
       if (board.usb().poll()) rounds = kRounds;
-      server.poll(board.usb(), stack);
+      server.poll(board.usb(), use);
       stream.flush();
     }
     hal::cortex_m::wait_for_interrupt();  // the computer has better to do than to emulate a processor that waits
-    if (rests % kRestsPerLook == 0) stack.used = stack_used_bytes();
+    if (rests % kRestsPerLook == 0) use.stack_used = stack_used_bytes();
   }
 }

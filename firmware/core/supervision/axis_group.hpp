@@ -29,14 +29,14 @@ class AxisGroup {
 
   /// One control period; each axis follows its own reference.
   constexpr void step(const BoardInputs& inputs) {
-    const AxisFault outer = board_.watch(inputs, outputs_on());
+    const AxisFault outer = board_.watch(inputs, [this] { return outputs_on(); });
     const Readings readings = read_encoders();
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer), readings[i]); });
   }
 
   /// One control period; an interpolator leads all axes.
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
-    const AxisFault outer = board_.watch(inputs, outputs_on());
+    const AxisFault outer = board_.watch(inputs, [this] { return outputs_on(); });
     const Readings readings = read_encoders();
     for (std::size_t i = 0; i < kAxes; ++i)
       settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer), readings[i]); });
@@ -47,7 +47,7 @@ class AxisGroup {
   constexpr std::size_t enable(unsigned mask) {
     const auto is_named = [mask](std::size_t i) { return (mask >> i & 1u) != 0; };
     for (std::size_t i = 0; i < kAxes; ++i)
-      if (is_named(i) && axes_[i].state() != SupervisorState::enabled && !axes_[i].may_be_enabled()) return i;
+      if (is_named(i) && !axes_[i].is_enabled_or_starting() && !axes_[i].may_be_enabled()) return i;
     for (std::size_t i = 0; i < kAxes; ++i)
       if (is_named(i)) axes_[i].enable();
     return kAxes;

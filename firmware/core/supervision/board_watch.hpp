@@ -1,10 +1,12 @@
 // Watches what belongs to the whole board: stop circuit, supply, time, host, parameter store.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 #include "firmware/core/axis_fault.hpp"
 #include "firmware/core/scalar.hpp"
+#include "firmware/core/supervision/input_filter.hpp"
 
 namespace firmware {
 
@@ -21,6 +23,7 @@ struct BoardLimits {
   std::uint32_t longest_period_us = 1500;  ///< from one control period to the next
   std::int32_t heartbeat_samples = 100;    ///< longest silence of a host that commands motion
   std::int32_t standing_samples = 60'000;  ///< the same while enabled axes stand
+  std::int32_t input_samples = 3;          ///< that the stop circuit must be open in
 };
 
 class BoardWatch {
@@ -31,10 +34,13 @@ class BoardWatch {
     const auto period_us = static_cast<std::uint32_t>(ScalarTraits<float>::nearest_product(sample_period_s, 1e6f));
     const float rate_Hz = 1.0f / sample_period_s;
     return {period_us, period_us + period_us / 2, ScalarTraits<float>::nearest_product(0.1f, rate_Hz),
-            ScalarTraits<float>::nearest_product(60.0f, rate_Hz)};
+            ScalarTraits<float>::nearest_product(60.0f, rate_Hz), firmware::input_samples(sample_period_s)};
   }
 
-  constexpr void configure(const BoardLimits& limits) { limits_ = limits; }
+  constexpr void configure(const BoardLimits& limits) {
+    limits_ = limits;
+    stop_.configure(limits.input_samples);
+  }
 
   /// The next control period may come as late as it likes: the control interrupt was shut out on purpose.
   constexpr void excuse_pause() { is_primed_ = false; }
@@ -46,24 +52,29 @@ class BoardWatch {
   }
   constexpr void host_heard() { silent_samples_ = 0; }
 
-  /// The worst fault of this period. Silence matters only while `outputs_on`.
-  constexpr AxisFault watch(const BoardInputs& inputs, bool outputs_on) {
+  /// The worst fault of this period. Silence matters only while `outputs_on()`, which is asked only where it matters.
+  template <std::invocable OutputsOn>
+  constexpr AxisFault watch(const BoardInputs& inputs, OutputsOn outputs_on) {
     const bool late = is_primed_ && inputs.now_us - last_us_ > limits_.longest_period_us;
     last_us_ = inputs.now_us;
     is_primed_ = true;
-    if (inputs.emergency_stop) return AxisFault::emergency_stop;
+    if (stop_.settle(inputs.emergency_stop)) return AxisFault::emergency_stop;
     if (inputs.supply_low) return AxisFault::supply_low;
     if (late) return AxisFault::control_overrun;
     if (inputs.store_damaged) return AxisFault::parameter_store_damaged;
-    if (!outputs_on) return AxisFault::none;
-    if (silent_samples_ >= (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples))
+    if (silent_samples_ < (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples))
+      ++silent_samples_;
+    else if (outputs_on())
       return AxisFault::host_heartbeat_lost;
-    ++silent_samples_;
     return AxisFault::none;
+  }
+  constexpr AxisFault watch(const BoardInputs& inputs, bool outputs_on) {
+    return watch(inputs, [outputs_on] { return outputs_on; });
   }
 
  private:
   BoardLimits limits_{};
+  InputFilter stop_;  ///< of the stop circuit, whose relay takes the enables at once
   std::uint32_t last_us_ = 0;
   std::int32_t silent_samples_ = 0;
   bool host_commands_ = false;

@@ -24,7 +24,7 @@ struct FaultInfo {
 };
 
 /// In the order of their numbers.
-inline constexpr std::array<FaultInfo, 30> kFaults{{
+inline constexpr std::array<FaultInfo, 32> kFaults{{
     {AxisFault::none, "none", "no fault", "", FaultReaction::none},
     {AxisFault::encoder_invalid, "encoder_invalid",
      "the encoder's input reports a broken wire, an illegal edge or a bus error",
@@ -115,6 +115,15 @@ inline constexpr std::array<FaultInfo, 30> kFaults{{
      "the home switch stayed actuated over the longest way of a search",
      "check the switch, which may be stuck or shorted; check the sign of homing.velocity, and homing.travel",
      FaultReaction::ramp_stop},
+    {AxisFault::amplifier_not_ready, "amplifier_not_ready",
+     "the amplifier did not become ready after its enable, or was ready no longer, or its wire is broken",
+     "read the amplifier's own display; check the ready contact and its wire; check amplifier.ready_time",
+     FaultReaction::drop_enable},
+    {AxisFault::index_mismatch, "index_mismatch",
+     "the counts between two index pulses are no whole turns, or a turn passed without a pulse: counts lost or gained, "
+     "or a dead index line",
+     "check shield and earth, the encoder's frequency limit and the index wires; check encoder.index_spacing",
+     FaultReaction::drop_enable},
 }};
 
 namespace fault_table {
@@ -149,7 +158,8 @@ constexpr const FaultInfo& fault_info(AxisFault fault) {
 /// After these nobody knows whether all counts were counted: the axis is no longer homed.
 constexpr bool loses_position(AxisFault fault) {
   return fault == AxisFault::encoder_invalid || fault == AxisFault::encoder_jump ||
-         fault == AxisFault::encoder_tachometer_disagreement || fault == AxisFault::command_without_motion;
+         fault == AxisFault::encoder_tachometer_disagreement || fault == AxisFault::command_without_motion ||
+         fault == AxisFault::index_mismatch;
 }
 
 constexpr FaultReaction reaction_to(AxisFault fault) { return kFaultReactions[static_cast<std::size_t>(fault)]; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/scalar.hpp"
+#include "firmware/core/supervision/input_filter.hpp"
 
 namespace firmware {
 
@@ -22,7 +23,9 @@ struct MonitorLimits {
   Scalar swing_share{};                   ///< of a sample in kTransientTime_s, 0..1/2
   std::int64_t travel_min_counts = 0;     ///< encoder counts
   std::int64_t travel_max_counts = 0;     ///< > travel_min_counts
+  std::int32_t index_spacing = 0;         ///< counts from one index pulse to the next; 0: not watched
   std::int32_t saturation_samples = 0;    ///< longest time at the D/A converter's limit, > 0
+  std::int32_t input_samples = 2;         ///< that a switch or a fault line must be active in, > 0
   std::int32_t capture_stride = 1;        ///< samples from one row of the capture to the next, > 0
 };
 
@@ -43,10 +46,11 @@ constexpr std::int32_t capture_stride(Real samples_a_second) {
   return (ScalarTraits<Real>::truncate(samples_a_second * Real(0.1f) + Real(0.5f)) - 1) / 100 + 1;
 }
 
-/// The monitors' filters, for a sample period.
+/// The filters of monitors and inputs, for a sample period.
 template <typename Real>
 constexpr void set_filters(MonitorLimits<Real>& limits, Real sample_period_s) {
   limits.load_share = sample_period_s / Real(kLoadTime_s);
+  limits.input_samples = input_samples(sample_period_s);
   limits.swing_share = sample_period_s / Real(kTransientTime_s);
   if (limits.swing_share > Real(0.5f)) limits.swing_share = Real(0.5f);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -10,7 +11,9 @@
 #include "firmware/core/pole_check.hpp"
 #include "firmware/core/supervision/axis_monitors.hpp"
 #include "firmware/core/supervision/capture_ring.hpp"
+#include "firmware/core/supervision/drive_sequence.hpp"
 #include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/index_monitor.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 
 namespace firmware {
@@ -40,6 +43,7 @@ class SupervisedAxis {
     if (error == ParameterError::none) error = check_monitors(parameters);
     if (error == ParameterError::none) error = check_poles(parameters);
     if (error == ParameterError::none) error = check_homing(parameters.homing);
+    if (error == ParameterError::none) error = check_sequence(parameters.sequence);
     return error == ParameterError::none ? take(parameters) : error;
   }
 
@@ -63,7 +67,7 @@ class SupervisedAxis {
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands(); }
   constexpr bool stands() const { return still_samples_ >= kStandingSamples; }
   /// Slows down, then drops the enable.
-  constexpr bool disable() { return state_ == SupervisorState::enabled && request(SupervisorEvent::disable_request); }
+  constexpr bool disable() { return is_enabled_or_starting() && request(SupervisorEvent::disable_request); }
   /// Forgets fault and capture; the self-test decides what comes next.
   constexpr bool clear_fault() {
     if (state_ != SupervisorState::fault) return false;
@@ -138,8 +142,8 @@ class SupervisedAxis {
   constexpr void step(AxisFault outer = AxisFault::none) { step(outer, read_encoder()); }
   constexpr void step(AxisFault outer, const hal::EncoderReading& encoder) {
     if (is_led_) return step_with(led_increment_, outer, encoder);
-    if (state_ == SupervisorState::enabled && is_homed() && !far_inside_.contains(axis_.telemetry().reference.counts))
-      keep_inside();
+    if (state_ == SupervisorState::enabled && monitors_.travel().is_near_end()) keep_inside();
+    if (outer == AxisFault::control_overrun) axis_.bridge_gap(encoder);
     axis_.step(encoder);
     supervise(homing_.is_active() && outer == AxisFault::none ? guide_home() : outer);
   }
@@ -152,6 +156,7 @@ class SupervisedAxis {
     is_led_ = false;
     if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer, encoder);
     is_interpolated_ = true;
+    if (outer == AxisFault::control_overrun) axis_.bridge_gap(encoder);
     if (!is_within_limits(increment)) {
       axis_.stop_interpolated();  // what cannot be right never reaches the drive
       axis_.step(encoder);
@@ -163,6 +168,9 @@ class SupervisedAxis {
   }
 
   constexpr SupervisorState state() const { return state_; }
+  constexpr bool is_enabled_or_starting() const {
+    return state_ == SupervisorState::enabled || state_ == SupervisorState::starting;
+  }
   /// The outputs are on, or will be in the next control period.
   constexpr bool is_or_will_be_on() const {
     return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
@@ -185,19 +193,22 @@ class SupervisedAxis {
       hal::IndexedEncoder<std::remove_reference_t<decltype(std::declval<Hal&>().encoder())>>;
   static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
   static constexpr std::int32_t kStandingSamples = 20;
+  static constexpr std::int32_t kIndexSamples = 16;  ///< from one look at the index to the next
 
   constexpr ParameterError take(const AxisParameters<Scalar>& parameters) {
     const ParameterError error = axis_.configure(parameters);
     if (error != ParameterError::none) return error;
-    monitors_.configure(parameters);
+    monitors_.configure(parameters, axis_.farthest_stop());
     homing_.configure(parameters.homing);
+    sequence_.configure(parameters.sequence);
+    index_.configure(parameters.monitors.index_spacing);
+    until_index_ = 1;
+    for (InputFilter* input : {&drive_fault_, &drive_unready_, &home_switch_})
+      input->configure(parameters.monitors.input_samples);
     const MotionLimits limits = motion_limits(parameters);
     fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
     largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
     longest_stop_ = longest_ramp(limits) + kLongestSettling;
-    const TravelMonitor<Scalar>& travel = monitors_.travel();
-    const std::int64_t margin = travel.play() + axis_.farthest_stop();
-    far_inside_ = CountRange(travel.min_counts() + margin, travel.max_counts() - margin);
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
     happen(SupervisorEvent::configured);
@@ -206,6 +217,7 @@ class SupervisedAxis {
 
   /// A jog ends where the play of a loop that holds its place does not reach beyond the limit.
   [[gnu::noinline]] constexpr void keep_inside() {
+    if (!is_homed()) return;
     const TravelMonitor<Scalar>& travel = monitors_.travel();
     axis_.keep_inside(travel.min_counts() + travel.play(), travel.max_counts() - travel.play());
   }
@@ -246,10 +258,11 @@ class SupervisedAxis {
   [[gnu::noinline]] constexpr AxisFault guide_home() {
     HomingInputs seen;
     seen.counts = axis_.telemetry().encoder_counts;
-    seen.at_switch = hal_.limits().read().home;
+    seen.at_switch = home_switch_.settle(hal_.limits().read().home);
     seen.at_rest = axis_.is_at_rest();
     if constexpr (kHasIndex) {
       const hal::IndexReading index = hal_.encoder().read_index();
+      if (index_.is_on()) index_.watch(index, axis_.encoder_reading());
       seen.index_seen = index.seen;
       seen.index_counts = axis_.counts_at(index.counts);
     }
@@ -280,12 +293,15 @@ class SupervisedAxis {
 
   constexpr void begin_self_test() {
     monitors_.restart();
+    index_.restart();
     self_test_samples_ = 0;
   }
 
   constexpr void supervise(AxisFault outer) {
     const AxisTelemetry<Scalar>& seen = axis_.telemetry();
-    const AxisFault own = watch(seen);
+    AxisFault own = watch(seen);
+    if constexpr (kHasIndex)
+      if (--until_index_ <= 0 && own == AxisFault::none) own = watch_index();
     if (own == AxisFault::none && outer == AxisFault::none) {
       capture_.take(seen);
       if (state_ == SupervisorState::enabled && requests_ == 0) return;
@@ -296,7 +312,8 @@ class SupervisedAxis {
   /// Whatever is wrong outside: what the axis does is watched until its outputs are off.
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
-    if (hal_.drive_enable().is_faulted()) return AxisFault::drive_fault;
+    const bool says_fault = hal_.drive_enable().is_faulted();
+    if ((says_fault || drive_fault_.is_pending()) && drive_fault_.settle(says_fault)) return AxisFault::drive_fault;
     if (!hal_.dac().is_healthy()) return AxisFault::converter_not_as_set;
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return sensors;
@@ -304,8 +321,45 @@ class SupervisedAxis {
       watch_standstill(seen);
       return monitors_.watch_rest(seen);
     }
+    if (sequence_.parameters().ready_input && drive_unready_.settle(!is_amplifier_ready()))
+      return AxisFault::amplifier_not_ready;
     const AxisFault motion = monitors_.watch_motion(seen);
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
+  }
+
+  /// Index pulses are whole turns apart however seldom they are asked for.
+  [[gnu::noinline]] constexpr AxisFault watch_index() {
+    until_index_ = index_.is_on() ? kIndexSamples : std::numeric_limits<std::int32_t>::max();
+    if (!index_.is_on()) return AxisFault::none;
+    return index_.watch(hal_.encoder().read_index(), axis_.encoder_reading());
+  }
+
+  constexpr bool is_amplifier_ready() {
+    if constexpr (hal::ReadyInput<std::remove_reference_t<decltype(hal_.drive_enable())>>)
+      return hal_.drive_enable().is_ready();
+    return true;
+  }
+
+  constexpr void release_brake(bool released) {
+    if constexpr (hal::BrakeOutput<std::remove_reference_t<decltype(hal_.drive_enable())>>)
+      hal_.drive_enable().release_brake(released && sequence_.parameters().brake_fitted);
+  }
+
+  /// Towards a closed loop and a released brake, while the state is starting.
+  constexpr SupervisorEvents start_drive() {
+    switch (sequence_.next_of_start(is_amplifier_ready(), axis_.telemetry().enabled)) {
+      case DriveStartStep::wait:
+        break;
+      case DriveStartStep::close_loop:
+        axis_.enable();
+        release_brake(true);
+        break;
+      case DriveStartStep::started:
+        return SupervisorEvent::started | SupervisorEvent::started;
+      case DriveStartStep::late:
+        return note(AxisFault::amplifier_not_ready) | SupervisorEvent::drop_fault;
+    }
+    return 0;
   }
 
   /// What is rare: faults, requests, and all states but a closed loop that simply runs.
@@ -318,7 +372,9 @@ class SupervisedAxis {
       if (found != AxisFault::none) events = events | note(found);
     if (state_ == SupervisorState::self_test && ++self_test_samples_ >= kSelfTestSamples)
       events = events | SupervisorEvent::test_passed;
-    if (state_ == SupervisorState::stopping && has_stopped()) events = events | SupervisorEvent::standing;
+    if (state_ == SupervisorState::starting && events == 0) events = start_drive();
+    if (state_ == SupervisorState::stopping && has_stopped() && brake_holds())
+      events = events | SupervisorEvent::standing;
     if (events != 0) enter(next_state(state_, events, fault_ != AxisFault::none));
   }
 
@@ -340,7 +396,15 @@ class SupervisedAxis {
     capture_.freeze(axis_.telemetry());
   }
 
+  constexpr bool brake_holds() {
+    if (!is_braking_) sequence_.begin();
+    is_braking_ = true;
+    release_brake(false);
+    return sequence_.brake_holds();
+  }
+
   constexpr bool has_stopped() {
+    if (is_braking_) return true;
     if (++stopping_samples_ > longest_stop_) return true;
     if (axis_.is_open_loop()) settling_samples_ = 0;  // nothing holds its place: it stands once it has come to rest
     if (!axis_.is_at_rest()) {
@@ -355,11 +419,21 @@ class SupervisedAxis {
 
   constexpr void enter(SupervisorState next) {
     if (next == state_) return;
+    if (next == SupervisorState::starting && sequence_.starts_at_once()) next = SupervisorState::enabled;
     state_ = next;
     homing_.abandon();
-    if (next == SupervisorState::enabled && !axis_.enable()) {
-      latch(axis_.telemetry().fault);
-      state_ = SupervisorState::fault;
+    is_braking_ = false;
+    if (next == SupervisorState::starting) {
+      sequence_.begin();
+      axis_.energise();
+    }
+    if (next == SupervisorState::enabled) {
+      if (axis_.enable()) {
+        release_brake(true);
+      } else {
+        latch(axis_.telemetry().fault);
+        state_ = SupervisorState::fault;
+      }
     }
     if (next == SupervisorState::stopping) {
       if (is_interpolated_)
@@ -371,21 +445,25 @@ class SupervisedAxis {
     if (!outputs_are_on(state_)) {
       is_interpolated_ = limiting_.velocity_limited = false;
       last_increment_ = 0;
-      axis_.forget_excitation();
-      if (axis_.telemetry().enabled) axis_.disable();
+      release_brake(false);
+      axis_.disable();
     }
   }
 
   Hal& hal_;
   AxisMonitors<Scalar> monitors_;
   HomingSequence<Scalar> homing_;
+  DriveSequence sequence_;
+  IndexMonitor index_;
+  std::int32_t until_index_ = 1;
+  bool is_braking_ = false;
+  InputFilter drive_fault_, drive_unready_, home_switch_;
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;
   AxisFault fault_ = AxisFault::none;
   AxisFault second_fault_ = AxisFault::none;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
-  CountRange far_inside_;  ///< no jog reaches an end of travel from here, however it is stopped
   Increment fastest_ = 0;
   Increment largest_change_ = 0;
   Increment last_increment_ = 0;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
@@ -17,11 +18,15 @@ namespace firmware {
 template <typename Scalar>
 class TravelMonitor {
  public:
-  constexpr void configure(const AxisParameters<Scalar>& p) {
+  /// `stop`: counts that the longest stop of a jog takes.
+  constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t stop) {
     min_counts_ = p.monitors.travel_min_counts;
     max_counts_ = p.monitors.travel_max_counts;
-    inside_ = CountRange(min_counts_, max_counts_);
     play_ = play_in_counts(p);
+    positive_end_.configure(p.monitors.input_samples);
+    negative_end_.configure(p.monitors.input_samples);
+    const std::int64_t margin = stop + play_ + error_in_counts(p);
+    far_inside_ = CountRange(min_counts_ + margin, max_counts_ - margin);
     restart();
   }
 
@@ -30,6 +35,21 @@ class TravelMonitor {
     const Scalar counts = p.monitors.following_error_floor / p.encoder_resolution;
     constexpr Scalar kMost = Scalar(1000.0f);
     return 2 + ScalarTraits<Scalar>::truncate(counts < kMost ? counts * Scalar(0.25f) : kMost * Scalar(0.25f));
+  }
+
+  /// The largest following error that is no fault.
+  static constexpr std::int64_t error_in_counts(const AxisParameters<Scalar>& p) {
+    using Traits = ScalarTraits<Scalar>;
+    // Beyond, travel is looked at in every sample. The range of fixed point, whose unit is a count, is 1024.
+    constexpr Scalar kMost = Scalar(std::is_floating_point_v<Scalar> ? 1e6f : 1000.0f);
+    const MonitorLimits<Scalar>& m = p.monitors;
+    const Scalar floor = m.following_error_floor / p.encoder_resolution;
+    const Scalar per_velocity = m.following_error_per_velocity / p.encoder_resolution;
+    const Scalar fastest = p.velocity_limit / p.lead;
+    constexpr std::int64_t kBeyondAll = std::int64_t{1} << 40;
+    if (!(floor < kMost) || !(per_velocity < kMost) || !(fastest < kMost)) return kBeyondAll;
+    const auto up = [](Scalar value) { return std::int64_t{Traits::truncate(value)} + 1; };
+    return up(floor) + up(per_velocity) * up(fastest) * 2;
   }
 
   /// A target, or a place to go on from in this direction.
@@ -48,40 +68,51 @@ class TravelMonitor {
   constexpr void restart() {
     upper_bound_ = std::numeric_limits<std::int64_t>::max();
     lower_bound_ = std::numeric_limits<std::int64_t>::min();
-    is_beyond_ = false;
+    is_near_end_ = true;  // not known yet
   }
 
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
     const bool is_at_switch = switches.positive_end || switches.negative_end;
-    if (!is_at_switch && !is_beyond_ && (!seen.homed || inside_.contains(seen.encoder_counts))) return AxisFault::none;
+    if (!is_at_switch && !is_near_end_ && is_far_inside(seen)) return AxisFault::none;  // nearly always
     return watch_ends(seen, switches);
   }
+
+  /// A homed axis that could reach an end, whatever it does, before it stands; and one of which that is not known.
+  constexpr bool is_near_end() const { return is_near_end_; }
 
  private:
   [[gnu::noinline]] constexpr AxisFault watch_ends(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
     const std::int64_t counts = seen.encoder_counts;
-    const bool is_above = switches.positive_end || (seen.homed && counts > max_counts_);
-    const bool is_below = switches.negative_end || (seen.homed && counts < min_counts_);
-    is_beyond_ = is_above || is_below;
+    const bool at_positive_end = positive_end_.settle(switches.positive_end);
+    const bool at_negative_end = negative_end_.settle(switches.negative_end);
+    const bool is_above = at_positive_end || (seen.homed && counts > max_counts_);
+    const bool is_below = at_negative_end || (seen.homed && counts < min_counts_);
+    is_near_end_ =
+        is_above || is_below || !is_far_inside(seen) || positive_end_.is_pending() || negative_end_.is_pending();
     if (is_above) {
       if (counts + play_ < upper_bound_) upper_bound_ = counts + play_;
       if (seen.reference_velocity > Scalar(0) || counts > upper_bound_)
-        return switches.positive_end ? AxisFault::limit_switch_positive : AxisFault::travel_limit;
+        return at_positive_end ? AxisFault::limit_switch_positive : AxisFault::travel_limit;
     } else {
       upper_bound_ = std::numeric_limits<std::int64_t>::max();
     }
     if (is_below) {
       if (counts - play_ > lower_bound_) lower_bound_ = counts - play_;
       if (seen.reference_velocity < Scalar(0) || counts < lower_bound_)
-        return switches.negative_end ? AxisFault::limit_switch_negative : AxisFault::travel_limit;
+        return at_negative_end ? AxisFault::limit_switch_negative : AxisFault::travel_limit;
     } else {
       lower_bound_ = std::numeric_limits<std::int64_t>::min();
     }
     return AxisFault::none;
   }
 
-  CountRange inside_;
-  bool is_beyond_ = false;  ///< one of the bounds is set
+  constexpr bool is_far_inside(const AxisTelemetry<Scalar>& seen) const {
+    return !seen.homed || far_inside_.contains(seen.encoder_counts);
+  }
+
+  CountRange far_inside_;  ///< with room for any stop and any following error
+  bool is_near_end_ = true;
+  InputFilter positive_end_, negative_end_;
   std::int64_t min_counts_ = 0, max_counts_ = 0, play_ = 0;
   std::int64_t upper_bound_ = 0, lower_bound_ = 0;
 };

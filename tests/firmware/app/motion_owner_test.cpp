@@ -139,4 +139,17 @@ TEST_F(TwoClients, ALiveParameterDoesNotExcuseALatePeriod) {
   EXPECT_EQ(fault(), static_cast<std::uint8_t>(AxisFault::control_overrun));
 }
 
+TEST_F(TwoClients, ACaptureIsItsClientsWhileThatOneIsHeard) {
+  constexpr firmware::CaptureRequest kWanted{{1}, 1, 0};
+  ASSERT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok);
+  look(kFirst, 3000);
+  EXPECT_EQ(ask(kSecond, MessageType::start_capture, kWanted), Status::others_capture);
+  EXPECT_TRUE(bench.application.capture().is_running());
+  EXPECT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok) << "it may begin anew itself";
+  EXPECT_EQ(ask(kSecond, MessageType::stop_capture).status, Status::ok) << "stopping is everybody's";
+  EXPECT_EQ(ask(kSecond, MessageType::start_capture, kWanted), Status::ok);
+  look(kFirst, 2100);
+  EXPECT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok) << "the second has died";
+}
+
 }  // namespace

@@ -110,8 +110,9 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
     if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
     // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
     if (place == place_named("host.timeout") || place == place_named("host.standing_timeout")) continue;
-    if (firmware::kParameters[firmware::row_at(place)].name.starts_with("homing."))
-      continue;  // homing_on_board_test.cpp
+    const std::string_view name = firmware::kParameters[firmware::row_at(place)].name;
+    if (name.starts_with("homing.")) continue;                                   // homing_on_board_test.cpp
+    if (name.starts_with("amplifier.") || name.starts_with("brake.")) continue;  // below
     const auto changes = [place](ParameterValues of, const auto& behaved) {
       of.set(place, changed(firmware::rule_at(place), of.at(place)));
       return behaviour<TypeParam>(of) != behaved;
@@ -119,6 +120,25 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
     EXPECT_TRUE(changes(values, before) || changes(compensated, before_compensated))
         << firmware::kParameters[firmware::row_at(place)].name;
   }
+}
+
+TYPED_TEST(Parameters, AmplifierAndBrakeAreWaitedForInControlPeriods) {
+  ParameterValues values = paper_values();
+  set(values, "x.amplifier.ready_input", 1);
+  set(values, "x.amplifier.ready_time", 0.25);
+  set(values, "x.brake.fitted", 1);
+  set(values, "x.brake.release_time", 0.04);
+  set(values, "x.brake.apply_time", 0.06);
+  const auto sequence = firmware::axis_parameters<TypeParam>(values.axis(0)).sequence;
+  EXPECT_TRUE(sequence.ready_input);
+  EXPECT_TRUE(sequence.brake_fitted);
+  EXPECT_EQ(sequence.amplifier_wait, 250);
+  EXPECT_EQ(sequence.brake_release, 40);
+  EXPECT_EQ(sequence.brake_application, 60);
+  EXPECT_EQ(firmware::check<TypeParam>(values), SetProblem{});
+  set(values, "x.amplifier.ready_time", 0);
+  EXPECT_EQ(firmware::check<TypeParam>(values),
+            (SetProblem{SetProblemKind::refused_by_core, firmware::key_at(place_named("x.amplifier.ready_time"))}));
 }
 
 TYPED_TEST(Parameters, ASlowerControlRateIsTakenTogetherWithItsPeriod) {

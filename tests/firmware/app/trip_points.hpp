@@ -22,7 +22,7 @@ std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& pa
     std::int32_t step = 0;
     for (; step < 2000 && level < 1e9f; ++step, level *= 1.02f) {
       Monitors monitors;
-      monitors.configure(parameters);
+      monitors.configure(parameters, 0);
       Telemetry seen;
       set(seen, level);
       for (int k = 0; k < samples; ++k)
@@ -69,7 +69,7 @@ std::vector<std::int32_t> trip_points(const firmware::AxisParameters<Scalar>& pa
         travel));
   }
   Monitors monitors;
-  monitors.configure(parameters);
+  monitors.configure(parameters, 0);
   Telemetry saturated;
   saturated.saturated = true;
   std::int32_t borne = 0;

@@ -136,6 +136,12 @@ TEST_F(AxisBoard, EachAxisHasItsOwnLines) {
   chip.port_c.put(7, Outside::low);
   EXPECT_TRUE(board.axis(0).drive_enable().is_faulted());
   EXPECT_FALSE(board.axis(1).drive_enable().is_faulted());
+  chip.port_c.put(3, Outside::low);
+  EXPECT_FALSE(board.axis(0).drive_enable().is_ready());
+  EXPECT_TRUE(board.axis(1).drive_enable().is_ready());
+  board.axis(1).drive_enable().release_brake(true);
+  EXPECT_EQ(chip.port_a.drive(3), Drive::low);
+  EXPECT_EQ(chip.port_b.drive(1), Drive::high);
   chip.port_b.put(15, Outside::low);
   EXPECT_TRUE(board.axis(0).limits().read().positive_end);
   EXPECT_FALSE(board.axis(1).limits().read().positive_end);
@@ -226,11 +232,15 @@ TEST_F(AxisBoard, ItsOutputsAreMadeSafeByPinsAlone) {
   start();
   board.axis(0).drive_enable().set(true);
   board.axis(1).drive_enable().set(true);
+  board.axis(0).drive_enable().release_brake(true);
+  board.axis(1).drive_enable().release_brake(true);
   run_ms(10.0);
   ASSERT_NE(chip.converter.output_V(0), 0.0);
   firmware::boards::make_outputs_safe();
   EXPECT_EQ(chip.port_c.drive(4), Drive::low);
   EXPECT_EQ(chip.port_c.drive(5), Drive::low);
+  EXPECT_EQ(chip.port_a.drive(3), Drive::low);
+  EXPECT_EQ(chip.port_b.drive(1), Drive::low);
   EXPECT_EQ(chip.converter.output_V(0), 0.0);
   EXPECT_EQ(chip.converter.output_V(1), 0.0);
 }

@@ -18,7 +18,7 @@ TEST_F(Lines, TheEnableIsOffFromItsFirstMomentOn) {
   std::vector<Drive> seen;
   chip.port_c.on_change[4] = [&seen](Drive drive) { seen.push_back(drive); };
   gpio_c().ODR = 1u << 4;  // as an earlier program may have left it
-  DriveLines lines(Pin(gpio_c(), 4), Pin(gpio_c(), 6));
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
   lines.start();
   EXPECT_EQ(seen, std::vector<Drive>{Drive::low});
   lines.set(true);
@@ -28,11 +28,32 @@ TEST_F(Lines, TheEnableIsOffFromItsFirstMomentOn) {
 }
 
 TEST_F(Lines, AnOpenWireIsADriveFault) {
-  DriveLines lines(Pin(gpio_c(), 4), Pin(gpio_c(), 6));
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
   lines.start();
   EXPECT_TRUE(lines.is_faulted());
   chip.port_c.put(6, Outside::low);
   EXPECT_FALSE(lines.is_faulted());
+}
+
+TEST_F(Lines, AnOpenWireIsAnAmplifierThatIsNotReady) {
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
+  lines.start();
+  EXPECT_FALSE(lines.is_ready());
+  chip.port_c.put(2, Outside::low);
+  EXPECT_TRUE(lines.is_ready());
+}
+
+TEST_F(Lines, TheBrakeHoldsFromItsFirstMomentOnUntilItIsReleased) {
+  std::vector<Drive> seen;
+  chip.port_a.on_change[3] = [&seen](Drive drive) { seen.push_back(drive); };
+  gpio_a().ODR = 1u << 3;  // as an earlier program may have left it
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
+  lines.start();
+  EXPECT_EQ(seen, std::vector<Drive>{Drive::low});
+  lines.release_brake(true);
+  EXPECT_EQ(chip.port_a.drive(3), Drive::high);
+  lines.release_brake(false);
+  EXPECT_EQ(chip.port_a.drive(3), Drive::low);
 }
 
 TEST_F(Lines, AnOpenStopCircuitIsAPressedStop) {

@@ -33,6 +33,7 @@ constexpr firmware::AxisParameters<T> in_scalar(const firmware_test::PaperAxis& 
 
 constexpr firmware::AxisParameters<Scalar> with_everything_on(const firmware_test::PaperAxis& axis) {
   firmware::AxisParameters<Scalar> p = in_scalar<Scalar>(axis);
+  p.monitors.index_spacing = 4096;
   p.friction_feedforward_on = p.zero_phase_feedforward_on = p.disturbance_cancellation_on = true;
   return p;
 }
@@ -54,7 +55,7 @@ std::int32_t random_code() {  // minimal standard generator's low-cost cousin: q
 /// Eq. (7) without friction, in float whatever the scalar: what the axes drive between two counted steps.
 struct Drive {
   const firmware_test::PaperAxis& axis;
-  std::int32_t counts = 0;
+  std::int32_t counts = 0, last_pulse = 0;
   float fraction_mm = 0.0f, velocity_rad_s = 0.0f;
 
   void advance(std::int32_t dac_code) {
@@ -74,6 +75,11 @@ void bring_readings(std::size_t axis) {
   Drive& drive = drives[axis];
   drive.advance(io[axis].dac().code);
   io[axis].encoder().reading = {static_cast<std::uint32_t>(drive.counts), true};
+  const std::int32_t pulse = drive.counts & ~4095;  // the last one passed, in either direction
+  if (pulse != drive.last_pulse)
+    io[axis].encoder().index = {static_cast<std::uint32_t>(drive.counts > drive.last_pulse ? pulse : pulse + 4096),
+                                true, false};
+  drive.last_pulse = pulse;
   constexpr auto kCodesPerVelocity = static_cast<float>(1.0 / firmware_test::kTachometerResolution_rad_s);
   const auto code = static_cast<std::int32_t>(drive.velocity_rad_s * kCodesPerVelocity);
   io[axis].tachometer().reading = {code + random_code() / 8, true};

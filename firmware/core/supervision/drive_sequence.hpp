@@ -1,0 +1,60 @@
+// What comes before a loop closes and after a reference stands: the amplifier's start and the brake.
+#pragma once
+
+#include <cstdint>
+
+namespace firmware {
+
+/// Times in control periods, >= 0.
+struct DriveSequenceParameters {
+  bool ready_input = false;            ///< the amplifier says when it drives; off: it does after `amplifier_wait`
+  bool brake_fitted = false;           ///< it holds the axis unless it is released
+  std::int32_t amplifier_wait = 0;     ///< from the enable on; with the ready input the longest, > 0
+  std::int32_t brake_release = 0;      ///< from the release until the brake holds nothing
+  std::int32_t brake_application = 0;  ///< from its application until the brake holds the axis
+};
+
+enum class DriveStartStep : std::uint8_t {
+  wait,
+  close_loop,  ///< the amplifier drives: close the loop, and release the brake
+  started,     ///< the axis may move
+  late,        ///< the amplifier does not become ready
+};
+
+/// Enable, amplifier ready, loop closed, brake released, motion; at the end standstill, brake applied, enable off. So a
+/// brake never slips against a drive, and an axis that hangs is never without one of the two.
+class DriveSequence {
+ public:
+  constexpr void configure(const DriveSequenceParameters& parameters) { parameters_ = parameters; }
+  constexpr const DriveSequenceParameters& parameters() const { return parameters_; }
+
+  /// Nothing to wait for: the loop closes in the control period of the enable.
+  constexpr bool starts_at_once() const {
+    return !parameters_.ready_input && parameters_.amplifier_wait == 0 && release_samples() == 0;
+  }
+
+  constexpr void begin() { samples_ = 0; }
+
+  /// Once a control period after begin(), until it says anything but wait; `loop_closed`: it has said close_loop.
+  constexpr DriveStartStep next_of_start(bool is_ready, bool loop_closed) {
+    ++samples_;
+    if (loop_closed) return samples_ > release_samples() ? DriveStartStep::started : DriveStartStep::wait;
+    const bool waited = samples_ > parameters_.amplifier_wait;
+    if (parameters_.ready_input ? is_ready : waited) {
+      begin();
+      return DriveStartStep::close_loop;
+    }
+    return waited ? DriveStartStep::late : DriveStartStep::wait;
+  }
+
+  /// Once a control period after begin(), while a stopped axis is still held by its loop.
+  constexpr bool brake_holds() { return !parameters_.brake_fitted || ++samples_ > parameters_.brake_application; }
+
+ private:
+  constexpr std::int32_t release_samples() const { return parameters_.brake_fitted ? parameters_.brake_release : 0; }
+
+  DriveSequenceParameters parameters_{};
+  std::int32_t samples_ = 0;
+};
+
+}  // namespace firmware

@@ -1,0 +1,140 @@
+// Between a request and motion, and between standstill and no current: amplifier and brake.
+#include "firmware/core/supervision/drive_sequence.hpp"
+
+#include "tests/firmware/driven_axis.hpp"
+
+namespace {
+
+using firmware::AxisFault;
+using firmware::SupervisorState;
+using firmware_test::DrivenAxis;
+
+constexpr int kWait = 50, kRelease = 20, kApply = 30;
+
+/// Enabled one period ago.
+class Sequence : public testing::Test {
+ protected:
+  static firmware::AxisParameters<float> parameters(bool ready_input, bool brake) {
+    auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
+    p.sequence = {.ready_input = ready_input,
+                  .brake_fitted = brake,
+                  .amplifier_wait = kWait,
+                  .brake_release = kRelease,
+                  .brake_application = kApply};
+    p.monitors.input_samples = 1;
+    return p;
+  }
+  static void run(DrivenAxis& axis, int periods) {
+    for (int k = 0; k < periods; ++k) axis.step();
+  }
+  static bool is_closed(const DrivenAxis& axis) { return axis.axis.telemetry().enabled; }
+  static firmware::boards::ValueAxis::Enable& lines(DrivenAxis& axis) { return axis.io.drive_enable(); }
+  static void run_until_enabled(DrivenAxis& axis) {
+    run(axis, kWait + kRelease + 5);
+    ASSERT_EQ(axis.axis.state(), SupervisorState::enabled);
+  }
+};
+
+TEST_F(Sequence, TheLoopClosesWhenTheAmplifierIsReadyAndMotionWaitsForTheBrake) {
+  DrivenAxis axis(parameters(true, true));
+  lines(axis).ready = false;
+  run(axis, kWait / 2);
+  EXPECT_EQ(axis.axis.state(), SupervisorState::starting);
+  EXPECT_TRUE(lines(axis).on) << "what does it wait for?";
+  EXPECT_FALSE(is_closed(axis));
+  EXPECT_FALSE(lines(axis).brake_released) << "nothing would hold the axis";
+  EXPECT_EQ(axis.io.dac().code, 0);
+  lines(axis).ready = true;
+  run(axis, 1);
+  EXPECT_TRUE(is_closed(axis));
+  EXPECT_TRUE(lines(axis).brake_released);
+  for (int k = 0; k < kRelease; ++k) {
+    EXPECT_FALSE(axis.axis.jog(10.0f)) << "the brake still holds, after " << k;
+    run(axis, 1);
+  }
+  run(axis, 1);
+  EXPECT_EQ(axis.axis.state(), SupervisorState::enabled);
+  EXPECT_TRUE(axis.axis.jog(10.0f));
+}
+
+TEST_F(Sequence, WithoutTheReadyInputTheDelayPassesFirst) {
+  DrivenAxis axis(parameters(false, false));
+  lines(axis).ready = false;  // not wired
+  run(axis, kWait);
+  EXPECT_FALSE(is_closed(axis));
+  run(axis, 2);
+  EXPECT_TRUE(is_closed(axis));
+  run_until_enabled(axis);
+  EXPECT_FALSE(lines(axis).brake_released) << "none is fitted";
+}
+
+TEST_F(Sequence, AnAmplifierThatNeverBecomesReadyIsAFault) {
+  DrivenAxis axis(parameters(true, true));
+  lines(axis).ready = false;
+  run(axis, kWait + 2);
+  EXPECT_EQ(axis.axis.fault(), AxisFault::amplifier_not_ready);
+  EXPECT_EQ(axis.axis.state(), SupervisorState::fault);
+  EXPECT_FALSE(lines(axis).on);
+  EXPECT_FALSE(is_closed(axis));
+}
+
+TEST_F(Sequence, TheBrakeHoldsBeforeTheEnableDrops) {
+  DrivenAxis axis(parameters(true, true));
+  run_until_enabled(axis);
+  ASSERT_TRUE(axis.axis.jog(50.0f));
+  run(axis, 200);
+  ASSERT_TRUE(axis.axis.disable());
+  int moving_under_brake = 0, held_by_both = 0;
+  for (int k = 0; k < 1000 && lines(axis).on; ++k) {
+    const double before = axis.at_mm();
+    run(axis, 1);
+    const bool moves = std::abs(axis.at_mm() - before) > 0.001;  // 1 mm/s
+    if (lines(axis).on && !lines(axis).brake_released) (moves ? moving_under_brake : held_by_both)++;
+  }
+  EXPECT_EQ(moving_under_brake, 0);
+  EXPECT_GE(held_by_both, kApply - 1);
+  EXPECT_LE(held_by_both, kApply + 2);
+  EXPECT_EQ(axis.axis.state(), SupervisorState::ready);
+  EXPECT_FALSE(lines(axis).on);
+}
+
+TEST_F(Sequence, AFaultThatDropsTheEnableAppliesTheBrakeInTheSamePeriod) {
+  DrivenAxis axis(parameters(true, true));
+  run_until_enabled(axis);
+  lines(axis).faulted = true;
+  run(axis, 1);
+  EXPECT_FALSE(lines(axis).on);
+  EXPECT_FALSE(lines(axis).brake_released);
+}
+
+TEST_F(Sequence, AnAmplifierThatIsReadyNoLongerIsAFault) {
+  DrivenAxis axis(parameters(true, true));
+  run_until_enabled(axis);
+  lines(axis).ready = false;
+  run(axis, 1);
+  EXPECT_EQ(axis.axis.fault(), AxisFault::amplifier_not_ready);
+  EXPECT_FALSE(lines(axis).on);
+}
+
+TEST_F(Sequence, AWishToStopWhileItStartsIsObeyed) {
+  for (const int after : {5, kWait + 10}) {  // the loop open, the brake on its way
+    DrivenAxis axis(parameters(false, true));
+    run(axis, after);
+    ASSERT_EQ(axis.axis.state(), SupervisorState::starting);
+    EXPECT_TRUE(axis.axis.disable());
+    run(axis, kApply + 60);
+    EXPECT_EQ(axis.axis.state(), SupervisorState::ready) << after;
+    EXPECT_FALSE(lines(axis).on);
+    EXPECT_FALSE(lines(axis).brake_released);
+  }
+}
+
+TEST_F(Sequence, AReadyInputWithoutATimeIsRefused) {
+  auto p = parameters(true, false);
+  p.sequence.amplifier_wait = 0;
+  firmware::boards::ValueAxis io;
+  firmware::SupervisedAxis<float, firmware::boards::ValueAxis> axis(io);
+  EXPECT_EQ(axis.configure(p), firmware::ParameterError::amplifier_ready);
+}
+
+}  // namespace

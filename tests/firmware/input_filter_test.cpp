@@ -1,0 +1,85 @@
+// Sparks and bouncing contacts trip nothing; what stays does.
+#include "firmware/core/supervision/input_filter.hpp"
+
+#include <functional>
+
+#include "tests/firmware/driven_axis.hpp"
+
+namespace {
+
+using firmware::AxisFault;
+using firmware_test::DrivenAxis;
+
+TEST(InputFilter, WaitsTwoMillisecondsAndTwoPeriodsAtLeast) {
+  EXPECT_EQ(firmware::input_samples(0.001f), 3);
+  EXPECT_EQ(firmware::input_samples(1.0f / 20'000), 41);
+  EXPECT_EQ(firmware::input_samples(1.0f / 250), 2) << "a single reading proves nothing";
+}
+
+TEST(InputFilter, CountsPeriodsInARow) {
+  firmware::InputFilter filter;
+  filter.configure(3);
+  for (int spark = 0; spark < 50; ++spark) {
+    EXPECT_FALSE(filter.settle(true));
+    EXPECT_FALSE(filter.settle(true));
+    EXPECT_FALSE(filter.settle(false));
+    EXPECT_FALSE(filter.is_pending());
+  }
+  filter.settle(true);
+  filter.settle(true);
+  EXPECT_TRUE(filter.settle(true));
+  EXPECT_TRUE(filter.settle(true)) << "and stays";
+  EXPECT_FALSE(filter.settle(false)) << "let go at once";
+}
+
+struct Line {
+  const char* name;
+  std::function<void(firmware::boards::ValueAxis&, bool)> set;
+  AxisFault fault;
+};
+
+TEST(AxisInputs, SparksTripNothingAndWhatStaysDoes) {
+  const Line lines[] = {
+      {"positive end", [](auto& io, bool on) { io.limits().state.positive_end = on; },
+       AxisFault::limit_switch_positive},
+      {"drive fault", [](auto& io, bool on) { io.drive_enable().faulted = on; }, AxisFault::drive_fault},
+      {"not ready", [](auto& io, bool on) { io.drive_enable().ready = !on; }, AxisFault::amplifier_not_ready},
+  };
+  for (const Line& line : lines) {
+    auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
+    p.sequence.ready_input = true;
+    p.sequence.amplifier_wait = 10;
+    DrivenAxis axis(p);
+    axis.step();
+    axis.step();
+    ASSERT_TRUE(axis.axis.jog(50.0f)) << line.name;
+    for (int k = 0; k < 1000; ++k) {
+      line.set(axis.io, k % 5 < 2);
+      axis.step();
+    }
+    EXPECT_EQ(axis.axis.fault(), AxisFault::none) << line.name;
+    line.set(axis.io, true);
+    for (int k = 0; k < 3; ++k) axis.step();
+    EXPECT_EQ(axis.axis.fault(), line.fault) << line.name;
+  }
+}
+
+/// What the axis covers while the control interrupt does not come.
+TEST(LostPeriods, EndInAStopAlongTheRamp) {
+  DrivenAxis axis(firmware_test::parameters_of<float>(firmware_test::kPaperX));
+  ASSERT_TRUE(axis.axis.jog(250.0f));
+  for (int k = 0; k < 600; ++k) axis.step();
+  axis.run_on(5);  // 1.25 mm
+  const double begin = axis.at_mm();
+  axis.step(AxisFault::control_overrun);
+  EXPECT_EQ(axis.axis.state(), firmware::SupervisorState::stopping);
+  for (int k = 0; k < 1000; ++k) axis.step();
+  EXPECT_EQ(axis.axis.fault(), AxisFault::control_overrun);
+  EXPECT_EQ(axis.axis.second_fault(), AxisFault::none) << "the feedback is sound";
+  EXPECT_LT(axis.at_mm() - begin, 250.0 * (0.125 + 0.04) / 2 + 1.0) << "the ramp's own way";
+  EXPECT_NEAR(static_cast<double>(axis.axis.telemetry().encoder_counts) * firmware_test::kEncoderResolution_mm,
+              axis.at_mm(), 0.01)
+      << "no count is lost";
+}
+
+}  // namespace
