@@ -155,19 +155,19 @@ TYPED_TEST(Excitation, ATriangleIsStraightAndGoesAwayInItsFade) {
 }
 
 TYPED_TEST(Excitation, WhatMakesNoSenseIsImpossible) {
-  auto& plan = this->plan;
-  plan.kind = ExcitationKind::chirp;
-  EXPECT_TRUE(is_possible(plan));
-  plan.input = ExcitationInput::jog;
-  EXPECT_FALSE(is_possible(plan)) << "only a train of velocities is a jog";
-  plan.kind = ExcitationKind::train;
-  EXPECT_FALSE(is_possible(plan)) << "without levels";
-  plan.count = 1;
-  EXPECT_FALSE(is_possible(plan)) << "a level of no time";
-  plan.entry[0].first = 1;
-  EXPECT_TRUE(is_possible(plan));
-  plan.box.travel_counts = 0;
-  EXPECT_FALSE(is_possible(plan)) << "a box without room";
+  auto& wanted = this->plan;
+  wanted.kind = ExcitationKind::chirp;
+  EXPECT_TRUE(is_possible(wanted));
+  wanted.input = ExcitationInput::jog;
+  EXPECT_FALSE(is_possible(wanted)) << "only a train of velocities is a jog";
+  wanted.kind = ExcitationKind::train;
+  EXPECT_FALSE(is_possible(wanted)) << "without levels";
+  wanted.count = 1;
+  EXPECT_FALSE(is_possible(wanted)) << "a level of no time";
+  wanted.entry[0].first = 1;
+  EXPECT_TRUE(is_possible(wanted));
+  wanted.box.travel_counts = 0;
+  EXPECT_FALSE(is_possible(wanted)) << "a box without room";
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ TEST(LostPeriods, EndInAStopAlongTheRamp) {
   for (int k = 0; k < 600; ++k) axis.step();
   axis.run_on(5);  // 1.25 mm
   const double begin = axis.at_mm();
+  axis.axis.bridge_gap(axis.io.encoder().reading);
   axis.step(AxisFault::control_overrun);
   EXPECT_EQ(axis.axis.state(), firmware::SupervisorState::stopping);
   for (int k = 0; k < 1000; ++k) axis.step();

@@ -106,7 +106,8 @@ class ExcitationRun {
       begin(axis.telemetry().encoder_counts);
       phase_ = ExcitationPhase::running;
       if (is_asked_) leave(ExcitationEnd::asked);
-    } else if (axis.state() == SupervisorState::fault || ++waited_ > kLongestOpening) {
+    } else if (axis.state() == SupervisorState::fault ||
+               (axis.state() != SupervisorState::starting && ++waited_ > kLongestOpening)) {  // a start ends by itself
       end_ = ExcitationEnd::refused;
       phase_ = ExcitationPhase::done;
     }

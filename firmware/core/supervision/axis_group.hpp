@@ -31,6 +31,8 @@ class AxisGroup {
   constexpr void step(const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, [this] { return outputs_on(); });
     const Readings readings = read_encoders();
+    if (outer == AxisFault::control_overrun) bridge_gap(readings);
+#pragma GCC unroll 4
     for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer), readings[i]); });
   }
 
@@ -38,6 +40,7 @@ class AxisGroup {
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
     const AxisFault outer = board_.watch(inputs, [this] { return outputs_on(); });
     const Readings readings = read_encoders();
+    if (outer == AxisFault::control_overrun) bridge_gap(readings);
     for (std::size_t i = 0; i < kAxes; ++i)
       settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer), readings[i]); });
   }
@@ -65,10 +68,15 @@ class AxisGroup {
 
   using Readings = std::array<hal::EncoderReading, kAxes>;
   /// All positions belong to one instant, whatever the steps then take.
-  constexpr Readings read_encoders() {
-    Readings readings;
-    for (std::size_t i = 0; i < kAxes; ++i) readings[i] = axes_[i].read_encoder();
-    return readings;
+  constexpr Readings read_encoders() { return read_encoders(std::make_index_sequence<axes>()); }
+  template <std::size_t... index>
+  constexpr Readings read_encoders(std::index_sequence<index...>) {
+    return {axes_[index].read_encoder()...};
+  }
+
+  /// The periods that were lost.
+  constexpr void bridge_gap(const Readings& readings) {
+    for (std::size_t i = 0; i < kAxes; ++i) axes_[i].bridge_gap(readings[i]);
   }
 
   /// A fault of one axis stops the other; its own and the board's faults come first.
@@ -80,9 +88,8 @@ class AxisGroup {
 
   template <typename Step>
   constexpr void settle(std::size_t index, Step step) {
-    const bool had_fault = axes_[index].fault() != AxisFault::none;
     step();
-    if (had_fault || axes_[index].fault() == AxisFault::none) return;
+    if (!axes_[index].take_new_fault()) return;
     for (std::size_t other = 0; other < kAxes; ++other)
       if (other != index && axes_[other].is_or_will_be_on()) must_stop_[other] = true;
   }

@@ -72,6 +72,7 @@ class SupervisedAxis {
   constexpr bool clear_fault() {
     if (state_ != SupervisorState::fault) return false;
     fault_ = second_fault_ = AxisFault::none;
+    is_fault_new_ = false;
     axis_.clear_fault();
     capture_.restart();
     begin_self_test();
@@ -116,6 +117,7 @@ class SupervisedAxis {
     if (state_ != SupervisorState::enabled || !is_at_rest() || !homing_.begin()) return false;
     if constexpr (kHasIndex) hal_.encoder().read_index();  // pulses of the time before
     is_interpolated_ = false;
+    is_guided_ = true;
     axis_.forget_home();  // the limits of an old home must not stand in the way
     return true;
   }
@@ -131,21 +133,22 @@ class SupervisedAxis {
 
   /// For steps of several axes, which are read at one instant.
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
+  /// As of Axis, before a step that comes late.
+  constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
   /// The next step is a step_with() of this increment.
   constexpr void lead(Increment increment) {
     led_increment_ = increment;
-    is_led_ = true;
+    is_led_ = is_guided_ = true;
   }
 
   /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) { step(outer, read_encoder()); }
   constexpr void step(AxisFault outer, const hal::EncoderReading& encoder) {
-    if (is_led_) return step_with(led_increment_, outer, encoder);
+    if (is_guided_) return step_guided(outer, encoder);
     if (state_ == SupervisorState::enabled && monitors_.travel().is_near_end()) keep_inside();
-    if (outer == AxisFault::control_overrun) axis_.bridge_gap(encoder);
     axis_.step(encoder);
-    supervise(homing_.is_active() && outer == AxisFault::none ? guide_home() : outer);
+    supervise(outer);
   }
 
   /// One control period with an interpolator's increment on top; a stopping or homing axis goes its own way.
@@ -156,7 +159,6 @@ class SupervisedAxis {
     is_led_ = false;
     if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer, encoder);
     is_interpolated_ = true;
-    if (outer == AxisFault::control_overrun) axis_.bridge_gap(encoder);
     if (!is_within_limits(increment)) {
       axis_.stop_interpolated();  // what cannot be right never reaches the drive
       axis_.step(encoder);
@@ -177,6 +179,12 @@ class SupervisedAxis {
   }
   /// The first fault since the last clear_fault().
   constexpr AxisFault fault() const { return fault_; }
+  /// Whether it came since this was asked last.
+  constexpr bool take_new_fault() {
+    if (!is_fault_new_) return false;
+    is_fault_new_ = false;
+    return true;
+  }
   /// What went wrong besides while the first fault brought the axis to a stop; the worst of it. none: nothing.
   constexpr AxisFault second_fault() const { return second_fault_; }
   constexpr LimitingReasons limiting() const { return {axis_.telemetry().saturated, limiting_.velocity_limited}; }
@@ -253,6 +261,14 @@ class SupervisedAxis {
   }
 
   constexpr void happen(SupervisorEvent event) { enter(next_state(state_, event | event, fault_ != AxisFault::none)); }
+
+  /// Of an axis that is led or looks for home.
+  [[gnu::noinline]] constexpr void step_guided(AxisFault outer, const hal::EncoderReading& encoder) {
+    is_guided_ = homing_.is_active();
+    if (is_led_) return step_with(led_increment_, outer, encoder);
+    axis_.step(encoder);
+    supervise(is_guided_ && outer == AxisFault::none ? guide_home() : outer);
+  }
 
   /// After each step of a homing axis: what the sequence wants next, and its fault.
   [[gnu::noinline]] constexpr AxisFault guide_home() {
@@ -393,6 +409,7 @@ class SupervisedAxis {
 
   constexpr void latch(AxisFault found) {
     fault_ = found;
+    is_fault_new_ = true;
     capture_.freeze(axis_.telemetry());
   }
 
@@ -462,6 +479,7 @@ class SupervisedAxis {
   SupervisorEvents requests_ = 0;
   AxisFault fault_ = AxisFault::none;
   AxisFault second_fault_ = AxisFault::none;
+  bool is_fault_new_ = false;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
   Increment fastest_ = 0;
@@ -469,6 +487,7 @@ class SupervisedAxis {
   Increment last_increment_ = 0;
   Increment led_increment_ = 0;
   bool is_led_ = false;
+  bool is_guided_ = false;  ///< led, or looking for home: the next step may be another one
   std::int64_t standing_at_ = 0;
   std::int32_t self_test_samples_ = 0;
   std::int32_t settling_samples_ = 0;

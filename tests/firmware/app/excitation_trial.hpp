@@ -115,7 +115,9 @@ class ExcitationTrial {
   bool is_on() const { return is_on_; }
   double final_speed() const { return final_speed_; }
   /// Friction's last creep in the simulation.
-  double standing_speed() const { return 0.01 * request_.speed * drive_.data.encoder_resolution * 1000.0; }
+  double standing_speed() const {
+    return 0.01 * static_cast<double>(request_.speed) * drive_.data.encoder_resolution * 1000.0;
+  }
   bool is_blind() const {
     return !drive_.data.tach_noise_variance &&
            (fault_ == TrialFault::encoder_dead || fault_ == TrialFault::encoder_swapped);
