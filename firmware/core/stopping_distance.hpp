@@ -8,6 +8,13 @@
 
 namespace firmware {
 
+/// Twice the time that a stop from a path's highest speed takes, samples: no stop lasts longer, whatever happens.
+constexpr std::int32_t longest_ramp(const MotionLimits& limits) {
+  const std::int64_t ramp = 2 * (limits.velocity / limits.acceleration + limits.acceleration / limits.jerk + 2);
+  constexpr std::int64_t kMost = std::int64_t{1} << 30;
+  return static_cast<std::int32_t>((ramp < kMost ? ramp : kMost) + (ramp < kMost ? ramp >> 3 : 0));
+}
+
 /// A bound, in whole numbers and without division: v^2 / (2 a) + v a / (2 j), which is the way of a stop from the
 /// steady velocity v where that reaches the acceleration limit, and more than its way, v sqrt(v / j), where it does
 /// not.

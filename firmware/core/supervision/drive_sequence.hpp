@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "hal/drive_enable.hpp"
+
 namespace firmware {
 
 /// Times in control periods, >= 0.
@@ -20,6 +22,13 @@ enum class DriveStartStep : std::uint8_t {
   started,     ///< the axis may move
   late,        ///< the amplifier does not become ready
 };
+
+/// Of an amplifier without the signal: always.
+template <hal::DriveEnable Lines>
+constexpr bool is_ready(Lines& lines) {
+  if constexpr (hal::ReadyInput<Lines>) return lines.is_ready();
+  return true;
+}
 
 /// Enable, amplifier ready, loop closed, brake released, motion; at the end standstill, brake applied, enable off. So a
 /// brake never slips against a drive, and an axis that hangs is never without one of the two.
@@ -45,6 +54,11 @@ class DriveSequence {
       return DriveStartStep::close_loop;
     }
     return waited ? DriveStartStep::late : DriveStartStep::wait;
+  }
+
+  template <hal::DriveEnable Lines>
+  constexpr void release_brake(Lines& lines, bool released) const {
+    if constexpr (hal::BrakeOutput<Lines>) lines.release_brake(released && parameters_.brake_fitted);
   }
 
   /// Once a control period after begin(), while a stopped axis is still held by its loop.

@@ -241,13 +241,6 @@ class SupervisedAxis {
     still_samples_ = 0;
   }
 
-  /// Twice the time that a stop from a path's highest speed takes, samples: no stop lasts longer, whatever happens.
-  static constexpr std::int32_t longest_ramp(const MotionLimits& limits) {
-    const std::int64_t ramp = 2 * (limits.velocity / limits.acceleration + limits.acceleration / limits.jerk + 2);
-    constexpr std::int64_t kMost = std::int64_t{1} << 30;
-    return static_cast<std::int32_t>((ramp < kMost ? ramp : kMost) + (ramp < kMost ? ramp >> 3 : 0));
-  }
-
   /// Of the whole reference: the axis's own, as it was in the last sample, and the increment on top.
   constexpr bool is_within_limits(Increment increment) const {
     const Increment change = increment - last_increment_;
@@ -337,7 +330,7 @@ class SupervisedAxis {
       watch_standstill(seen);
       return monitors_.watch_rest(seen);
     }
-    if (sequence_.parameters().ready_input && drive_unready_.settle(!is_amplifier_ready()))
+    if (sequence_.parameters().ready_input && drive_unready_.settle(!is_ready(hal_.drive_enable())))
       return AxisFault::amplifier_not_ready;
     const AxisFault motion = monitors_.watch_motion(seen);
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
@@ -350,20 +343,11 @@ class SupervisedAxis {
     return index_.watch(hal_.encoder().read_index(), axis_.encoder_reading());
   }
 
-  constexpr bool is_amplifier_ready() {
-    if constexpr (hal::ReadyInput<std::remove_reference_t<decltype(hal_.drive_enable())>>)
-      return hal_.drive_enable().is_ready();
-    return true;
-  }
-
-  constexpr void release_brake(bool released) {
-    if constexpr (hal::BrakeOutput<std::remove_reference_t<decltype(hal_.drive_enable())>>)
-      hal_.drive_enable().release_brake(released && sequence_.parameters().brake_fitted);
-  }
+  constexpr void release_brake(bool released) { sequence_.release_brake(hal_.drive_enable(), released); }
 
   /// Towards a closed loop and a released brake, while the state is starting.
   constexpr SupervisorEvents start_drive() {
-    switch (sequence_.next_of_start(is_amplifier_ready(), axis_.telemetry().enabled)) {
+    switch (sequence_.next_of_start(is_ready(hal_.drive_enable()), axis_.telemetry().enabled)) {
       case DriveStartStep::wait:
         break;
       case DriveStartStep::close_loop:
