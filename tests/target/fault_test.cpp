@@ -46,8 +46,8 @@ TEST_F(Fault, DivisionByZeroIsAUsageFault) {
 TEST_F(Fault, StackOverflowRunsIntoTheGuard) {
   const std::string report = report_after("s");
   expect_lines(report, {"reset: fault", "fault: memory protection fault", "outputs made safe 1"});
-  // The guard: 256 bytes from the start of RAM. Where the control interrupt comes at the last moment, its own frame runs
-  // into it, and of a frame (MSTKERR alone) the processor keeps no address: ARMv7-M ARM, B3.2.15.
+  // The guard: 256 bytes from the start of RAM. Where the control interrupt comes at the last moment, its own frame
+  // runs into it, and of a frame (MSTKERR alone) the processor keeps no address: ARMv7-M ARM, B3.2.15.
   const bool by_a_push = report.find("mmfar 0x200000") != std::string::npos;
   const bool by_a_frame = report.find("cfsr 0x00000010") != std::string::npos;
   EXPECT_TRUE(by_a_push || by_a_frame) << report;
