@@ -25,6 +25,28 @@ all: ## Build everything for this machine into build/; the program is build/bin/
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS)
 
+PREFIX ?= /usr/local
+
+.PHONY: install
+install: ## Install program, manual, completions and udev rule below PREFIX (now /usr/local); DESTDIR stages it
+	$(NEED) build
+	$(call configure,$(BUILD),-DCMAKE_INSTALL_PREFIX=$(PREFIX))
+	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents
+	cmake --install $(BUILD) --component axistool --prefix $(PREFIX) --strip
+
+.PHONY: deb
+deb: ## Make the Debian package build/axistool_VERSION_ARCHITECTURE.deb, and let lintian look at it
+	$(NEED) build package
+	$(call configure,$(BUILD),-DAXIS_ZSH_DIR=share/zsh/vendor-completions)
+	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents
+	cd $(BUILD) && cpack -G DEB --config CPackConfig.cmake
+	lintian --fail-on error,warning $(BUILD)/axistool_*.deb
+
+.PHONY: deb-check
+deb-check: deb ## Install the package in a fresh Debian 12, use it, remove it (as root; downloads some 100 MB)
+	$(NEED) package
+	cmake/package/in_fresh_debian.sh $(BUILD)/axistool_*.deb
+
 .PHONY: demo
 demo: ## Identify a real record, control both axes in simulation, show the result (EMPS=DIR adds the public benchmark)
 	$(NEED) build

@@ -49,6 +49,7 @@ void add_all_commands(CLI::App& app) {
   add_doctor(app);
   add_sim(app);
   add_completion(app);
+  add_man(app);
   add_udev_rule(app);
   add_help(app);
 }

@@ -45,6 +45,7 @@ void add_bench(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_sim(CLI::App& app);
 void add_completion(CLI::App& app);
+void add_man(CLI::App& app);
 void add_udev_rule(CLI::App& app);
 void add_hil(CLI::App& app);
 void add_parameters(CLI::App& app);

@@ -1,92 +1,115 @@
-// axistool completion: words for the shell's tab key, from the commands themselves.
+// axistool completion: the script for a shell's tab key; axistool complete: what the script asks.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <memory>
 
 #include "host/axistool/commands.hpp"
-#include "host/parameters/parameter_names.hpp"
+#include "host/axistool/completion.hpp"
 
 namespace axistool {
 
 namespace {
 
-std::vector<std::string> options_of(const CLI::App& command) {
-  std::vector<std::string> words;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
-  return words;
-}
+// Each asks with the words up to the cursor. A line is a word, or a word, a tab and its help; ":files" and endings ask
+// for files.
 
-/// What may stand behind a command besides its options and files.
-std::vector<std::string> arguments_of(const CLI::App& command) {
-  const std::string& name = command.get_name();
-  if (name == "get-params") return host::all_parameter_names();
-  if (name == "set-params") {
-    std::vector<std::string> words = host::all_parameter_names();
-    for (std::string& word : words) word += "=";
-    return words;
-  }
-  if (name == "enable" || name == "disable" || name == "jog" || name == "move") return {"x", "y"};
-  if (name == "completion") return {"bash", "zsh", "fish"};
-  return {};
+constexpr const char* kBash = R"sh(# bash completion of axistool
+_axistool() {
+  local current=${COMP_WORDS[COMP_CWORD]} line ending file
+  COMPREPLY=()
+  while IFS= read -r line; do
+    if [[ $line != :files* ]]; then
+      COMPREPLY+=("${line%%$'\t'*}")
+      continue
+    fi
+    compopt -o filenames
+    while IFS= read -r file; do COMPREPLY+=("$file"); done < <(compgen -d -- "$current")
+    set -f
+    for ending in ${line#:files}; do
+      while IFS= read -r file; do [[ -d $file ]] || COMPREPLY+=("$file"); done < <(
+        if [[ $ending == '*' ]]; then compgen -f -- "$current"; else compgen -f -X "!*.$ending" -- "$current"; fi)
+    done
+    set +f
+  done < <("${COMP_WORDS[0]}" complete -- "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
+  [[ ${COMPREPLY[0]} == *= ]] && compopt -o nospace
 }
+# NAME=VALUE and usb:SERIAL are one word.
+COMP_WORDBREAKS=${COMP_WORDBREAKS//[=:]/}
+complete -F _axistool axistool
+)sh";
 
-std::string bash_script(const CLI::App& app) {
-  std::vector<std::string> names;
-  std::string cases;
-  for (const CLI::App* command : commands_of(app)) {
-    names.push_back(command->get_name());
-    cases += fmt::format("    {}) words=\"{} {}\" ;;\n", command->get_name(), fmt::join(options_of(*command), " "),
-                         fmt::join(arguments_of(*command), " "));
-  }
-  return fmt::format(
-      "_axistool() {{\n"
-      "  local words current=${{COMP_WORDS[COMP_CWORD]}}\n"
-      "  if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return; fi\n"
-      "  case ${{COMP_WORDS[1]}} in\n{}  esac\n"
-      "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\") $(compgen -f -- \"$current\"))\n"
-      "  case ${{COMPREPLY[0]}} in *=) compopt -o nospace ;; esac\n"
-      "}}\n"
-      "COMP_WORDBREAKS=${{COMP_WORDBREAKS//=/}}\n"
-      "complete -o filenames -F _axistool axistool\n",
-      fmt::join(names, " "), cases);
+constexpr const char* kZsh = R"sh(#compdef axistool
+_axistool() {
+  local line word ending
+  local -a described assigned
+  for line in ${(f)"$("${words[1]}" complete -- "${(@)words[2,CURRENT]}" 2>/dev/null)"}; do
+    if [[ $line == :files* ]]; then
+      for ending in ${=line#:files}; do
+        if [[ $ending == '*' ]]; then _files; else _files -g "*.$ending"; fi
+      done
+      continue
+    fi
+    word=${line%%$'\t'*}
+    if [[ $word == *= ]]; then assigned+=($word); else described+=("${word//:/\\:}:${line#*$'\t'}"); fi
+  done
+  (( $#assigned )) && compadd -S '' -- $assigned
+  (( $#described )) && _describe -t values value described
 }
+if [ "$funcstack[1]" = "_axistool" ]; then _axistool "$@"; else compdef _axistool axistool; fi
+)sh";
 
-std::string fish_script(const CLI::App& app) {
-  std::string script = "complete -c axistool -n __fish_use_subcommand -f\n";
-  for (const CLI::App* command : commands_of(app)) {
-    const std::string& name = command->get_name();
-    std::string description = command->get_description();
-    std::erase(description, '\'');
-    script += fmt::format("complete -c axistool -n __fish_use_subcommand -a {} -d '{}'\n", name, description);
-    for (const std::string& option : options_of(*command))
-      script += fmt::format("complete -c axistool -n '__fish_seen_subcommand_from {}' -l {}\n", name, option.substr(2));
-    if (const auto words = arguments_of(*command); !words.empty())
-      script += fmt::format("complete -c axistool -n '__fish_seen_subcommand_from {}' -a '{}'\n", name,
-                            fmt::join(words, " "));
-  }
-  return script;
+constexpr const char* kFish = R"sh(# fish completion of axistool
+function __axistool_complete
+  set -l before (commandline -opc)
+  set -l current (commandline -ct)
+  axistool complete -- $before[2..-1] "$current" 2>/dev/null | while read -l line
+    if not string match -q ':files*' -- $line
+      echo $line
+      continue
+    end
+    for ending in (string split -n ' ' -- (string replace ':files' '' -- $line))
+      if test $ending = '*'
+        __fish_complete_path "$current"
+      else
+        __fish_complete_suffix "$current" .$ending | string match -r '.*(?:/|\.'$ending')(?:\t.*)?$'
+      end
+    end
+  end
+end
+complete -c axistool -f -a '(__axistool_complete)'
+)sh";
+
+void print_completions(const CLI::App& app, const std::vector<std::string>& words) {
+  const Completions all = complete(app, words);
+  for (const Completion& one : all.words) fmt::print("{}{}{}\n", one.word, one.help.empty() ? "" : "\t", one.help);
+  if (!all.files.empty()) fmt::print(":files {}\n", fmt::join(all.files, " "));
 }
 
 }  // namespace
 
+std::string completion_script(const std::string& shell) {
+  return shell == "fish" ? kFish : shell == "zsh" ? kZsh : kBash;
+}
+
 void add_completion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("completion", "Script that teaches a shell the commands, options and parameters");
+      app.add_subcommand("completion", "Script that teaches a shell commands, options, effects, parameters and boards");
   command->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
       "Examples:\n"
       "  axistool completion bash > ~/.local/share/bash-completion/completions/axistool\n"
-      "  axistool completion zsh >> ~/.zshrc\n"
-      "  axistool completion fish > ~/.config/fish/completions/axistool.fish");
-  command->callback([shell, &app] {
-    if (*shell == "fish")
-      fmt::print("{}", fish_script(app));
-    else
-      fmt::print("{}{}", *shell == "zsh" ? "autoload -Uz bashcompinit && bashcompinit\n" : "", bash_script(app));
-  });
+      "  axistool completion zsh > ~/.zfunc/_axistool      # where fpath has ~/.zfunc\n"
+      "  axistool completion fish > ~/.config/fish/completions/axistool.fish\n"
+      "An installed axistool needs none of these.");
+  command->callback([shell] { fmt::print("{}", completion_script(*shell)); });
+
+  auto words = std::make_shared<std::vector<std::string>>();
+  CLI::App* asked = app.add_subcommand("complete", "what may stand at the end of a command line; the scripts ask it");
+  asked->group("");  // for scripts: not in the list
+  asked->add_option("WORD", *words, "what was typed after the program's name; the last word is being typed");
+  asked->callback([words, &app] { print_completions(app, *words); });
 }
 
 }  // namespace axistool

@@ -20,7 +20,7 @@ const CLI::App& command_named(const CLI::App& app, const std::string& name) {
 }  // namespace
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 std::string no_command(const CLI::App& app, const std::string& name) {

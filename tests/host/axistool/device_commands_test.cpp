@@ -214,13 +214,4 @@ TEST(DeviceOption, NamesWhatItTakes) {
   EXPECT_THAT(run_axistool("info --device socket:/nowhere/at/all").output, HasSubstr("axistool sim"));
 }
 
-TEST(Completion, ScriptsAreValidAndKnowTheParameters) {
-  const ProgramRun bash = run_axistool("completion bash | bash -n && \"" AXISTOOL_PROGRAM "\" completion bash");
-  EXPECT_EQ(bash.exit_code, 0);
-  EXPECT_THAT(bash.output, AllOf(HasSubstr("set-params)"), HasSubstr("x.kalman.k11="), HasSubstr("--dry-run")));
-  EXPECT_THAT(run_axistool("completion zsh").output, HasSubstr("bashcompinit"));
-  EXPECT_THAT(run_axistool("completion fish").output, HasSubstr("__fish_seen_subcommand_from set-params"));
-  EXPECT_EQ(run_axistool("completion tcsh").exit_code, 2);
-}
-
 }  // namespace

@@ -1,0 +1,51 @@
+# What `make install` puts below PREFIX, and the Debian package that `make deb` makes of the same.
+include(AxisVersion)
+set(AXIS_ZSH_DIR "share/zsh/site-functions" CACHE STRING "Where zsh looks for completions, below the prefix")
+set(DOCUMENTS "${CMAKE_BINARY_DIR}/documents")
+
+# Manual, completions and udev rule are what the program says of itself.
+add_custom_command(OUTPUT "${DOCUMENTS}/stamp"
+  COMMAND "${CMAKE_COMMAND}" -E rm -rf "${DOCUMENTS}"
+  COMMAND "${AXIS_ROOT}/cmake/package/documents.sh" "$<TARGET_FILE:axistool>" "${DOCUMENTS}" "${AXIS_ROOT}" "${AXIS_VERSION}"
+  COMMAND "${CMAKE_COMMAND}" -E touch "${DOCUMENTS}/stamp"
+  DEPENDS axistool "${AXIS_ROOT}/cmake/package/documents.sh" "${AXIS_ROOT}/.github/CHANGELOG.md" VERBATIM)
+add_custom_target(axistool_documents ALL DEPENDS "${DOCUMENTS}/stamp")
+
+set(IN_PACKAGE COMPONENT axistool)
+install(TARGETS axistool DESTINATION bin ${IN_PACKAGE})
+install(DIRECTORY "${AXIS_ROOT}/host/hil/scenarios" DESTINATION share/axistool ${IN_PACKAGE})
+install(DIRECTORY "${AXIS_ROOT}/tests/data/drive-cases/none/case-00/" DESTINATION share/axistool/drive ${IN_PACKAGE})
+install(DIRECTORY "${DOCUMENTS}/man1" DESTINATION share/man ${IN_PACKAGE})
+install(FILES "${DOCUMENTS}/axistool.bash" RENAME axistool DESTINATION share/bash-completion/completions ${IN_PACKAGE})
+install(FILES "${DOCUMENTS}/axistool.zsh" RENAME _axistool DESTINATION "${AXIS_ZSH_DIR}" ${IN_PACKAGE})
+install(FILES "${DOCUMENTS}/axistool.fish" DESTINATION share/fish/vendor_completions.d ${IN_PACKAGE})
+install(FILES "${DOCUMENTS}/70-axis.rules" DESTINATION lib/udev/rules.d ${IN_PACKAGE})
+install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/axistool ${IN_PACKAGE})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME axistool)
+set(CPACK_PACKAGE_VERSION "${AXIS_VERSION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};axis;axistool;/")
+set(CPACK_COMPONENTS_ALL axistool)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The axis maintainers <maintainers@axis.invalid>")
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libhidapi-hidraw0")  # loaded at run time, as these are
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libmatio11")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "dfu-util, openocd")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "identify feed drives and find the physical effect a model lacks
+axistool identifies the drives of machine tools from measurements (inertia,
+friction, tachometer, noise), compares models with records, names the physical
+effect that a model lacks, and designs the estimator and controller of an
+axis board.
+
+It sets the parameters of boards over USB, moves their axes and captures
+records; a simulated board takes the place of a real one for trying it out.")
+include(CPack)

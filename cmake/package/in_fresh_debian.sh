@@ -1,0 +1,33 @@
+#!/bin/bash
+# in_fresh_debian.sh PACKAGE.deb [MIRROR]: installs the package in a Debian 12 that holds nothing else, uses it as its
+# user would, removes it, and says what is left behind. As root; mmdebstrap makes the system in a temporary folder.
+set -euo pipefail
+package=$(realpath "$1")
+mirror=${2:-http://deb.debian.org/debian}
+root=$(mktemp -d)
+trap 'umount "$root/system/proc" 2> /dev/null || true; rm -rf "$root"' EXIT
+
+mmdebstrap --variant=apt --include=bash-completion,fish,man-db --quiet bookworm "$root/system" "$mirror"
+inside() { chroot "$root/system" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+files() { (cd "$root/system" && find etc usr lib opt srv var/lib/axis* -not -path '*/__pycache__*' 2> /dev/null | sort); }
+
+mount -t proc proc "$root/system/proc"
+inside apt-get -qq update
+# What the package needs comes first, so that only its own files are compared.
+inside apt-get -qq install -y --no-install-recommends $(dpkg-deb -f "$package" Depends | sed -e 's/([^)]*)//g' -e 's/|[^,]*//g' -e 's/,/ /g') > /dev/null 2>&1
+files > "$root/before"
+cp "$package" "$root/system/root/axistool.deb"
+inside apt-get -qq install -y --no-install-recommends /root/axistool.deb > /dev/null
+
+echo "version:    $(inside axistool --version)"
+inside sh -c 'cd /root && axistool demo' > "$root/demo.txt"
+echo "demo:       $(grep -c . "$root/demo.txt") lines; $(grep 'agrees with' "$root/demo.txt")"
+echo "manual:     $(inside sh -c 'man axistool-identify | head -4 | tail -1')"
+echo "scenario:   $(inside sh -c 'axistool hil square | tail -2 | head -1')"
+echo "bash:       $(inside bash -c '. /usr/share/bash-completion/bash_completion; _completion_loader axistool
+  COMP_WORDS=(axistool effects cog); COMP_CWORD=2; compopt() { :; }; _axistool; echo "${COMPREPLY[@]}"')"
+echo "fish:       $(inside fish -c 'complete -C "axistool set-params x.kalman.k1"' | head -2 | cut -f1 | tr '\n' ' ')"
+echo "udev rule:  $(inside cat /usr/lib/udev/rules.d/70-axis.rules | grep -c uaccess) lines give access"
+inside apt-get -qq purge -y axistool > /dev/null
+files > "$root/after"
+diff "$root/before" "$root/after" > "$root/left" && echo "removed:    nothing is left" || { echo "left behind:"; cat "$root/left"; exit 1; }

@@ -1,0 +1,27 @@
+// What may stand at a place of a command line: for the tab key of every shell.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace axistool {
+
+struct Completion {
+  std::string word;
+  std::string help;  ///< a line; may be empty
+};
+
+struct Completions {
+  std::vector<Completion> words;
+  /// Endings of files that fit besides, without their dots; "*" stands for any file. Empty: no files.
+  std::vector<std::string> files;
+};
+
+/// `words`: what was typed after the program's name; the last one, possibly empty, is being typed.
+Completions complete(const CLI::App& app, const std::vector<std::string>& words);
+
+/// The script that asks `axistool complete` for bash, zsh or fish.
+std::string completion_script(const std::string& shell);
+
+}  // namespace axistool
