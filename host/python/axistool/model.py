@@ -1,0 +1,74 @@
+"""Models (axis-model/1): the data sheet of a drive and its effects."""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .errors import BadInput
+
+
+@dataclass
+class Model:
+    """`document` is the file as TOML has it; change it in place, and write it."""
+
+    document: dict[str, Any]
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Model:
+        try:
+            return cls(tomllib.loads(Path(path).read_text(encoding="utf-8")))
+        except (OSError, tomllib.TOMLDecodeError) as fault:
+            raise BadInput(f"{path}: {fault}") from fault
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Every number reads back as the same double."""
+        Path(path).write_text(_toml(self.document), encoding="utf-8")
+
+    @property
+    def name(self) -> str:
+        return str(self.document.get("name", ""))
+
+    @property
+    def kinds(self) -> list[str]:
+        """Of its effects, in the file's order."""
+        return [str(effect["kind"]) for effect in self.document.get("effect", [])]
+
+    def effect(self, kind: str) -> dict[str, Any]:
+        """The first effect of this kind. Throws KeyError where there is none."""
+        for effect in self.document.get("effect", []):
+            if effect["kind"] == kind:
+                return dict(effect)
+        raise KeyError(kind)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {_value(one)}" for key, one in value.items()) + "}"
+    return repr(value)
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(one, dict) for one in value)
+
+
+def _toml(table: dict[str, Any], path: str = "") -> str:
+    deeper = {key for key, value in table.items() if isinstance(value, dict) or (path == "" and _is_tables(value))}
+    text = "".join(f"{key} = {_value(value)}\n" for key, value in table.items() if key not in deeper)
+    for key in (key for key in table if key in deeper):
+        name, value = f"{path}{key}", table[key]
+        if isinstance(value, dict):
+            text += f"\n[{name}]\n" + _toml(value, name + ".")
+        else:
+            text += "".join(f"\n[[{name}]]\n" + _toml(one, name + ".") for one in value)
+    return text

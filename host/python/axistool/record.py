@@ -1,0 +1,65 @@
+"""Records (axis-record/1) as NumPy arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import BadInput
+
+
+@dataclass
+class Record:
+    """Columns by their names with units (`t_s`, `u_V`, `x_mm`, `w_rad_s`, …), all of one length, and the header's
+    entries."""
+
+    columns: Mapping[str, NDArray[np.float64]]
+    header: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def from_arrays(cls, header: Mapping[str, str] | None = None, **columns: ArrayLike) -> Record:
+        """Of anything that NumPy takes: Record.from_arrays(t_s=t, u_V=u, x_mm=x)."""
+        return cls({name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}, dict(header or {}))
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Record:
+        """Numbers as the file has them; the program's checks come when the record is used."""
+        header: dict[str, str] = {}
+        with open(path, encoding="utf-8-sig") as file:
+            line = file.readline()
+            while line.startswith("#"):
+                key, colon, value = line[1:].partition(":")
+                if colon:
+                    header[key.strip()] = value.strip()
+                line = file.readline()
+            names = [name.strip() for name in line.split(",")]
+            try:
+                rows = np.loadtxt(file, delimiter=",", ndmin=2)
+            except ValueError as fault:
+                raise BadInput(f"{path}: {fault}") from fault
+        if rows.size == 0 or rows.shape[1] != len(names):
+            raise BadInput(f"{path}: {rows.shape[1] if rows.size else 0} columns of numbers under {len(names)} names")
+        return cls({name: rows[:, k].copy() for k, name in enumerate(names)}, header)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Every number reads back as the same double."""
+        lengths = {len(values) for values in self.columns.values()}
+        if len(lengths) != 1:
+            raise BadInput(f"the columns of a record have one length; here are {sorted(lengths)}")
+        header = {"format": "axis-record/1", **self.header}
+        lines = [f"# {key}: {value}" for key, value in header.items()]
+        lines.append(",".join(self.columns))
+        columns = [np.asarray(values, dtype=np.float64).tolist() for values in self.columns.values()]
+        lines += [",".join(map(repr, row)) for row in zip(*columns)]
+        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()), ()))
