@@ -12,8 +12,10 @@
 #include "firmware/app/excitation_service.hpp"
 #include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/parameter_check.hpp"
+#include "firmware/app/parameters/set_crc.hpp"
 #include "firmware/app/protocol/messages.hpp"
 #include "firmware/app/store/parameter_store.hpp"
+#include "firmware/app/triggered_capture.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
 #include "hal/board.hpp"
 
@@ -31,12 +33,17 @@ class BoardApplication {
   explicit BoardApplication(Board& board)
       : board_(board),
         store_(board.parameter_flash()),
-        axes_([&board](std::size_t index) -> typename Board::AxisType& { return board.axis(index); }) {}
+        axes_([&board](std::size_t index) -> typename Board::AxisType& { return board.axis(index); }) {
+    if constexpr (kBoardKeepsCapture)
+      trigger_.adopt(board.capture_memory());
+    else
+      trigger_.adopt(own_memory_);
+  }
 
   /// Before the control interrupt runs: takes the parameters out of the store and hands them to the axes.
   void start() {
     store_.load(active_);
-    saved_ = active_;
+    saved_crc_ = active_crc_ = set_crc(active_);
     if (store_is_usable() && check<Scalar>(active_).kind != SetProblemKind::none) set_fits_ = false;
     configure_all();
   }
@@ -46,13 +53,14 @@ class BoardApplication {
     if (excitation_.is_active()) excitation_.before_step(axes_);
     axes_.step({now_us, board_.emergency_stop().is_pressed(), board_.supply().is_low(), !store_is_usable()});
     capture_.take(axes_);
+    if (trigger_.is_running()) trigger_.take(axes_);
     note_timing(now_us);
   }
 
   // Parameters. `staged` is the background's own copy; nothing acts before commit().
   const ParameterValues& active() const { return active_; }
   ParameterValues& staged() { return staged_; }
-  bool has_unsaved_changes() const { return !(active_ == saved_); }
+  bool has_unsaved_changes() const { return active_crc_ != saved_crc_; }
 
   /// Takes the staged set over, as a whole or not at all.
   Status commit(ProblemPayload& problem) {
@@ -71,6 +79,7 @@ class BoardApplication {
     if (staged_ == active_) return Status::ok;
     const auto displaced = axes_whose_counts_change_meaning();
     active_ = staged_;
+    active_crc_ = set_crc(active_);
     if (changed == active_.size() && set_fits_) {
       const BoardLimits limits = limits_of_board();  // all that may change while an axis moves
       const typename Board::ControlShutOut guard;
@@ -95,7 +104,7 @@ class BoardApplication {
     const SaveResult result = store_.save(active_);
     board_.end_stall();
     axes_.board().excuse_pause();
-    if (result == SaveResult::saved) saved_ = active_;
+    if (result == SaveResult::saved) saved_crc_ = active_crc_;
     if (!was_usable) configure_all();
     return result == SaveResult::saved          ? Status::ok
            : result == SaveResult::not_verified ? Status::not_verified
@@ -191,7 +200,7 @@ class BoardApplication {
       if (state != SupervisorState::enabled || is_in_motion(axis)) return refusal(axis);
     } else {
       if (!store_is_usable() || state == SupervisorState::fault) return Status::device_fault;
-      if (outputs_are_on(state)) return Status::drive_enabled;
+      if (axes_[axis].is_or_will_be_on()) return Status::drive_enabled;
       if (!is_fitted(axis)) {
         const float per_count = request.drive_velocity / request.speed;
         axes_[axis].configure_bare(
@@ -268,6 +277,22 @@ class BoardApplication {
   }
   CaptureStream& capture() { return capture_; }
 
+  /// A capture in the board's memory; `after` of 0 ends the one that is armed.
+  Status arm(const TriggerRequest& request) {
+    if (request.after != 0 && !TriggeredCapture::is_possible(request, kAxes)) return Status::malformed;
+    const typename Board::ControlShutOut guard;
+    if (request.after == 0)
+      trigger_.stop();
+    else
+      trigger_.arm(request);
+    return Status::ok;
+  }
+  TriggerStatePayload trigger_state() const {
+    const typename Board::ControlShutOut guard;
+    return trigger_.state();
+  }
+  const TriggeredCapture& triggered() const { return trigger_; }
+
   /// The state of an axis at one instant.
   AxisStatus axis_status(std::size_t axis) {
     const typename Board::ControlShutOut guard;
@@ -326,6 +351,7 @@ class BoardApplication {
   Axes& axes() { return axes_; }
 
  private:
+  static constexpr bool kBoardKeepsCapture = requires(Board & board) { board.capture_memory(); };
   static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
@@ -429,11 +455,14 @@ class BoardApplication {
   Store store_;
   Axes axes_;
   CaptureStream capture_;
+  TriggeredCapture trigger_;
+  struct Nothing {};
+  [[no_unique_address]] std::conditional_t<kBoardKeepsCapture, Nothing, TriggeredMemory> own_memory_{};
   ExcitationService<Scalar> excitation_;
   MotionOwner owner_;
   ParameterValues active_{kAxes};
   ParameterValues staged_{kAxes};
-  ParameterValues saved_{kAxes};
+  std::uint32_t active_crc_ = 0, saved_crc_ = 0;  ///< a copy of the saved set would take more memory
   bool set_fits_ = true;
   TimingPayload timing_{};
   std::uint32_t last_period_us_ = 0;

@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "firmware/app/protocol/messages.hpp"
-#include "firmware/core/supervision/supervised_axis.hpp"
+#include "firmware/app/channel_words.hpp"
 
 namespace firmware {
 
@@ -53,7 +52,7 @@ class CaptureStream {
     std::size_t used = 0;
     for (std::size_t axis = 0; axis < Axes::kAxes; ++axis)
       for (std::uint32_t left = channels_[axis]; left != 0; left &= left - 1)
-        row.word[used++] = word_of(axes[axis], static_cast<Channel>(std::countr_zero(left)));
+        row.word[used++] = channel_word(axes[axis], static_cast<Channel>(std::countr_zero(left)));
     written_.store(written + 1, std::memory_order_release);
   }
 
@@ -82,46 +81,6 @@ class CaptureStream {
     std::uint32_t number = 0;
     std::array<std::uint32_t, kWordsPerReport> word{};
   };
-
-  template <typename Scalar>
-  static constexpr std::uint32_t bits_of(Scalar value) {
-    if constexpr (std::is_same_v<Scalar, float>)
-      return std::bit_cast<std::uint32_t>(value);
-    else
-      return static_cast<std::uint32_t>(value.raw());
-  }
-
-  template <typename Axis>
-  static std::uint32_t word_of(const Axis& axis, Channel channel) {
-    const auto& seen = axis.telemetry();
-    switch (channel) {
-      case Channel::dac_code:
-        return static_cast<std::uint32_t>(seen.dac_code);
-      case Channel::counts:
-        return static_cast<std::uint32_t>(seen.encoder_counts);
-      case Channel::tachometer_velocity:
-        return bits_of(seen.tachometer_velocity);
-      case Channel::reference:
-        return static_cast<std::uint32_t>(seen.reference.counts) << 8 |
-               static_cast<std::uint32_t>(seen.reference.fraction >> (kFractionBits - 8));
-      case Channel::reference_velocity:
-        return bits_of(seen.reference_velocity);
-      case Channel::position_error:
-        return bits_of(seen.position_error);
-      case Channel::velocity_estimate:
-        return bits_of(seen.estimate.velocity);
-      case Channel::disturbance:
-        return bits_of(seen.estimate.disturbance);
-      case Channel::friction:
-        return bits_of(seen.friction_V);
-      case Channel::control:
-        return bits_of(seen.control_V);
-      case Channel::flags:
-        break;
-    }
-    return static_cast<std::uint32_t>(axis.state()) | static_cast<std::uint32_t>(axis.fault()) << 8 |
-           (seen.saturated ? 1u << 16 : 0u);
-  }
 
   std::array<Row, kRows> rows_{};
   std::atomic<std::uint32_t> written_ = 0;

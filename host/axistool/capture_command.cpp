@@ -11,6 +11,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/device/capture.hpp"
 #include "host/device/motion.hpp"
+#include "host/device/triggered_capture.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/progress.hpp"
 
@@ -21,9 +22,10 @@ namespace {
 struct CaptureArguments : DeviceArguments {
   std::string output, axis = "x", trigger, drive;
   std::vector<std::string> channels, jogs;
-  double duration_s = 0.0, before_s = 0.0, patience_s = 60.0;
+  std::string before;
+  double duration_s = 0.0, patience_s = 60.0;
   unsigned every = 1;
-  bool linear = false;
+  bool linear = false, wide = false, last = false;
 };
 
 /// "20:1.5": 20 mm/s for 1.5 s.
@@ -40,6 +42,18 @@ host::JogStep parse_jog(const std::string& text) {
   return step;
 }
 
+/// "0.05", "50ms", "2s".
+double seconds_of(const std::string& text) {
+  if (text.empty()) return 0.0;
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  const double factor = unit.empty() || unit == "s" ? 1.0 : unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : 0.0;
+  if (end == text.c_str() || factor == 0.0 || !(value >= 0.0) || value * factor > 3600.0)
+    throw host::Failure(host::ExitCode::usage, fmt::format("--pre {}: write seconds, or 50ms", text));
+  return value * factor;
+}
+
 host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmware::ParameterValues& values) {
   host::CaptureSettings settings;
   settings.axis = axis_index(arguments.axis, values.axes());
@@ -48,18 +62,50 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
     settings.channels.push_back(host::channel_named(name, settings.kind));
   if (arguments.channels.empty())
     settings.channels = host::usual_channels(values.axis(settings.axis).get<"tachometer.fitted">());
-  if (!arguments.trigger.empty()) {
+  if (!arguments.trigger.empty() && !host::is_board_trigger(arguments.trigger)) {
     settings.trigger = host::parse_trigger(arguments.trigger, settings.kind);
     settings.channels.push_back(settings.trigger->channel);
   }
   std::ranges::sort(settings.channels);
   settings.channels.erase(std::unique(settings.channels.begin(), settings.channels.end()), settings.channels.end());
   settings.every = static_cast<std::uint16_t>(arguments.every);
-  settings.before_s = arguments.before_s;
+  settings.before_s = seconds_of(arguments.before);
   settings.patience_s = arguments.patience_s;
   for (const std::string& jog : arguments.jogs) settings.jogs.push_back(parse_jog(jog));
   settings.duration_s = arguments.duration_s > 0.0 || !settings.jogs.empty() ? arguments.duration_s : 1.0;
   return settings;
+}
+
+void write(const CaptureArguments& arguments, const host::Capture& capture, const host::CaptureSettings& settings) {
+  host::Record record =
+      host::capture_record(capture, settings, arguments.drive.empty() ? arguments.axis : arguments.drive);
+  host::write_record(record, arguments.output);
+  nlohmann::json document{{"format", "axis-capture/1"}, {"file", arguments.output},
+                          {"rows", record.size()},      {"sample_period_s", record.sample_period_s},
+                          {"lost_rows", capture.lost},  {"dropped_by_board", capture.dropped_by_board}};
+  if (capture.trigger_s) document["trigger_s"] = *capture.trigger_s;
+  if (!arguments.json.empty()) write_json(document, arguments.json);
+  if (talks(arguments))
+    fmt::print("{} rows at {:g} Hz in {}, {} lost\n", record.size(), 1.0 / record.sample_period_s, arguments.output,
+               capture.lost);
+}
+
+/// In the board's own memory, at loop rate, whatever the way to the computer carries.
+void run_on_board(const CaptureArguments& arguments, host::BoardClient& board, host::CaptureSettings settings) {
+  host::TriggeredSettings wanted;
+  wanted.wide = arguments.wide;
+  wanted.capture = std::move(settings);
+  if (arguments.last) {
+    const host::Capture capture = host::read_triggered_capture(board, wanted);
+    write(arguments, capture, wanted.capture);
+    return;
+  }
+  wanted.trigger = host::parse_board_trigger(arguments.trigger, wanted.capture.kind);
+  if (arguments.duration_s == 0.0) wanted.capture.duration_s = std::max(0.1, wanted.capture.before_s);
+  if (wanted.trigger.axis != firmware::kAnyAxis && wanted.trigger.axis >= board.axis_count())
+    throw host::Failure(host::ExitCode::usage, fmt::format("{}: the board has no such axis", arguments.trigger));
+  if (arguments.dry_run) return;
+  write(arguments, host::run_triggered_capture(board, wanted, [] { return false; }), wanted.capture);
 }
 
 void run(const CaptureArguments& arguments) {
@@ -67,6 +113,7 @@ void run(const CaptureArguments& arguments) {
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
   const host::CaptureSettings settings = settings_of(arguments, values);
+  if (arguments.last || host::is_board_trigger(arguments.trigger)) return run_on_board(arguments, board, settings);
   for (const host::JogStep& jog : settings.jogs) host::require_reachable(values, settings.axis, jog.velocity);
   const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
   const double reports_Hz = rate_Hz / std::floor(static_cast<double>(firmware::kWordsPerReport) /
@@ -93,19 +140,7 @@ void run(const CaptureArguments& arguments) {
       shown = std::max(shown, rows);
     });
   }
-  const host::Record record =
-      host::capture_record(capture, settings, arguments.drive.empty() ? arguments.axis : arguments.drive);
-  host::write_record(record, arguments.output);
-  if (!arguments.json.empty())
-    write_json({{"format", "axis-capture/1"},
-                {"file", arguments.output},
-                {"rows", record.size()},
-                {"sample_period_s", record.sample_period_s},
-                {"lost_rows", capture.lost},
-                {"dropped_by_board", capture.dropped_by_board}},
-               arguments.json);
-  if (talks(arguments))
-    fmt::print("{} rows at {:g} Hz in {}, {} lost\n", record.size(), rate_Hz, arguments.output, capture.lost);
+  write(arguments, capture, settings);
   if (capture.lost > 0)
     throw host::Failure(
         host::ExitCode::protocol,
@@ -132,9 +167,14 @@ void add_capture(CLI::App& app) {
   command->add_option("--every", arguments->every, "take every n-th control period")
       ->capture_default_str()
       ->check(CLI::Range(1u, 65535u));
-  command->add_option("--trigger", arguments->trigger, "begin when a channel crosses a level: 'w_rad_s>5', 'x_mm<0'");
-  command->add_option("--pre", arguments->before_s, "seconds to keep from before the trigger")
-      ->check(CLI::Range(0.0, 3600.0));
+  command->add_option(
+      "--trigger", arguments->trigger,
+      "begin when a channel crosses a level: 'w_rad_s>5', 'x_mm<0'; with an axis the board looks itself, "
+      "at every sample, and keeps them in its memory: 'x.position_error > 20um', 'x.fault', 'any.fault', "
+      "'x.motion', 'x.now'");
+  command->add_option("--pre", arguments->before, "time to keep from before the trigger: 0.1, 50ms");
+  command->add_flag("--wide", arguments->wide, "in the board's memory: all digits of speeds, errors and voltages");
+  command->add_flag("--last", arguments->last, "what the board's memory holds, also from before its last reset");
   command->add_option("--wait", arguments->patience_s, "seconds to wait for the trigger")->capture_default_str();
   command->add_option("--jog", arguments->jogs, "SPEED:SECONDS, one after the other, meanwhile; the axis is enabled")
       ->delimiter(',');
@@ -147,6 +187,7 @@ void add_capture(CLI::App& app) {
       "  axistool capture -o idle.csv --for 2\n"
       "  axistool capture -o jogs.csv --jog 20:1,-20:1\n"
       "  axistool capture -o bump.csv --trigger 'd_hat_V>0.5' --pre 0.1 --for 0.4 --channels u_V,x_mm,d_hat_V\n"
+      "  axistool capture -o error.csv --trigger 'x.position_error > 20um' --pre 50ms\n"
       "Channels beyond the default: x_err_mm, w_hat_rad_s, d_hat_V, u_friction_V, u_control_V, flags.\n"
       "Rows that were lost are counted, and end with exit code 5; the file keeps the gap.");
   command->callback([arguments] { run(*arguments); });

@@ -374,6 +374,17 @@ firmware::ExcitationStatePayload BoardClient::excitation_state() {
   return payload_of<firmware::ExcitationStatePayload>(request(MessageType::excitation_state));
 }
 
+void BoardClient::arm_trigger(const firmware::TriggerRequest& wanted) { request(MessageType::arm_trigger, wanted); }
+
+firmware::TriggerStatePayload BoardClient::trigger_state() {
+  return payload_of<firmware::TriggerStatePayload>(request(MessageType::trigger_state));
+}
+
+firmware::TriggeredPayload BoardClient::read_triggered(std::uint32_t first) {
+  return payload_of<firmware::TriggeredPayload>(
+      request(MessageType::read_triggered, firmware::ReadTriggeredRequest{first}));
+}
+
 void BoardClient::start_capture(const firmware::CaptureRequest& wanted) {
   samples_.clear();
   request(MessageType::start_capture, wanted);

@@ -12,6 +12,7 @@
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "firmware/app/protocol/excitation_messages.hpp"
 #include "firmware/app/protocol/report.hpp"
+#include "firmware/app/protocol/trigger_messages.hpp"
 #include "firmware/app/store/stored_set.hpp"
 #include "host/device/report_link.hpp"
 
@@ -66,6 +67,11 @@ class BoardClient {
   void start_excitation(const firmware::ExcitationRequest& wanted);
   firmware::ExcitationStatePayload stop_excitation();
   firmware::ExcitationStatePayload excitation_state();
+
+  void arm_trigger(const firmware::TriggerRequest& wanted);
+  firmware::TriggerStatePayload trigger_state();
+  /// From this half word on.
+  firmware::TriggeredPayload read_triggered(std::uint32_t first);
 
   void start_capture(const firmware::CaptureRequest& request);
   firmware::CaptureReply stop_capture();

@@ -111,7 +111,7 @@ class Designer {
   void put_box() {
     firmware::ExcitationRequest& r = made_.request;
     const double half = counts(box_.travel) / 2.0;
-    if (!(half >= 1.0) || half > (1 << 30))
+    if (!(half >= 1.0) || half > firmware::kMostBoxCounts)
       refuse(fmt::format("travel = {:g} is no window that the encoder can tell", box_.travel));
     r.travel_counts = static_cast<std::int32_t>(half);
     r.speed = static_cast<float>(counts_a_sample(box_.speed));
@@ -247,7 +247,7 @@ class Designer {
     const double to = frequency("to", std::min(100.0, scale_.rate_Hz / 8.0));
     const auto period =
         static_cast<std::uint32_t>(positive("period", std::exp2(std::round(std::log2(scale_.rate_Hz)))));
-    const auto most = static_cast<std::size_t>(positive("lines", 24));
+    const auto most = static_cast<std::size_t>(positive("lines", static_cast<double>(firmware::kExcitationEntries)));
     if (most > firmware::kExcitationEntries) refuse(fmt::format("more than {} lines", firmware::kExcitationEntries));
     const std::vector<std::uint32_t> lines = odd_lines(from, to, period, most);
     if (lines.empty()) refuse("no odd line lies between from and to: a longer period has more of them");

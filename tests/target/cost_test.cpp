@@ -35,6 +35,13 @@ TEST_F(CostOfAStep, FloatKeepsItsBudget) {
   EXPECT_GT(costs["one_axis"].mean, 100) << "the step did nothing";
 }
 
+TEST_F(CostOfAStep, ExperimentsKeepTheirBudget) {
+  auto costs = count_instructions("cost-float-m4");
+  EXPECT_LE(costs["both_axes_excited"].mean, 1500) << "as many lines as there may be";
+  EXPECT_GT(costs["both_axes_excited"].mean, costs["both_axes"].mean + 200) << "nothing was excited";
+  EXPECT_LE(costs["captured_row"].worst, 200) << "four channels";
+}
+
 TEST_F(CostOfAStep, FixedPointTakesAtMostTwoAndAHalfTimesFloat) {
   auto in_float = count_instructions("cost-float-m4");
   for (const char* image : {"cost-fixed-m4", "cost-fixed-m3"}) {

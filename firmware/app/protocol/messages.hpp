@@ -40,6 +40,9 @@ enum class MessageType : std::uint8_t {
   start_excitation = 0x41,
   stop_excitation = 0x42,
   excitation_state = 0x43,
+  arm_trigger = 0x48,
+  trigger_state = 0x49,
+  read_triggered = 0x4A,
   samples = 0x70,   ///< from the board, unasked, while a capture runs
   rejected = 0x7F,  ///< from the board: a report that could not be decoded
 };

@@ -145,6 +145,18 @@ class ProtocolServer {
       case MessageType::stop_excitation:
       case MessageType::excitation_state:
         return handle_excitation(request, reply);
+      case MessageType::arm_trigger:
+        return with<TriggerRequest>(request, [&](const TriggerRequest& r) { return app_.arm(r); });
+      case MessageType::trigger_state:
+        reply.put(app_.trigger_state());
+        return Status::ok;
+      case MessageType::read_triggered:
+        return with<ReadTriggeredRequest>(request, [&](const ReadTriggeredRequest& r) {
+          TriggeredPayload payload;
+          if (!app_.triggered().read(r.first, payload)) return Status::no_such_row;
+          reply.put(payload);
+          return Status::ok;
+        });
       default:
         return handle_motion(request, reply);
     }

@@ -1,6 +1,7 @@
 // The periphery of the axis board, and the two axes' hardware interface on it.
 #pragma once
 
+#include "firmware/app/triggered_capture.hpp"
 #include "firmware/boards/axis-f405/pins.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/survival_record.hpp"
@@ -102,6 +103,8 @@ class Board {
   Serial& serial() { return serial_; }
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::ParameterFlash& parameter_flash() { return parameter_flash_; }
+  /// Survives a reset.
+  TriggeredMemory& capture_memory();
 
   void begin_stall();
   void end_stall();

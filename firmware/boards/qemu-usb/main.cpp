@@ -25,6 +25,7 @@ namespace {
 constexpr std::uint32_t kClock_Hz = 168'000'000;  // QEMU gives the chip its 168 MHz
 
 [[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
+[[gnu::section(".noinit")]] TriggeredMemory triggered_memory;
 hal::qemu::HostStream stream;
 std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's last start
 
@@ -55,6 +56,7 @@ class EmulatedBoard {
   Clock& clock() { return clock_; }
   BoardEnd<hal::qemu::HostStream>& usb() { return usb_; }
   MemoryFlash& parameter_flash() { return flash_; }
+  TriggeredMemory& capture_memory() { return triggered_memory; }
 
   void set_control_rate(std::uint32_t rate_Hz) {
     period_us_ = 1'000'000 / rate_Hz;

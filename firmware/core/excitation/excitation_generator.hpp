@@ -2,6 +2,7 @@
 #pragma once
 
 #include "firmware/core/excitation/excitation_plan.hpp"
+#include "firmware/core/excitation/sine_table.hpp"
 
 namespace firmware {
 
@@ -108,9 +109,11 @@ class ExcitationGenerator {
     }
     --left_;
     Scalar sum{};
-    for (std::size_t i = 0; i < plan_->count; ++i) {
-      sum = sum + plan_->entry[i].value * sine_of<Scalar>(line_phase_[i]);
-      line_phase_[i] += plan_->entry[i].first;
+    const ExcitationEntry<Scalar>* line = plan_->entry.data();
+    for (Turn *phase = line_phase_.data(), *end = phase + plan_->count; phase != end; ++phase, ++line) {
+      const Turn now = *phase;
+      *phase = now + line->first;
+      sum = sum + line->value * quick_sine_of<Scalar>(now);
     }
     return sum;
   }

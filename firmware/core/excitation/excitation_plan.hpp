@@ -36,14 +36,18 @@ struct ExcitationEntry {
   std::uint32_t first = 0;   ///< samples; turns a sample
   std::uint32_t second = 0;  ///< phase
 };
-inline constexpr std::size_t kExcitationEntries = 24;
+/// As many lines as the control interrupt has time for.
+inline constexpr std::size_t kExcitationEntries = 14;
+
+/// Sums of a few such ways have 32 bits.
+inline constexpr std::int32_t kMostBoxCounts = std::int32_t{1} << 28;
 
 /// The board's own word on what an excited axis may do, whatever excites it.
 template <typename Scalar>
 struct ExcitationBox {
-  std::int32_t travel_counts = 0;  ///< to either side of where it began, 1..2^30
+  std::int32_t travel_counts = 0;  ///< to either side of where it began, 1..kMostBoxCounts
   std::int32_t margin_counts = 0;  ///< the way that a stop takes; 0: not known, the axis's own acceleration tells it
-  std::int32_t speed = 0;          ///< 1/256 counts in kSpeedSamples, 1..2^30
+  std::int32_t speed = 0;          ///< 1/256 counts in kSpeedSamples, 1..kMostBoxCounts
   Scalar drive_velocity{};         ///< the same for the tachometer, rad/s (m/s); 0: its scale is not known
   Scalar counts_per_velocity{};    ///< a sample, of the tachometer's unit; 0 likewise
   Scalar volts{};                  ///< largest command of an open loop, and largest addition to a controller's output
@@ -79,7 +83,7 @@ inline constexpr float kMostReferenceCounts = 1000.0f;
 template <typename Scalar>
 constexpr bool is_possible(const ExcitationPlan<Scalar>& p) {
   using Traits = ScalarTraits<Scalar>;
-  constexpr std::int32_t kMost = std::int32_t{1} << 30;
+  constexpr std::int32_t kMost = kMostBoxCounts;
   const ExcitationBox<Scalar>& box = p.box;
   if (box.travel_counts < 1 || box.travel_counts > kMost || box.margin_counts < 0 || box.margin_counts > kMost ||
       box.speed < 1 || box.speed > kMost)

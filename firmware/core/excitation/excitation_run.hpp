@@ -114,29 +114,29 @@ class ExcitationRun {
   }
 
   constexpr void begin(std::int64_t counts) {
-    start_ = turned_at_ = counts;
-    for (std::int64_t& earlier : seen_) earlier = counts;
+    start_ = counts;
+    turned_at_ = way_ = 0;
+    seen_ = {};
     speed_ = speed_before_ = 0;
     waited_ = 0;
   }
 
   template <typename Telemetry>
   constexpr void see(const Telemetry& seen) {
-    const std::int64_t counts = seen.encoder_counts;
+    way_ = static_cast<std::int32_t>(seen.encoder_counts - start_);
     still_before_ = still_samples_;
     still_samples_ = seen.encoder_travel != 0 ? 0 : still_samples_ + 1;
     const std::int32_t last_speed = speed_;
-    const std::int64_t middle = seen_[(place_ + kSpeedSamples) % seen_.size()];
-    speed_ = static_cast<std::int32_t>(counts - middle);
-    speed_before_ = static_cast<std::int32_t>(middle - seen_[place_]);
-    seen_[place_] = counts;
+    const std::int32_t middle = seen_[(place_ + kSpeedSamples) % seen_.size()];
+    speed_ = way_ - middle;
+    speed_before_ = middle - seen_[place_];
+    seen_[place_] = way_;
     place_ = (place_ + 1) % seen_.size();
-    way_ = counts - start_;
     if ((speed_ > 0) != is_forward_ && speed_ != 0) {
       is_forward_ = speed_ > 0;
-      turned_at_ = counts;
+      turned_at_ = way_;
     }
-    if (phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
+    if (plan_->input == ExcitationInput::open_loop && phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
     farthest_ = larger(farthest_, magnitude(way_));
     fastest_ = larger(fastest_, magnitude(speed_));
   }
@@ -155,7 +155,7 @@ class ExcitationRun {
   constexpr void judge(const Telemetry& seen) {
     if (magnitude(way_) > plan_->box.travel_counts) return leave(ExcitationEnd::travel);
     // One count is the encoder's resolution, and no speed.
-    if ((magnitude(speed_) - 1) * 256 > plan_->box.speed) return leave(ExcitationEnd::speed);
+    if (std::int64_t{magnitude(speed_) - 1} * 256 > plan_->box.speed) return leave(ExcitationEnd::speed);
     if (plan_->box.drive_velocity > Scalar(0) &&
         Traits::magnitude(seen.tachometer_velocity) > plan_->box.drive_velocity)
       return leave(ExcitationEnd::speed);
@@ -210,13 +210,13 @@ class ExcitationRun {
   /// On its way out, so far that it must turn round now; or nearly as fast as it may be.
   constexpr bool must_turn() {
     const bool is_outward = way_ > 0 ? speed_ > 0 : speed_ < 0;
-    const std::int64_t taken = magnitude(way_ - (turned_at_ - start_));
-    const std::int64_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
-    const std::int64_t room = plan_->box.travel_counts - plan_->box.travel_counts / 10;
+    const std::int32_t taken = magnitude(way_ - turned_at_);
+    const std::int32_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
+    const std::int32_t room = plan_->box.travel_counts - plan_->box.travel_counts / 10;
     const bool is_far = is_outward && magnitude(way_) + needed > room;
-    const std::int64_t ahead = magnitude(2 * std::int64_t{speed_} - speed_before_);  // in kSpeedSamples from now
-    const bool is_fast = ahead * 320 > plan_->box.speed && ahead >= magnitude(speed_);
-    const std::int64_t speed = magnitude(speed_);
+    const std::int32_t ahead = magnitude(2 * speed_ - speed_before_);  // in kSpeedSamples from now
+    const bool is_fast = std::int64_t{ahead} * 320 > plan_->box.speed && ahead >= magnitude(speed_);
+    const std::int32_t speed = magnitude(speed_);
     if (speed < slowest_) slowest_ = speed;
     // What turned it round still slows it down, until it goes the other way or gains speed again.
     if (is_forward_ != turned_forward_ || speed > slowest_ + slowest_ / 4 + kSpeedSamples) may_turn_ = true;
@@ -239,7 +239,7 @@ class ExcitationRun {
   }
 
   constexpr Scalar brake() {
-    const std::int64_t speed = magnitude(speed_);
+    const std::int32_t speed = magnitude(speed_);
     const bool has_turned = (speed_ > 0) != brakes_forward_ && waited_ > 0;
     if (waited_++ == 0) brakes_forward_ = speed_ > 0;
     if (speed <= 1 || has_turned || speed > brake_from_ + brake_from_ / 4 + kSpeedSamples || sum_of_effects_ == 0)
@@ -286,11 +286,8 @@ class ExcitationRun {
     return !outputs_are_on(axis.state());
   }
 
-  static constexpr std::int64_t magnitude(std::int64_t value) { return value < 0 ? -value : value; }
-  static constexpr std::int32_t larger(std::int32_t a, std::int64_t b) {
-    constexpr std::int64_t kMost = std::int64_t{1} << 30;
-    return b > a ? static_cast<std::int32_t>(b < kMost ? b : kMost) : a;
-  }
+  static constexpr std::int32_t magnitude(std::int32_t value) { return value < 0 ? -value : value; }
+  static constexpr std::int32_t larger(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
   static constexpr Scalar within(Scalar value, Scalar limit) {
     if (value > limit) return limit;
     return value < Scalar(0) - limit ? Scalar(0) - limit : value;
@@ -300,21 +297,21 @@ class ExcitationRun {
   ExcitationGenerator<Scalar> generator_;
   ExcitationPhase phase_ = ExcitationPhase::idle;
   ExcitationEnd end_ = ExcitationEnd::none;
-  std::uint32_t elapsed_ = 0;                          ///< samples of the excitation
-  std::uint32_t waited_ = 0;                           ///< samples: for the enable, for a first count, of braking
-  std::uint32_t longest_silence_ = 0;                  ///< under a large command, samples
-  std::int32_t still_samples_ = 0, still_before_ = 0;  ///< without a count: now, and a sample ago
-  Scalar moved_by_{};                                  ///< largest command that has ended a standstill
-  std::int64_t start_ = 0;                             ///< counts
-  std::int64_t turned_at_ = 0;                         ///< where the axis last went the other way
-  std::int64_t way_ = 0;                               ///< from the start
-  std::array<std::int64_t, 2 * kSpeedSamples> seen_{};
+  std::uint32_t elapsed_ = 0;                           ///< samples of the excitation
+  std::uint32_t waited_ = 0;                            ///< samples: for the enable, for a first count, of braking
+  std::uint32_t longest_silence_ = 0;                   ///< under a large command, samples
+  std::int32_t still_samples_ = 0, still_before_ = 0;   ///< without a count: now, and a sample ago
+  Scalar moved_by_{};                                   ///< largest command that has ended a standstill
+  std::int64_t start_ = 0;                              ///< counts
+  std::int32_t turned_at_ = 0;                          ///< where the axis last went the other way
+  std::int32_t way_ = 0;                                ///< from the start
+  std::array<std::int32_t, 2 * kSpeedSamples> seen_{};  ///< ways
   std::size_t place_ = 0;
   std::int32_t speed_ = 0, speed_before_ = 0;  ///< counts in kSpeedSamples: the last, and those before
   std::int32_t farthest_ = 0, fastest_ = 0;
   std::int64_t sum_of_effects_ = 0;
-  std::int64_t slowest_ = 0;     ///< since it was told to turn round
-  std::int64_t brake_from_ = 0;  ///< speed at which braking began
+  std::int32_t slowest_ = 0;     ///< since it was told to turn round
+  std::int32_t brake_from_ = 0;  ///< speed at which braking began
   Scalar last_value_{}, ride_{}, last_ride_{};
   std::array<Scalar, 2> earlier_value_{};
   Scalar unseen_{};  ///< counts

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "firmware/core/excitation/excitation_plan.hpp"
 #include "tests/target/cost/cost.hpp"
 #include "tests/target/qemu.hpp"
 
@@ -37,6 +38,9 @@ void print_laws() {
     if (&row == &kLaws[0]) {
       const double share = costs["both_axes"].worst * kFastest_Hz / kClock_Hz;
       fmt::print("{:<28}both axes at 20 kHz: {:.1f} % of 168 million instructions a second\n", "", 100.0 * share);
+      fmt::print("{:<28}both axes, x excited by {} lines: {}, {} at worst; a captured row of four channels: {}, {}\n",
+                 "", firmware::kExcitationEntries, costs["both_axes_excited"].mean, costs["both_axes_excited"].worst,
+                 costs["captured_row"].mean, costs["captured_row"].worst);
     }
   }
 }

@@ -2,8 +2,10 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/app/triggered_capture.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/pil/value_axis.hpp"
+#include "firmware/core/excitation/excitation_run.hpp"
 #include "firmware/core/fixed_units.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
 #include "hal/axis_count.hpp"
@@ -161,6 +163,67 @@ void count_steps() {
   report("both_axes", both);
 }
 
+firmware::ExcitationPlan<Scalar> plan;
+firmware::ExcitationRun<Scalar> excitation;
+firmware::TriggeredMemory memory;
+firmware::TriggeredCapture capture;
+
+/// As many lines as there may be, at the controller's output, and a ride beneath them.
+void start_multisine() {
+  plan.kind = firmware::ExcitationKind::multisine;
+  plan.input = firmware::ExcitationInput::output;
+  plan.count = firmware::kExcitationEntries;
+  plan.samples = 100'000;
+  plan.period = plan.fade_samples = 1000;
+  const auto volts = [](float value) {
+    if constexpr (std::is_floating_point_v<Scalar>)
+      return static_cast<Scalar>(value);
+    else
+      return Scalar(value / 1.25f);  // fixed_units.hpp, with steps of 20 V / 65536
+  };
+  plan.amplitude = plan.box.volts = volts(0.25f);
+  plan.box.travel_counts = 1 << 20;
+  plan.box.speed = 1 << 20;
+  plan.box.drive_velocity = Scalar(1000.0f);
+  plan.ride = kParameters[0].velocity_limit;
+  for (std::uint32_t i = 0; i < plan.count; ++i) plan.entry[i] = {volts(0.01f), (2 * i + 1) * 4294967u, i << 27};
+  excitation.start(plan);
+}
+
+void start_capture() {
+  firmware::TriggerRequest request{};
+  request.every = 1;
+  request.channels[0] = request.channels[1] = 1u << static_cast<unsigned>(firmware::Channel::counts) |
+                                              1u << static_cast<unsigned>(firmware::Channel::position_error);
+  request.kind = static_cast<std::uint8_t>(firmware::TriggerKind::edge);
+  request.channel = static_cast<std::uint8_t>(firmware::Channel::position_error);
+  request.level = 0x7F000000;  // never
+  request.before = 1000;
+  request.after = 1;
+  capture.adopt(memory);
+  capture.arm(request);
+}
+
+[[gnu::noinline]] void step_both_excited() {
+  excitation.before_step(axes[0]);
+  step_both();
+}
+[[gnu::noinline]] void take_row() { capture.take(axes); }
+
+/// After count_steps(): both axes are enabled and at rest.
+void count_experiments() {
+  start_multisine();
+  start_capture();
+  Cost excited, captured;
+  for (int period = 0; period < 2000; ++period) {
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    excited.add(count([] { step_both_excited(); }));
+    captured.add(count([] { take_row(); }));
+  }
+  report("both_axes_excited", excited);
+  report("captured_row", captured);
+}
+
 }  // namespace
 
 extern "C" [[noreturn]] void run_board() {
@@ -175,6 +238,7 @@ extern "C" [[noreturn]] void run_board() {
   report("100_nops", nops);
   count_estimator_and_feedback();
   count_steps();
+  count_experiments();
   const bool ran = axes[0].telemetry().enabled && axes[1].telemetry().enabled;
   hal::qemu::exit_emulator(ran ? 0 : 1);
 }

@@ -1,0 +1,81 @@
+// What a captured row holds of an axis, as words of 32 bits or halved.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
+#include "firmware/app/protocol/messages.hpp"
+#include "firmware/core/supervision/supervised_axis.hpp"
+
+namespace firmware {
+
+namespace channel_words {
+
+template <typename Scalar>
+constexpr std::uint32_t bits_of(Scalar value) {
+  if constexpr (std::is_floating_point_v<Scalar>)
+    return std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  else
+    return static_cast<std::uint32_t>(value.raw());
+}
+
+}  // namespace channel_words
+
+/// A SupervisedAxis.
+template <typename Axis>
+std::uint32_t channel_word(const Axis& axis, Channel channel) {
+  using channel_words::bits_of;
+  const auto& seen = axis.telemetry();
+  switch (channel) {
+    case Channel::dac_code:
+      return static_cast<std::uint32_t>(seen.dac_code);
+    case Channel::counts:
+      return static_cast<std::uint32_t>(seen.encoder_counts);
+    case Channel::tachometer_velocity:
+      return bits_of(seen.tachometer_velocity);
+    case Channel::reference:
+      return static_cast<std::uint32_t>(seen.reference.counts) << 8 |
+             static_cast<std::uint32_t>(seen.reference.fraction >> (kFractionBits - 8));
+    case Channel::reference_velocity:
+      return bits_of(seen.reference_velocity);
+    case Channel::position_error:
+      return bits_of(seen.position_error);
+    case Channel::velocity_estimate:
+      return bits_of(seen.estimate.velocity);
+    case Channel::disturbance:
+      return bits_of(seen.estimate.disturbance);
+    case Channel::friction:
+      return bits_of(seen.friction_V);
+    case Channel::control:
+      return bits_of(seen.control_V);
+    case Channel::flags:
+      break;
+  }
+  return static_cast<std::uint32_t>(axis.state()) | static_cast<std::uint32_t>(axis.fault()) << 8 |
+         (seen.saturated ? 1u << 16 : 0u);
+}
+
+/// Whole numbers, which a difference compares; the others are scalars.
+constexpr bool is_whole(Channel channel) {
+  return channel == Channel::dac_code || channel == Channel::counts || channel == Channel::reference ||
+         channel == Channel::flags;
+}
+
+/// The word in 16 bits: codes and counts by their low half, the reference in 1/16 counts, of a float the upper half,
+/// rounded (8 bits of its fraction: 0.4 %). Flags: state, bit 7 for saturated, then the fault.
+constexpr std::uint16_t narrow(std::uint32_t word, Channel channel) {
+  switch (channel) {
+    case Channel::dac_code:
+    case Channel::counts:
+      return static_cast<std::uint16_t>(word);
+    case Channel::reference:
+      return static_cast<std::uint16_t>(word >> 4);
+    case Channel::flags:
+      return static_cast<std::uint16_t>((word & 0xFF7Fu) | (word >> 9 & 0x80u));
+    default:
+      return static_cast<std::uint16_t>((word + 0x8000u) >> 16);
+  }
+}
+
+}  // namespace firmware
