@@ -9,7 +9,7 @@ trap 'umount "$root/system/proc" 2> /dev/null || true; rm -rf "$root"' EXIT
 
 mmdebstrap --variant=apt --include=bash-completion,fish,man-db --quiet bookworm "$root/system" "$mirror"
 inside() { chroot "$root/system" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
-files() { (cd "$root/system" && find etc usr lib opt srv var/lib/axis* -not -path '*/__pycache__*' 2> /dev/null | sort); }
+files() { (cd "$root/system" && find etc usr opt srv var/lib -not -path 'var/lib/dpkg/*' -not -path 'var/lib/apt/*' | sort); }
 
 mount -t proc proc "$root/system/proc"
 inside apt-get -qq update

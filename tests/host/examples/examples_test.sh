@@ -1,0 +1,20 @@
+#!/bin/bash
+# examples_test.sh: every example runs, for the shell and for Python, and both print the same figure.
+set -euo pipefail
+/usr/bin/python3 -c 'import numpy' 2> /dev/null || { echo "python3-numpy is missing" >&2; exit 77; }
+project=$(cd "$(dirname "$0")/../../.." && pwd)
+export PATH=$(dirname "${AXISTOOL:?names the program}"):$PATH
+drive=$project/tests/data/drive-cases/none/case-00
+count=0
+for shell in "$project"/host/examples/*.sh; do
+  python=${shell%.sh}.py
+  one=$("$shell" "$drive") other=$("$python" "$drive")
+  echo "$(basename "$shell" .sh): $one"
+  if [ -z "$one" ] || [ "$one" != "$other" ]; then
+    echo "$python prints: $other" >&2
+    exit 1
+  fi
+  grep -q "$(basename "$shell" .sh)" "$project/host/examples/README.md" || { echo "README.md does not name it" >&2; exit 1; }
+  count=$((count + 1))
+done
+test "$count" -ge 4
