@@ -140,11 +140,11 @@ bench: ## Measure speed: plant and predictor against real time, identification, 
 	$(BUILD)/bin/axis_bench $(if $(FILTER),--benchmark_filter='$(FILTER)')
 
 .PHONY: scoreboard
-scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR, CUTS=1, NULLS=1000, SAMPLE=20)
+scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR, CUTS=1, NULLS=1000, SAMPLE=20; REAL=DIR: measured machines)
 	$(NEED) build
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool
-	$(BUILD)/bin/axistool scoreboard $(or $(CASES),tests/data/drive-cases) $(if $(CUTS),--cuts) \
+	$(BUILD)/bin/axistool scoreboard $(if $(REAL),--real $(REAL),$(or $(CASES),tests/data/drive-cases)) $(if $(CUTS),--cuts) \
 	  $(if $(NULLS),--nulls $(NULLS)) $(if $(SAMPLE),--sample $(SAMPLE))
 
 .PHONY: mutants

@@ -38,7 +38,8 @@ namespace effects {
   EFFECT(tach_offset)                 \
   EFFECT(tach_lag)                    \
   EFFECT(tach_ripple)                 \
-  EFFECT(encoder_cyclic_error)
+  EFFECT(encoder_cyclic_error)        \
+  EFFECT(free_curve)
 
 #define AXIS_DECLARE(NAME) extern const EffectInfo NAME;
 AXIS_EFFECTS(AXIS_DECLARE)
@@ -59,7 +60,8 @@ const EffectInfo* find_effect(std::string_view kind) {
 }
 
 const ParameterInfo* EffectInfo::parameter(std::string_view id) const {
-  const auto found = std::ranges::find(parameters, id, &ParameterInfo::id);
+  const std::string_view family = periodic || curve ? family_of(id) : id;
+  const auto found = std::ranges::find(parameters, family, &ParameterInfo::id);
   return found == parameters.end() ? nullptr : &*found;
 }
 

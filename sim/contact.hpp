@@ -64,7 +64,9 @@ struct RichContact {
         motion(of_motion),
         level(product(drive.level_factor, t_s, x)),
         viscosity(product(drive.viscous_factor, t_s)),
-        carried(drive.transmitted_share * std::abs(motor)) {}
+        carried(drive.transmitted_share * std::abs(motor)) {
+    for (const auto& further : drive.friction_after_reversal) carried += further(std::abs(x - motion.turned_x));
+  }
 
   FrictionPoint sliding(int side, double speed) const {
     const FrictionPoint part = dry(side, speed), fluid = viscous(side, speed);
@@ -84,7 +86,7 @@ struct RichContact {
     const double coefficient = viscosity * drive.curves()[static_cast<std::size_t>(side)].viscous;
     FrictionPoint all{coefficient * speed, coefficient};
     for (const auto& further : drive.sliding_friction) {
-      const FrictionPoint part = further(speed);
+      const FrictionPoint part = further(side, speed);
       all.effort += part.effort;
       all.slope += part.slope;
     }

@@ -12,7 +12,8 @@ struct SecondMass {
   double load_fraction = 0.0;  ///< part of the inertia that sits behind the spring, 0..1
   double resonance_Hz = 0.0;   ///< of both masses on the spring, free to move
   double damping_ratio = 0.0;
-  double gap = 0.0;  ///< free travel, mm or m
+  double gap = 0.0;            ///< free travel, mm or m
+  double load_friction = 1.0;  ///< part of the drive's friction that acts on the load's side, 0..1
 };
 
 /// The coupling of the two masses, per rad of deflection (or m).
@@ -20,12 +21,14 @@ struct Coupling {
   double motor_mobility, load_mobility;  ///< 1/inertia
   double stiffness, damping, half_gap;
   double per_lead;
+  double load_friction;
 
   Coupling(const SecondMass& mass, double inertia, double lead)
       : motor_mobility(1.0 / (inertia * (1.0 - mass.load_fraction))),
         load_mobility(1.0 / (inertia * mass.load_fraction)),
         half_gap(0.5 * mass.gap / lead),
-        per_lead(1.0 / lead) {
+        per_lead(1.0 / lead),
+        load_friction(mass.load_friction) {
     const double reduced = inertia * mass.load_fraction * (1.0 - mass.load_fraction);
     const double omega = 2.0 * std::numbers::pi * mass.resonance_Hz;
     stiffness = reduced * omega * omega;

@@ -40,7 +40,8 @@ void Drive::settle() {
   const bool stribeck =
       std::ranges::any_of(friction, [](const FrictionSide& side) { return side.omega1 > 0.0 || side.omega2 > 0.0; });
   const bool rich = !level_factor.empty() || !viscous_factor.empty() || !sliding_friction.empty() ||
-                    transmitted_share != 0.0 || friction_memory_s > 0.0 || dwell_gain > 0.0;
+                    !friction_after_reversal.empty() || transmitted_share != 0.0 || friction_memory_s > 0.0 ||
+                    dwell_gain > 0.0;
   contact_form_ = rich ? ContactForm::rich : (stribeck ? ContactForm::stribeck : ContactForm::coulomb);
   bare_ = !rich && current_lag_s <= 0.0 && tach_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
           load_effort.empty();
@@ -58,13 +59,15 @@ double Drive::memory_s() const {
   for (const double lag_s : {current_lag_s, friction_memory_s, tach_lag_s})
     memory = std::max(memory, kTimeConstants * lag_s);
   if (dwell_gain > 0.0) memory = std::max(memory, kTimeConstants * dwell_time_s);
+  constexpr double kReversals_s = 2.0;  // who has not turned over for so long is far from where friction still rises
+  if (!friction_after_reversal.empty()) memory = std::max(memory, kReversals_s);
   if (bristles || second_mass) memory = std::max(memory, kContact_s);
   return memory;
 }
 
 DriveState Drive::at(double x, double w) const {
   DriveState state;
-  state.x = state.load_x = x;
+  state.x = state.load_x = state.turned_x = x;
   state.w = state.load_w = state.tach = w;
   state.friction_speed = std::abs(w);
   return state;
@@ -119,7 +122,14 @@ void Drive::move(DriveMotion& motion, double effort, double t_s, double duration
   move_masses(motion, net, duration_s, 1, contact);
   if (friction_memory_s > 0.0)
     lag_mean(motion.friction_speed, 0.5 * std::abs(w_before + motion.w), friction_memory_s, duration_s);
+  note_reversal(motion, motion.x, motion.w);
   filter_tach(motion, w_before, duration_s);
+}
+
+void Drive::note_reversal(DriveMotion& motion, double x, double w) const {
+  if (friction_after_reversal.empty() || w * motion.heading > 0.0 || w == 0.0) return;
+  motion.turned_x = x;
+  motion.heading = w > 0.0 ? 1.0 : -1.0;
 }
 
 int Drive::parts_of(double duration_s, double w) const {
@@ -240,6 +250,7 @@ double Drive::follow(DriveState& state, double u_V, double x1, double w1, double
     return 0.0;
   }
   const double w0 = state.w;
+  note_reversal(state, state.x, w1);
   const double middle_x = 0.5 * (state.x + x1);
   const double mean_w = 0.5 * (w0 + w1);
   double effort = deliver_over(state, u_V, duration_s) * product(effort_factor, middle_x);

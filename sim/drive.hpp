@@ -64,6 +64,8 @@ struct DriveMotion {
   double breakaway_gain = 0.0;  ///< what the last rest added to the static friction, relative
   double effort = 0.0;          ///< what the current loop delivers, Nm or N
   double tach = 0.0;            ///< what the tachometer's filter holds
+  double turned_x = 0.0;        ///< where the motion last turned over, mm or m
+  double heading = 0.0;         ///< the way it has gone since, +1 or -1; 0 before it has moved
 };
 
 struct DriveState : DriveMotion {
@@ -127,8 +129,11 @@ class Drive {
   std::vector<std::function<double(double t_s, double x)>> load_effort;   ///< added to the motor's effort
   std::vector<std::function<double(double t_s, double x)>> level_factor;  ///< on Coulomb and static friction
   std::vector<std::function<double(double t_s)>> viscous_factor;
-  std::vector<std::function<FrictionPoint(double speed)>> sliding_friction;  ///< further friction at speed >= 0
-  double transmitted_share = 0.0;                                            ///< friction per transmitted effort
+  /// Further friction of a direction (0 forward, 1 backward) at speed >= 0.
+  std::vector<std::function<FrictionPoint(int side, double speed)>> sliding_friction;
+  /// Further friction level by the travel since the last reversal, mm or m.
+  std::vector<std::function<double(double travelled)>> friction_after_reversal;
+  double transmitted_share = 0.0;  ///< friction per transmitted effort
   double friction_memory_s = 0.0;
   double dwell_gain = 0.0;
   double dwell_time_s = 0.0;
@@ -167,6 +172,7 @@ class Drive {
   void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;
   void follow_rest(DriveMotion& motion, double w0, double w1, double effort, double duration_s) const;
   void filter_tach(DriveMotion& motion, double w_before, double duration_s) const;
+  void note_reversal(DriveMotion& motion, double x, double w) const;
   std::size_t whole_periods_of_delay(double period_s) const;
   void remember_command(DriveState& state, double u_V, std::size_t whole) const;
 

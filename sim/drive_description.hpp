@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,14 +34,34 @@ struct DataSheet {
   }
 };
 
+/// A parameter of which an effect may have many carries a number behind its id: "cosine_72" is the cosine of order 72.
+/// The id without it ("cosine"); an id without a number is its own family.
+std::string_view family_of(std::string_view id);
+std::string numbered_id(std::string_view family, double number);
+/// The number behind an id, or nothing.
+std::optional<double> number_of(std::string_view id);
+
+/// What a data sheet or a drawing says of a parameter.
+struct Belief {
+  double value = 0.0;
+  double deviation = 0.0;  ///< standard deviation, > 0
+
+  bool operator==(const Belief&) const = default;
+};
+
 /// One effect of a drive: its kind in the catalogue and the values of its parameters, by parameter id (no unit suffix).
 struct EffectEntry {
   std::string kind;
   std::map<std::string, double> parameters;
   std::map<std::string, std::array<double, 2>> ci95;  ///< 95 % interval of those parameters that were fitted
   std::string from;                                   ///< the record that the values came from; may be empty
+  std::string over{};                                 ///< the coordinate of a free curve; empty for all else
+  std::set<std::string> held{};                       ///< parameters that a fit leaves as they stand
+  std::map<std::string, Belief> believed{};           ///< of those that are known roughly; a fit moves the value alone
 
   bool has(const std::string& id) const { return parameters.contains(id); }
+  /// Whether it holds a parameter of that family, whatever the number.
+  bool has_any(std::string_view family) const;
   double at(const std::string& id) const { return parameters.at(id); }
   /// The magnitude for one direction: its own value, or the one that stands for both.
   double either(const std::string& id, const std::string& both) const {

@@ -53,8 +53,13 @@ struct EffectInfo {
   std::string_view title;
   std::string_view equation;
   Stage stage;
-  bool base = false;      ///< inertia, viscous, coulomb: re-fitted first, never a discovery
-  bool periodic = false;  ///< has parameters `cosine`, `sine` and `period` over the travel
+  bool base = false;  ///< inertia, viscous, coulomb: re-fitted first, never a discovery
+  /// Has parameters `cosine`, `sine` and `period` over the travel, and the first two once for every order that it
+  /// holds: "cosine" is the first, "cosine_6" the sixth.
+  bool periodic = false;
+  /// A curve over a coordinate (EffectEntry::over): has parameters `knot` and `value`, each once for every knot,
+  /// numbered from 0.
+  bool curve = false;
   std::vector<ParameterInfo> parameters;
   std::string_view shows;                       ///< how it shows in the residual
   std::vector<std::string_view> confused_with;  ///< kinds that leave a similar trace
@@ -63,6 +68,7 @@ struct EffectInfo {
   std::string_view remedy;                      ///< what a mechanic or an electrician can do about it
   void (*install)(const EffectEntry& entry, const DataSheet& data, Drive& drive);
 
+  /// The parameter of that id, whatever the number behind it; or nullptr.
   const ParameterInfo* parameter(std::string_view id) const;
 };
 

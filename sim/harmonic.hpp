@@ -1,8 +1,13 @@
-// One sine over the travel.
+// Sines over the travel: the orders of one period.
 #pragma once
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/drive_description.hpp"
 
 namespace sim {
 
@@ -18,18 +23,41 @@ inline double cosine_of_turns(double turns) {
   return a * (low + a8 * (high + a8 * (1.0 / 355687428096e3)));
 }
 
-/// cosine * cos(2 pi x / period) + sine * sin(2 pi x / period); the constructor's period must not be 0.
-class Harmonic {
- public:
-  Harmonic(double cosine, double sine, double period)
-      : amplitude_(std::hypot(cosine, sine)),
-        phase_(std::atan2(sine, cosine) / (2.0 * std::numbers::pi)),
-        per_travel_(1.0 / period) {}
+/// One order of a period: cosine * cos(2 pi order x / period) + sine * sin(...).
+struct HarmonicTerm {
+  double order = 1.0;
+  double cosine = 0.0;
+  double sine = 0.0;
+};
 
-  double operator()(double x) const { return amplitude_ * cosine_of_turns(x * per_travel_ - phase_); }
+/// The id of an order's amplitude: the family itself ("cosine") for the first, else numbered.
+std::string harmonic_id(std::string_view family, double order);
+
+/// The orders of a periodic effect's entry, lowest first.
+std::vector<HarmonicTerm> harmonics_of(const EffectEntry& entry);
+
+/// Writes the orders into an entry: the first order alone as the pair `cosine`, `sine`, all others numbered.
+void set_harmonics(EffectEntry& entry, const std::vector<HarmonicTerm>& terms);
+
+/// The sum of an entry's orders. The entry's period must not be 0.
+class Harmonics {
+ public:
+  explicit Harmonics(const EffectEntry& entry);
+
+  double operator()(double x) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves_) sum += wave.amplitude * cosine_of_turns(x * wave.per_travel - wave.phase);
+    return sum;
+  }
+  /// The shortest period that it holds, mm or m.
+  double finest_period() const { return finest_period_; }
 
  private:
-  double amplitude_, phase_, per_travel_;
+  struct Wave {
+    double amplitude, phase, per_travel;  ///< phase in turns; turns per mm or m
+  };
+  std::vector<Wave> waves_;
+  double finest_period_;
 };
 
 }  // namespace sim

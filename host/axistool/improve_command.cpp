@@ -47,10 +47,13 @@ void run_improve(const InsightArguments& arguments) {
   if (arguments.json != "-") print(improvement, files);
 }
 
-void run_add(const InsightArguments& arguments, const std::string& kind) {
+void run_add(const InsightArguments& arguments, const std::string& kind, const std::string& over) {
   host::known_effect(kind);
   const InsightRecords records(arguments);
-  const host::Addition addition = host::add_effect(records.model, kind, records.measurements);
+  const bool curve = kind == "free_curve";
+  if (!curve && !over.empty()) throw host::Failure(host::ExitCode::usage, "--over belongs to free_curve");
+  const host::Addition addition = curve ? host::add_free_curve(records.model, over, records.measurements)
+                                        : host::add_effect(records.model, kind, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;
   if (!(judged.before > 0.0) || !std::isfinite(judged.before) || !std::isfinite(judged.after))
     throw host::Failure(host::ExitCode::refused,
@@ -121,8 +124,10 @@ void add_add(CLI::App& app) {
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");
-  command->callback([arguments, kind] {
-    with_log_of_failure(arguments->json, "axis-addition/1", [&] { run_add(*arguments, *kind); });
+  auto over = std::make_shared<std::string>();
+  command->add_option("--over", *over, "coordinate of a free_curve; the one that judges best unless given");
+  command->callback([arguments, kind, over] {
+    with_log_of_failure(arguments->json, "axis-addition/1", [&] { run_add(*arguments, *kind, *over); });
   });
 }
 

@@ -8,6 +8,7 @@
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/diagnose/diagnosis.hpp"
+#include "host/model/known_parameters.hpp"
 #include "host/model/model_file.hpp"
 #include "host/report/progress.hpp"
 
@@ -15,13 +16,17 @@ namespace axistool {
 
 struct InsightArguments {
   std::string model, output, json, report;
-  std::vector<std::string> train, validate, accepted;
+  std::vector<std::string> train, validate, accepted, held, believed;
 
   void add_to(CLI::App& command) {
     add_input(command, "model", model, "model file (axis-model/1)")->required();
     add_input(command, "--train", train, "records that the fit may see")->required();
     add_input(command, "--validate", validate,
               "records that judge; without them blocks of the training data are kept back");
+    command.add_option("--hold", held, "parameters that stay as they stand in the model, e.g. J_kg_m2")
+        ->expected(1, -1);
+    command.add_option("--prior", believed, "standard deviations of what the model says, e.g. J_kg_m2=1e-4")
+        ->expected(1, -1);
     add_accept_option(command, accepted);
     add_json_option(command, json);
   }
@@ -33,7 +38,7 @@ struct InsightRecords {
   host::Measurements measurements;
 
   explicit InsightRecords(const InsightArguments& arguments)
-      : model(host::read_model(arguments.model)),
+      : model(host::with_knowledge(host::read_model(arguments.model), arguments.held, arguments.believed)),
         measurements(host::MeasurementGate(model, {arguments.accepted}).read(arguments.train, arguments.validate)) {}
 };
 

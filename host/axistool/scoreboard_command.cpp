@@ -9,6 +9,7 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
+#include "host/axistool/real_machines.hpp"
 #include "host/scoreboard/answer.hpp"
 
 namespace axistool {
@@ -25,7 +26,7 @@ constexpr double kMostOfIt = 0.8;
 constexpr double kSomethingToFind = 2.0;
 
 struct Arguments {
-  std::string folder, json;
+  std::string folder, real, json;
   bool cuts = false;
   std::size_t nulls = 0, sample = 0;
   std::uint64_t seed = 1;
@@ -269,11 +270,12 @@ void run(const Arguments& arguments) {
 void add_scoreboard(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("scoreboard", "how often diagnose is right on cases whose truth is known");
-  command
-      ->add_option(
-          "FOLDER", arguments->folder,
-          "folder with cases at any depth: each a folder with model.toml, train-*.csv, validate.csv, truth.json")
-      ->required();
+  command->add_option(
+      "FOLDER", arguments->folder,
+      "folder with cases at any depth: each a folder with model.toml, train-*.csv, validate.csv, truth.json");
+  command->add_option(
+      "--real", arguments->real,
+      "instead: folder of measured machines, a folder each, and expected.json with their right answers");
   command->add_flag("--cuts", arguments->cuts,
                     "also each training record alone, each pair, and their first 2, 4 and 8 s (1 to 10 s where nothing "
                     "is hidden)");
@@ -284,7 +286,14 @@ void add_scoreboard(CLI::App& app) {
   command->footer(
       "Example:\n  axistool scoreboard tests/data/drive-cases --cuts --sample 5\n"
       "Exit code 0 whatever the answers are; 9 for a bad file or a folder without cases.");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] {
+    if (arguments->folder.empty() == arguments->real.empty())
+      throw host::Failure(host::ExitCode::usage, "give either a folder of cases or --real DIR");
+    if (arguments->real.empty())
+      run(*arguments);
+    else
+      score_real_machines(arguments->real, arguments->json);
+  });
 }
 
 }  // namespace axistool

@@ -99,6 +99,13 @@ double mean_square(const std::vector<double>& predicted, const std::vector<doubl
   return sum / static_cast<double>(window.length);
 }
 
+/// A model that runs away is as bad as can be, and that is a number.
+double bounded(double square, double floor) {
+  constexpr double kRunAway = 1e6;  // floors
+  const double most = kRunAway * kRunAway * floor * floor;
+  return square < most ? square : most;
+}
+
 }  // namespace
 
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
@@ -140,7 +147,8 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
                          [&](double WindowScore::*member, const std::vector<double>& predicted,
                              const std::vector<double>& measured, double floor) {
                            Sum& sum = member == &WindowScore::x ? x : (member == &WindowScore::w ? w : effort);
-                           const double square = mean_square(predicted, measured, compared.prepared.windows[index]);
+                           const double square =
+                               bounded(mean_square(predicted, measured, compared.prepared.windows[index]), floor);
                            score.*member = square / (floor * floor);
                            sum.square += square;
                            sum.floor += floor * floor;

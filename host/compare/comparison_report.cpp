@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "host/compare/free_run.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {
@@ -199,6 +200,11 @@ std::string comparison_text(std::span<const ComparedModel> models, const Termina
                                 first.model.data.kind == sim::DriveKind::rotary ? "torque" : "force"),
                     terminal.columns) +
             "\n";
+  for (const RecordError& record : first.comparison.records)
+    if (record.free_run)
+      text += fmt::format("Free run of {} from its first {} samples: position off by {:.3g} {} (RMS).\n",
+                          file_name(record.path), kGivenSamples, *record.free_run,
+                          first.model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
   text +=
       "\n" + terminal_bars(bars_of(first.comparison.where, "regime", "Share of the squared error by regime"), terminal);
   Table regions;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "host/compare/free_run.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/inverse_model.hpp"
@@ -145,8 +146,8 @@ ModelComparison compare_model(const sim::DriveDescription& model, const Measurem
     Sums own;
     add_record(set.records[r], prediction, set.stride, own);
     add_record(set.records[r], prediction, set.stride, all);
-    comparison.records.push_back(
-        {records[r].path, own.channels(model.data.kind), own.combined(), inverse_error(model, {records[r]})});
+    comparison.records.push_back({records[r].path, own.channels(model.data.kind), own.combined(),
+                                  inverse_error(model, {records[r]}), free_run_rms(model, set.records[r].prepared)});
   }
   comparison.log_faults = measured.log();
   comparison.channels = all.channels(model.data.kind);
@@ -196,10 +197,12 @@ std::string predictions_csv(const sim::DriveDescription& model, const PreparedRe
 nlohmann::json comparison_json(const ModelComparison& comparison) {
   nlohmann::json records = nlohmann::json::array();
   for (const RecordError& record : comparison.records)
-    records.push_back({{"record", record.path},
-                       {"channels", channels_json(record.channels)},
-                       {"combined", record.combined},
-                       {"relative_error", number_or_null(record.relative_error)}});
+    records.push_back(
+        {{"record", record.path},
+         {"channels", channels_json(record.channels)},
+         {"combined", record.combined},
+         {"relative_error", number_or_null(record.relative_error)},
+         {"free_run", {{"given_samples", kGivenSamples}, {"position_rms", number_or_null(record.free_run)}}}});
   return {{"format", "axis-comparison/1"},
           {"relative_error", number_or_null(comparison.relative_error)},
           {"window_s", comparison.window_s},

@@ -26,6 +26,7 @@ struct RecordError {
   std::vector<ChannelComparison> channels;
   double combined = 0.0;                 ///< RMS of error/floor over windows and channels; about 1 for a perfect model
   std::optional<double> relative_error;  ///< of the inverse model; empty where the axis never slides
+  std::optional<double> free_run;        ///< RMS position error of a run to the end by the command alone, mm or m
 };
 
 struct ModelComparison {

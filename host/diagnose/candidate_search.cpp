@@ -148,9 +148,10 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
   constexpr std::array kFactors{1.0, 1.25, 0.8};
   std::vector<sim::DriveDescription> starts(kFactors.size(), given);
   for (std::size_t k = 1; k < kFactors.size(); ++k) {
-    if (sim::EffectEntry* inertia = starts[k].find("inertia")) inertia->parameters["J"] *= kFactors[k];
-    if (sim::EffectEntry* coulomb = starts[k].find("coulomb"))
-      for (auto& [id, value] : coulomb->parameters) value /= kFactors[k];
+    for (const auto& [kind, factor] : {std::pair("inertia", kFactors[k]), std::pair("coulomb", 1.0 / kFactors[k])})
+      if (sim::EffectEntry* entry = starts[k].find(kind))
+        for (auto& [id, value] : entry->parameters)
+          if (!entry->held.contains(id)) value *= factor;
   }
   const double window_s = training.records.front().prepared.window_s();
   const RecordSet thin = thinned(training, SearchEffort{}.over(window_s).medium_windows);
@@ -227,7 +228,8 @@ std::vector<Candidate> search_candidates(const sim::DriveDescription& model, con
                                          const ShareDone& progress, const SearchEffort& effort) {
   std::vector<const sim::EffectInfo*> infos;
   for (const sim::EffectInfo* info : sim::catalogue())
-    if (is_applicable(*info, model, training)) infos.push_back(info);
+    if (is_applicable(*info, model, training) && std::ranges::find(kinds, info->kind) == kinds.end())
+      infos.push_back(info);
   return search_kinds(infos, model, kinds, training, validation, progress, effort);
 }
 

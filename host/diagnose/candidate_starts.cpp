@@ -65,11 +65,11 @@ std::vector<const sim::ParameterInfo*> parameters_to_start(const sim::EffectInfo
   for (const sim::ParameterInfo& parameter : info.parameters) {
     const std::string_view id = parameter.id;
     const bool directional = id.ends_with("_positive") || id.ends_with("_negative");
-    if (!parameter.optional) {
+    if (!parameter.optional || id == "exponent") {
       chosen.push_back(&parameter);
     } else if (id.starts_with("omega")) {
       if (!directional) chosen.push_back(&parameter);
-    } else if (directional == by_direction) {
+    } else if (directional == by_direction && (directional || !parameter.pair_of.empty())) {
       chosen.push_back(&parameter);
     }
   }
@@ -206,10 +206,12 @@ RecordScales scales_of(const RecordSet& set) {
 }
 
 bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
-  if (info.base || model.find(info.kind) != nullptr) return false;
+  // A drive may have several periods; their phases differ.
+  if (info.base || (model.find(info.kind) != nullptr && !info.periodic)) return false;
   const sim::EffectEntry* coulomb = model.find("coulomb");
   if (info.kind == "coulomb_asymmetry") return coulomb != nullptr && coulomb->has("level");
   if (info.kind == "viscous_asymmetry") return model.find("viscous") != nullptr;
+  if (info.curve) return false;                      // names nothing: never a discovery
   if (info.kind == "external_torque") return false;  // belongs to a time: never transfers to another record
   if (set.measure == Measure::effort && info.stage == sim::Stage::tachometer) return false;
   const auto has_speed = [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); };

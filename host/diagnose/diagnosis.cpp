@@ -8,6 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/data_sheet_conflict.hpp"
+#include "host/diagnose/effort_diagnosis.hpp"
+#include "host/diagnose/effort_screen.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/verdict.hpp"
@@ -95,18 +98,51 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
 
 }  // namespace
 
-Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
-                   const Diagnosis* before) {
+namespace {
+
+/// Whether the motion shows an effect that the regression of the effort could not have seen.
+bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
+  const DiagnosisVerdict& verdict = by_motion.verdict;
+  if (by_motion.rough || verdict.effects.empty()) return false;
+  const auto seen = [&](const std::string& kind) {
+    return std::ranges::any_of(screen.steps.front(),
+                               [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
+  };
+  return std::ranges::none_of(verdict.effects, seen);
+}
+
+Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
+                           const Diagnosis* before) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const auto over = [&](double window_s, Measure measure) {
     Diagnosis result = diagnose_over(window_s, measure, model, training, validation, progress);
     result.log = measured.log();
     return result;
   };
+  std::shared_ptr<const EffortScreen> screen;
+  const auto by_effort = [&](bool rough) {
+    std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, training, validation, screen, rough);
+    if (diagnosis) diagnosis->log = measured.log();
+    if (diagnosis && progress) progress(1.0);
+    return diagnosis;
+  };
   std::optional<Diagnosis> over_long_windows;
+  if (before == nullptr) {
+    std::optional<Diagnosis> diagnosis = by_effort(false);
+    if (diagnosis && (!screen->chosen.empty() || screen->rows.steady)) return *std::move(diagnosis);
+    if (diagnosis) {
+      // Nothing that shows in the effort while the axis slides: a current limit, say, shows in the motion.
+      over_long_windows = over(kWindow_s, Measure::motion);
+      over_long_windows->screen = screen;
+      return *std::move(goes_beyond(*over_long_windows, *screen) ? over_long_windows : diagnosis);
+    }
+  }
   if (before == nullptr || !before->rough) {
     over_long_windows = over(kWindow_s, Measure::motion);
+    over_long_windows->screen = screen;
     if (!over_long_windows->rough) return *std::move(over_long_windows);
+    if (before == nullptr && !screen)
+      if (std::optional<Diagnosis> diagnosis = by_effort(true)) return *std::move(diagnosis);
   }
   const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
@@ -117,6 +153,19 @@ Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measu
   }
   if (short_s < kWindow_s || !over_long_windows) return over(std::min(short_s, kWindow_s), Measure::motion);
   return *std::move(over_long_windows);
+}
+
+}  // namespace
+
+Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
+                   const Diagnosis* before) {
+  Diagnosis diagnosis = diagnose_records(model, measured, progress, before);
+  if (!diagnosis.moves_enough) return diagnosis;
+  for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
+    diagnosis.verdict.data_sheet.push_back(conflict.words);
+    diagnosis.verdict.explanation += " " + conflict.words;
+  }
+  return diagnosis;
 }
 
 }  // namespace host

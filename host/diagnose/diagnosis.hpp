@@ -1,6 +1,7 @@
 // Which physical effect is missing from a model, by how much it lowers the error on data that its fit never saw.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,8 @@
 #include "host/record/measurements.hpp"
 
 namespace host {
+
+struct EffortScreen;
 
 enum class Status { missing, adequate, parameters, ambiguous, unexplained, insufficient_data };
 
@@ -46,10 +49,11 @@ struct DiagnosisVerdict {
   std::vector<std::vector<std::string>> alternatives;  ///< groups that these data cannot tell apart
   std::string next_experiment;
   std::string explanation;
-  std::string coordinate;            ///< where unexplained: what carries most of what is left
-  std::string where;                 ///< where along it, in words
-  double probability_nothing = 0.0;  ///< that nothing is missing, 0..1
-  double probability_other = 0.0;    ///< that something is missing that is no candidate, 0..1
+  std::string coordinate;               ///< where unexplained: what carries most of what is left
+  std::string where;                    ///< where along it, in words
+  double probability_nothing = 0.0;     ///< that nothing is missing, 0..1
+  std::vector<std::string> data_sheet;  ///< where the data fight what the model file holds or believes, in words
+  double probability_other = 0.0;       ///< that something is missing that is no candidate, 0..1
 };
 
 /// What it began with, and what came of it.
@@ -68,7 +72,9 @@ struct Diagnosis : PreparedSets {
   std::vector<JudgedCandidate> candidates;           ///< best first
   std::vector<std::string> not_searched;             ///< kinds of which a fit ended at its budget, not at its best
   DiagnosisVerdict verdict;
-  sim::DriveDescription best;  ///< with the effects of the verdict; the base where there are none
+  sim::DriveDescription best;                  ///< with the effects of the verdict; the base where there are none
+  std::shared_ptr<const EffortScreen> screen;  ///< what plain least squares of the effort saw; may be absent
+  bool by_effort = false;                      ///< that decided: errors are then of the effort over its sensors' noise
 };
 
 /// Windows of a machine whose missing effects, not its sensors, set the limit: 10 ms, in which the position shows a

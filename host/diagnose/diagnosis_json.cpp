@@ -1,8 +1,13 @@
 #include "host/diagnose/diagnosis_json.hpp"
 
+#include <algorithm>
+
+#include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/evidence/log_faults.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
+#include "sim/harmonic.hpp"
 
 namespace host {
 
@@ -21,7 +26,23 @@ nlohmann::json channels_json(const std::vector<ChannelError>& channels) {
 nlohmann::json parameters_json(const sim::EffectEntry& entry, sim::DriveKind kind) {
   nlohmann::json document = nlohmann::json::object();
   const sim::EffectInfo& info = *sim::find_effect(entry.kind);
-  for (const auto& [id, value] : entry.parameters) document[std::string(info.parameter(id)->key(kind))] = value;
+  const auto key_of = [&](std::string_view id) { return std::string(info.parameter(id)->key(kind)); };
+  const bool in_a_list = std::ranges::any_of(
+      entry.parameters, [](const auto& parameter) { return sim::number_of(parameter.first).has_value(); });
+  for (const auto& [id, value] : entry.parameters) {
+    const bool listed = in_a_list && (info.curve || id != "period");
+    if (!listed) document[key_of(id)] = value;
+  }
+  if (in_a_list && info.periodic)
+    for (const sim::HarmonicTerm& term : sim::harmonics_of(entry))
+      document["harmonics"].push_back(
+          {{"order", term.order}, {key_of("cosine"), term.cosine}, {key_of("sine"), term.sine}});
+  if (info.curve) {
+    const sim::Curve curve(entry);
+    document["over"] = entry.over;
+    document[key_of("knot")] = curve.knots();
+    document[key_of("value")] = curve.values();
+  }
   return document;
 }
 
@@ -48,6 +69,7 @@ nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
                              {"effects", verdict.effects},
                              {"parameters", verdict.parameters},
                              {"alternatives", verdict.alternatives},
+                             {"data_sheet", verdict.data_sheet},
                              {"probability_nothing", verdict.probability_nothing},
                              {"probability_other", verdict.probability_other},
                              {"next_experiment", verdict.next_experiment},
@@ -64,26 +86,31 @@ nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
 nlohmann::json to_json(const Diagnosis& diagnosis) {
   nlohmann::json candidates = nlohmann::json::array();
   for (const JudgedCandidate& candidate : diagnosis.candidates) candidates.push_back(candidate_json(candidate));
-  return {{"format", "axis-diagnosis/1"},
-          {"error",
-           {{"window_s", diagnosis.window_s},
-            {"measure", diagnosis.measure == Measure::effort ? "effort" : "motion"},
-            {"held_back", diagnosis.held_back},
-            {"kept_back", {{"block_s", diagnosis.blocks.block_s}, {"one_of", diagnosis.blocks.every}}},
-            {"moving_s", {{"train", diagnosis.moving_train_s}, {"validate", diagnosis.moving_validate_s}}},
-            {"independent_windows",
-             {{"train", independent_windows(diagnosis.moving_train_s)},
-              {"validate", independent_windows(diagnosis.moving_validate_s)}}},
-            {"channels", channels_json(diagnosis.channels)},
-            {"combined",
-             {{"given", {{"train", diagnosis.given_train}, {"validate", diagnosis.given_validate}}},
-              {"before", {{"train", diagnosis.before_train}, {"validate", diagnosis.before_validate}}},
-              {"after", {{"train", diagnosis.after_train}, {"validate", diagnosis.after_validate}}}}}}},
-          {"log", log_faults_json(diagnosis.log)},
-          {"where", error_regions_json(diagnosis.where)},
-          {"candidates", candidates},
-          {"search", {{"not_searched", diagnosis.not_searched}}},
-          {"verdict", verdict_json(diagnosis.verdict)}};
+  nlohmann::json document = {
+      {"format", "axis-diagnosis/1"},
+      {"error",
+       {{"window_s", diagnosis.window_s},
+        {"measure", diagnosis.measure == Measure::effort ? "effort" : "motion"},
+        {"held_back", diagnosis.held_back},
+        {"kept_back", {{"block_s", diagnosis.blocks.block_s}, {"one_of", diagnosis.blocks.every}}},
+        {"moving_s", {{"train", diagnosis.moving_train_s}, {"validate", diagnosis.moving_validate_s}}},
+        {"independent_windows",
+         {{"train", independent_windows(diagnosis.moving_train_s)},
+          {"validate", independent_windows(diagnosis.moving_validate_s)}}},
+        {"channels", channels_json(diagnosis.channels)},
+        {"combined",
+         {{"given", {{"train", diagnosis.given_train}, {"validate", diagnosis.given_validate}}},
+          {"before", {{"train", diagnosis.before_train}, {"validate", diagnosis.before_validate}}},
+          {"after", {{"train", diagnosis.after_train}, {"validate", diagnosis.after_validate}}}}}}},
+      {"log", log_faults_json(diagnosis.log)},
+      {"where", error_regions_json(diagnosis.where)},
+      {"candidates", candidates},
+      {"search", {{"not_searched", diagnosis.not_searched}}},
+      {"verdict", verdict_json(diagnosis.verdict)}};
+  if (diagnosis.screen) document["error"]["effort_screen"] = effort_screen_json(*diagnosis.screen);
+  if (diagnosis.screen && diagnosis.screen->repeatable)
+    document["error"]["repeatable"] = diagnosis.screen->repeatable->share;
+  return document;
 }
 
 nlohmann::json to_json(const Improvement& improvement, const std::string& model_path) {

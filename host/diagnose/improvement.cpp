@@ -4,11 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "host/diagnose/candidate_starts.hpp"
+#include "host/diagnose/effort_diagnosis.hpp"
+#include "host/diagnose/effort_terms.hpp"
+#include "host/diagnose/free_curve_fit.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/exit_codes.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
 
 namespace host {
 
@@ -32,6 +37,22 @@ Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::stri
   return rung;
 }
 
+/// The rungs of a regression: it chose one effect after the other against one floor, and stopped by itself.
+void append_effort_ladder(const Diagnosis& diagnosis, Improvement& result) {
+  const EffortScreen& screen = *diagnosis.screen;
+  const double train = diagnosis.before_train / screen.base.train;
+  const double validate = diagnosis.before_validate / screen.base.validate;
+  std::size_t known = 0;
+  for (const ScreenedModel& step : screen.chosen) {
+    Rung rung = rung_of(diagnosis, true, {step.kinds.begin() + static_cast<std::ptrdiff_t>(known), step.kinds.end()});
+    known = step.kinds.size();
+    rung.train = train * step.train;
+    rung.validate = validate * step.validate;
+    result.ladder.push_back(std::move(rung));
+  }
+  result.stopped_because = "no further effect takes its part of the effort that is left";
+}
+
 }  // namespace
 
 std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const RecordSet& training) {
@@ -53,6 +74,11 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
     result.verdict = diagnosis.verdict;
     result.model = diagnosis.best;
     const Status status = diagnosis.verdict.status;
+    if (diagnosis.by_effort) {
+      append_effort_ladder(diagnosis, result);
+      result.first = std::move(diagnosis);
+      break;
+    }
     const bool adds = status == Status::missing || status == Status::ambiguous;
     if (adds) {
       std::vector<std::string> added = diagnosis.verdict.effects;
@@ -78,10 +104,67 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
   return result;
 }
 
+namespace {
+
+Addition addition_of(const EffortScreen& screen, const ScreenedModel& added, const PreparedSets& sets) {
+  const double noise = std::max(screen.rows.noise, 1e-12);
+  Addition addition;
+  addition.held_back = sets.held_back;
+  addition.judged.kinds = added.kinds;
+  addition.judged.before = screen.base.validate * screen.effort_validate / noise;
+  addition.judged.after = added.validate * screen.effort_validate / noise;
+  addition.judged.train_after = added.train * screen.effort_train / noise;
+  addition.judged.confidence = added.confidence;
+  addition.judged.model = added.model;
+  return addition;
+}
+
+/// The addition by plain least squares, where that is to judge and knows the effect.
+std::optional<Addition> add_by_effort(const sim::DriveDescription& model, const std::string& kind,
+                                      const std::vector<const Record*>& training,
+                                      const std::vector<const Record*>& validation) {
+  const PreparedSets sets = split_sets(model, training, validation);
+  const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 1);
+  if (!effort_decides(screen, sets.validation) || screen.steps.empty()) return {};
+  for (const ScreenedModel& tried : screen.steps.front()) {
+    if (tried.kinds.size() != 1 || tried.kinds.front() != kind) continue;
+    Addition addition = addition_of(screen, tried, sets);
+    addition.estimates = document_fit(addition.judged.model, sets.training);
+    return addition;
+  }
+  return {};
+}
+
+}  // namespace
+
+Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured) {
+  if (!over.empty() && std::ranges::find(sim::kCurveCoordinates, over) == std::end(sim::kCurveCoordinates))
+    throw Failure(ExitCode::usage,
+                  fmt::format("--over {}: give one of {}", over, fmt::join(sim::kCurveCoordinates, ", ")));
+  const PreparedSets sets = split_sets(model, measured.training_records(), measured.validation_records());
+  const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 0);
+  if (screen.empty())
+    throw Failure(ExitCode::refused, "free_curve: the axis hardly slides in these records; record it in motion");
+  const std::optional<FreeCurveFit> fit = fit_free_curve(screen, over);
+  if (!fit)
+    throw Failure(ExitCode::refused,
+                  "free_curve: no curve lowers the error on validation data; these records do not "
+                  "show one");
+  Addition addition = addition_of(screen, fit->model, sets);
+  for (const auto& [id, value] : fit->model.model.effects.back().parameters) {
+    const auto interval = fit->model.model.effects.back().ci95.find(id);
+    if (interval == fit->model.model.effects.back().ci95.end()) continue;
+    const double deviation = 0.5 * (interval->second[1] - interval->second[0]) / 1.96;
+    addition.estimates.push_back({"free_curve." + id, value, deviation, true, {}, 0.0});
+  }
+  return addition;
+}
+
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
+  if (std::optional<Addition> by_effort = add_by_effort(model, kind, training, validation)) return *by_effort;
   PreparedSets sets;
   std::vector<Candidate> found;
   const auto search = [&](double window_s, Measure measure) {

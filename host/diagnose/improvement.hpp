@@ -36,6 +36,10 @@ struct Addition {
 };
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
 
+/// The model with a curve over a coordinate added, or over the one that judges best where `over` is empty: it names
+/// nothing, and takes what no formula fits. Throws Failure(refused) where no curve lowers the error.
+Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured);
+
 /// Writes intervals and origin into a fitted model; returns what the data say of each parameter.
 std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const RecordSet& training);
 

@@ -2,7 +2,9 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace host {
 
@@ -15,6 +17,11 @@ class WindowResiduals : public ceres::CostFunction {
  public:
   WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set)
       : model_(model), vector_(vector), set_(set), rows_(static_cast<Eigen::Index>(residual_count(set))) {
+    // What is believed weighs like one window of the error that this set has, as a further measurement would.
+    const auto windows = static_cast<double>(std::max<std::size_t>(1, set.used_windows()));
+    belief_weight_ = std::sqrt(std::max(1.0, set.common_square / kCommonSquare) / windows);
+    for (std::size_t k = 0; k < vector.size(); ++k)
+      if (vector.parameters()[k].believed) rows_ += 1;
     set_num_residuals(static_cast<int>(rows_));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(vector.size()));
   }
@@ -55,12 +62,19 @@ class WindowResiduals : public ceres::CostFunction {
     const sim::Drive drive(model);
     steps_ += steps_of(drive, set_);
     residuals_of(drive, set_, out);
+    auto row = rows_;
+    for (std::size_t k = vector_.size(); k-- > 0;) {
+      const std::optional<sim::Belief>& belief = vector_.parameters()[k].believed;
+      if (belief)
+        out[--row] = belief_weight_ * (values(static_cast<Eigen::Index>(k)) - belief->value) / belief->deviation;
+    }
   }
 
   const sim::DriveDescription& model_;
   const ParameterVector& vector_;
   const RecordSet& set_;
   Eigen::Index rows_;
+  double belief_weight_ = 0.0;
   mutable double steps_ = 0.0;
 };
 
@@ -125,7 +139,7 @@ std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, 
   const ParameterVector vector(model);
   const auto columns = static_cast<Eigen::Index>(vector.size());
   const WindowResiduals residuals(model, vector, training);
-  const auto rows = static_cast<Eigen::Index>(residual_count(training));
+  const auto rows = static_cast<Eigen::Index>(residuals.num_residuals());
   Eigen::VectorXd values = vector.read(model), scaled(columns), here(rows);
   for (Eigen::Index k = 0; k < columns; ++k)
     scaled(k) = values(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
@@ -147,6 +161,7 @@ std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, 
       row += length;
     }
   }
+  for (; row < rows; ++row) meat += jacobian.row(row).transpose() * jacobian.row(row);  // what is believed
   const Eigen::MatrixXd bread = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
   const Eigen::MatrixXd covariance = bread * meat * bread;
   constexpr double kNormal95 = 1.96;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/catalogue.hpp"
+#include "sim/harmonic.hpp"
 
 namespace host {
 
@@ -37,6 +38,15 @@ double stiffest_contact(const sim::DriveDescription& description) {
   return level * description.data.lead / (kShortestBreakaway_mm * millimetre);
 }
 
+/// What the entry holds, in the catalogue's order; the orders of a period one after the other.
+std::vector<std::string> ids_in_order(const sim::EffectInfo& info, const sim::EffectEntry& entry) {
+  std::vector<std::string> ids;
+  for (const sim::ParameterInfo& parameter : info.parameters)
+    for (const auto& [id, value] : entry.parameters)
+      if (info.parameter(id) == &parameter) ids.push_back(id);
+  return ids;
+}
+
 /// Lower bound of the speeds in a Stribeck curve, rad/s or m/s.
 double slowest_fading(const sim::DriveDescription& description) {
   const double millimetre = description.data.kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
@@ -56,9 +66,11 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
     const sim::EffectEntry& entry = description.effects[index];
     const sim::EffectInfo& info = *sim::find_effect(entry.kind);
     std::vector<std::string> taken;
-    for (const sim::ParameterInfo& parameter : info.parameters) {
-      const std::string id(parameter.id);
-      if (!entry.has(id) || std::ranges::find(taken, id) != taken.end()) continue;
+    for (const std::string& id : ids_in_order(info, entry)) {
+      const sim::ParameterInfo& parameter = *info.parameter(id);
+      if (std::ranges::find(taken, id) != taken.end() || entry.held.contains(id) ||
+          (info.curve && sim::family_of(id) == "knot"))
+        continue;
       if (only_last && id == "period") continue;
       const double value = entry.at(id);
       const double magnitude = std::abs(value);
@@ -74,8 +86,11 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
         free.entries.emplace_back(*partner, 1.0);
         taken.push_back(*partner);
       }
-      if (info.periodic && (id == "cosine" || id == "sine"))  // one amplitude, whatever the phase
-        free.scale = std::hypot(entry.at("cosine"), entry.at("sine"));
+      if (info.periodic && id != "period") {  // one amplitude, whatever the phase
+        const double order = sim::number_of(id).value_or(1.0);
+        free.scale = std::hypot(entry.at(sim::harmonic_id("cosine", order)), entry.at(sim::harmonic_id("sine", order)));
+      }
+      if (const auto belief = entry.believed.find(id); belief != entry.believed.end()) free.believed = belief->second;
       if (free.scale <= 0.0) free.scale = 1e-3 * std::min(1.0, parameter.upper - parameter.lower);
       parameters_.push_back(std::move(free));
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct FreeParameter {
   std::vector<std::pair<std::string, double>> entries;  ///< parameter id and the sign it carries
   double scale;                                         ///< typical size, > 0
   double lower, upper;                                  ///< bounds of the number
+  std::optional<sim::Belief> believed = {};             ///< what the model file says of it
 
   std::string name(const sim::DriveDescription& description) const;  ///< "cogging.cosine"
 };

@@ -120,8 +120,8 @@ KeptBack hold_back(RecordSet& training, RecordSet& validation) {
   return kept;
 }
 
-PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                          const std::vector<const Record*>& validation, double window_s, Measure measure) {
+PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                        const std::vector<const Record*>& validation, double window_s, Measure measure) {
   PreparedSets sets;
   sets.window_s = window_s;
   sets.measure = measure;
@@ -139,6 +139,12 @@ PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<
   sets.moving_validate_s = moving_s_of(sets.validation);
   sets.moves_enough = independent_windows(sets.moving_train_s) >= kFewestToLearn &&
                       independent_windows(sets.moving_validate_s) >= kFewestToJudge;
+  return sets;
+}
+
+PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                          const std::vector<const Record*>& validation, double window_s, Measure measure) {
+  PreparedSets sets = split_sets(model, training, validation, window_s, measure);
   if (!sets.moves_enough) return sets;
   sets.base = fit_base(model, sets.training);
   renew_floors(sets.training, sets.base);

@@ -43,6 +43,11 @@ double missing_motion_s(const PreparedSets& sets);
 /// far as the smoothing of a restart reaches.
 KeptBack hold_back(RecordSet& training, RecordSet& validation);
 
+/// The sets with the floors of the model as it was given, which stays the base. Throws as prepare_sets() does.
+PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                        const std::vector<const Record*>& validation, double window_s = kWindow_s,
+                        Measure measure = Measure::motion);
+
 /// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
 /// be compared. Keeps references to the records.
 PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,

@@ -23,7 +23,7 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
   double viscous = law.viscous * magnitude;
   for (const auto& factor : drive.viscous_factor) viscous *= factor(t_s);
   double friction = level + viscous;
-  for (const auto& further : drive.sliding_friction) friction += further(magnitude).effort;
+  for (const auto& further : drive.sliding_friction) friction += further(static_cast<int>(side), magnitude).effort;
   return friction + drive.transmitted_share * std::abs(motor_effort);
 }
 
@@ -31,7 +31,8 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
 
 bool has_inverse(const sim::Drive& drive) {
   return drive.current_lag_s <= 0.0 && !drive.bristles && !drive.has_second_mass() && drive.friction_memory_s <= 0.0 &&
-         drive.dwell_gain <= 0.0 && drive.effort_limit.empty() && drive.encoder_error.empty();
+         drive.dwell_gain <= 0.0 && drive.effort_limit.empty() && drive.encoder_error.empty() &&
+         drive.friction_after_reversal.empty();
 }
 
 std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion) {

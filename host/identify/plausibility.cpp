@@ -8,6 +8,7 @@
 
 #include "host/exit_codes.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/harmonic.hpp"
 
 namespace host {
 
@@ -95,13 +96,17 @@ class Examiner {
   }
 
   void examine_amplitude(const sim::EffectInfo& effect, const sim::EffectEntry& entry) {
-    const auto cosine = interval_of(entry, "cosine"), sine = interval_of(entry, "sine");
-    if (!cosine || !sine || !entry.has("cosine") || !entry.has("sine")) return;
-    const double amplitude = std::hypot(entry.at("cosine"), entry.at("sine"));
-    const double reach = std::hypot(half_width(*cosine), half_width(*sine));
-    if (reach > amplitude)
-      doubt(effect.kind, true, "{}: the amplitude is {:.3g} ± {:.2g}: it may be zero, and its phase anything",
-            effect.kind, amplitude, reach);
+    for (const sim::HarmonicTerm& term : sim::harmonics_of(entry)) {
+      const auto cosine = interval_of(entry, sim::harmonic_id("cosine", term.order));
+      const auto sine = interval_of(entry, sim::harmonic_id("sine", term.order));
+      if (!cosine || !sine) continue;
+      const double amplitude = std::hypot(term.cosine, term.sine);
+      const double reach = std::hypot(half_width(*cosine), half_width(*sine));
+      if (reach > amplitude)
+        doubt(effect.kind, true,
+              "{}: the amplitude of order {:g} is {:.3g} ± {:.2g}: it may be zero, and its phase anything", effect.kind,
+              term.order, amplitude, reach);
+    }
   }
 
   /// Friction that the motor cannot overcome has not been seen moving.

@@ -21,7 +21,7 @@ std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both) {
   return ids;
 }
 
-bool may_repeat(const sim::EffectInfo& info) { return info.periodic || info.kind == "external_torque"; }
+bool may_repeat(const sim::EffectInfo& info) { return info.periodic || info.curve || info.kind == "external_torque"; }
 
 std::vector<std::string_view> effect_kinds() {
   std::vector<std::string_view> kinds;

@@ -15,6 +15,13 @@ std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both);
 /// A drive may have several effects of one kind: each has a period or a time of its own.
 bool may_repeat(const sim::EffectInfo& info);
 
+/// The standard deviations of a free curve's values stand under this key, as many as the values.
+constexpr std::string_view curve_deviation_key(sim::DriveKind kind) {
+  return kind == sim::DriveKind::rotary ? "sd_Nm" : "sd_N";
+}
+/// Half of a 95 % interval in standard deviations.
+inline constexpr double kNormal95 = 1.96;
+
 /// All kinds of the catalogue, for messages.
 std::vector<std::string_view> effect_kinds();
 

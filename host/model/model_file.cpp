@@ -13,6 +13,8 @@
 #include "host/read_file.hpp"
 #include "host/toml_text.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
+#include "sim/harmonic.hpp"
 
 namespace host {
 
@@ -23,6 +25,10 @@ using Names = std::vector<std::string_view>;
 
 constexpr std::string_view kFormat = "axis-model/1";
 constexpr std::string_view kIntervalSuffix = "_ci95";
+constexpr std::string_view kHeldSuffix = "_held";
+constexpr std::string_view kDeviationSuffix = "_sd";
+constexpr std::string_view kGivenSuffix = "_given";  ///< what was believed, where a fit has moved the value
+constexpr std::string_view kHarmonics = "harmonics";
 
 class ModelReader {
  public:
@@ -179,19 +185,36 @@ class ModelReader {
       fail(line_of(table), "effect {} stands in the model twice; keep one of them", entry.kind);
     entry.from = text_at(table, "from", "[[effect]]", false);
     refuse_unknown_in_effect(table, *info);
-    for (const sim::ParameterInfo& parameter : info->parameters) read_parameter(table, parameter, entry);
+    if (info->curve) {
+      read_curve(table, *info, entry);
+      model_.effects.push_back(std::move(entry));
+      return;
+    }
+    for (const sim::ParameterInfo& parameter : info->parameters)
+      read_parameter(table, parameter, std::string(parameter.id), entry);
+    if (info->periodic) read_harmonics(table, *info, entry);
     require_parameters(table, *info, entry);
     model_.effects.push_back(std::move(entry));
+  }
+
+  /// What may stand beside each of these values.
+  static std::vector<std::string> fields_beside(const Names& keys) {
+    std::vector<std::string> fields;
+    for (const std::string_view key : keys)
+      for (const std::string_view suffix : {kIntervalSuffix, kHeldSuffix, kDeviationSuffix, kGivenSuffix})
+        fields.push_back(fmt::format("{}{}", key, suffix));
+    return fields;
   }
 
   void refuse_unknown_in_effect(const toml::table& table, const sim::EffectInfo& info) const {
     Names known = {"kind", "from"};
     for (const sim::ParameterInfo& parameter : info.parameters) known.push_back(parameter.key(model_.data.kind));
-    std::vector<std::string> intervals;
-    for (std::size_t k = 2; k < known.size(); ++k) intervals.push_back(fmt::format("{}{}", known[k], kIntervalSuffix));
+    const std::vector<std::string> beside = fields_beside({known.begin() + 2, known.end()});
     refuse_keys_of_other_kind(table, info, known);
     Names allowed = known;
-    allowed.insert(allowed.end(), intervals.begin(), intervals.end());
+    allowed.insert(allowed.end(), beside.begin(), beside.end());
+    if (info.periodic) allowed.push_back(kHarmonics);
+    if (info.curve) allowed.insert(allowed.end(), {"over", curve_deviation_key(model_.data.kind)});
     refuse_unknown(table, allowed, fmt::format("in effect {}", info.kind));
   }
 
@@ -206,21 +229,100 @@ class ModelReader {
     }
   }
 
-  void read_parameter(const toml::table& table, const sim::ParameterInfo& parameter, sim::EffectEntry& entry) const {
+  std::vector<double> numbers_at(const toml::table& table, std::string_view key) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) fail(line_of(table), "missing field {} in effect free_curve; add {} = [ … ]", key, key);
+    const toml::array* list = node->as_array();
+    if (list == nullptr) fail(line_of(*node), "{}: write a list, [ … ]", key);
+    std::vector<double> numbers;
+    for (const toml::node& element : *list) numbers.push_back(number_of(element, key));
+    return numbers;
+  }
+
+  /// A curve: `over`, `knots`, values, and the standard deviations of these where they are known.
+  void read_curve(const toml::table& table, const sim::EffectInfo& info, sim::EffectEntry& entry) const {
+    entry.over = text_at(table, "over", "[[effect]] free_curve", true);
+    if (std::ranges::find(sim::kCurveCoordinates, entry.over) == std::end(sim::kCurveCoordinates))
+      fail(line_of(*table.get("over")), "over: '{}' is unknown; write one of {}", entry.over,
+           fmt::join(sim::kCurveCoordinates, ", "));
+    const std::string_view knots_key = info.parameter("knot")->key(model_.data.kind);
+    const std::string_view values_key = info.parameter("value")->key(model_.data.kind);
+    const std::string_view deviation_key = curve_deviation_key(model_.data.kind);
+    const std::vector<double> knots = numbers_at(table, knots_key), values = numbers_at(table, values_key);
+    if (knots.size() < 2 || knots.size() != values.size())
+      fail(line_of(table), "{} and {} must be two or more, and as many: {} and {}", knots_key, values_key, knots.size(),
+           values.size());
+    if (!std::ranges::is_sorted(knots, std::less_equal{}))
+      fail(line_of(*table.get(knots_key)), "{}: each must lie above the one before", knots_key);
+    std::vector<double> deviations;
+    if (table.contains(deviation_key)) deviations = numbers_at(table, deviation_key);
+    for (std::size_t n = 0; n < knots.size(); ++n) {
+      entry.parameters[sim::numbered_id("knot", static_cast<double>(n))] = knots[n];
+      const std::string id = sim::numbered_id("value", static_cast<double>(n));
+      entry.parameters[id] = values[n];
+      if (deviations.size() == values.size())
+        entry.ci95[id] = {values[n] - kNormal95 * deviations[n], values[n] + kNormal95 * deviations[n]};
+    }
+  }
+
+  /// The orders of a period, where they stand in a list instead of as one pair.
+  void read_harmonics(const toml::table& table, const sim::EffectInfo& info, sim::EffectEntry& entry) const {
+    const toml::node* node = table.get(kHarmonics);
+    if (node == nullptr) return;
+    const sim::ParameterInfo &cosine = *info.parameter("cosine"), &sine = *info.parameter("sine");
+    const std::string_view cosine_key = cosine.key(model_.data.kind), sine_key = sine.key(model_.data.kind);
+    const std::string form =
+        fmt::format("{} = [ {{ order = 1, {} = …, {} = … }}, … ]", kHarmonics, cosine_key, sine_key);
+    if (entry.has("cosine") || entry.has("sine"))
+      fail(line_of(*node), "{} stands beside {} or {}; keep one form", kHarmonics, cosine_key, sine_key);
+    const toml::array* list = node->as_array();
+    if (list == nullptr || list->empty()) fail(line_of(*node), "{}: write {}", kHarmonics, form);
+    for (const toml::node& element : *list) {
+      const toml::table* term = element.as_table();
+      const toml::node* order_node = term == nullptr ? nullptr : term->get("order");
+      if (order_node == nullptr) fail(line_of(element), "{}: write {}", kHarmonics, form);
+      const double order = positive_number(*order_node, "order", false);
+      Names known = {"order", cosine_key, sine_key};
+      const std::vector<std::string> beside = fields_beside({cosine_key, sine_key});
+      known.insert(known.end(), beside.begin(), beside.end());
+      refuse_unknown(*term, known, fmt::format("in {} of effect {}", kHarmonics, info.kind));
+      for (const auto& [parameter, family] : {std::pair(&cosine, "cosine"), std::pair(&sine, "sine")}) {
+        const std::string id = sim::harmonic_id(family, order);
+        if (entry.has(id)) fail(line_of(element), "{}: order {} stands twice; keep one of them", kHarmonics, order);
+        read_parameter(*term, *parameter, id, entry);
+        if (!entry.has(id))
+          fail(line_of(element), "{}: order {} lacks {}; add it", kHarmonics, order, parameter->key(model_.data.kind));
+      }
+    }
+  }
+
+  void read_parameter(const toml::table& table, const sim::ParameterInfo& parameter, const std::string& id,
+                      sim::EffectEntry& entry) const {
     const std::string key(parameter.key(model_.data.kind));
     const toml::node* node = table.get(key);
     const std::string interval_key = key + std::string(kIntervalSuffix);
     const toml::node* interval = table.get(interval_key);
-    if (node == nullptr && interval != nullptr)
-      fail(line_of(*interval), "{} stands without {}; add the value, or remove its interval", interval_key, key);
+    const std::string held_key = key + std::string(kHeldSuffix), deviation_key = key + std::string(kDeviationSuffix);
+    const std::string given_key = key + std::string(kGivenSuffix);
+    const toml::node *held = table.get(held_key), *deviation = table.get(deviation_key), *given = table.get(given_key);
+    for (const auto& [beside, name] : {std::pair(interval, &interval_key), std::pair(held, &held_key),
+                                       std::pair(deviation, &deviation_key), std::pair(given, &given_key)})
+      if (node == nullptr && beside != nullptr)
+        fail(line_of(*beside), "{} stands without {}; add the value, or remove {}", *name, key, *name);
     if (node == nullptr) return;
     const double value = number_of(*node, key);
     if (bounds_ == Bounds::enforced && (value < parameter.lower || value > parameter.upper))
       fail(line_of(*node), "{}: {} is out of bounds ({}); it must lie within {} … {}", key, value, parameter.doc,
            parameter.lower, parameter.upper);
-    const std::string id(parameter.id);
     entry.parameters[id] = value;
     if (interval != nullptr) entry.ci95[id] = interval_of(*interval, interval_key, value);
+    if (held != nullptr && !held->is_boolean()) fail(line_of(*held), "{}: write true or false", held_key);
+    if (held != nullptr && held->as_boolean()->get()) entry.held.insert(id);
+    if (deviation != nullptr)
+      entry.believed[id] = {given == nullptr ? value : number_of(*given, given_key),
+                            positive_number(*deviation, deviation_key, false)};
+    else if (given != nullptr)
+      fail(line_of(*given), "{} stands without {}; add it, or remove {}", given_key, deviation_key, given_key);
   }
 
   std::array<double, 2> interval_of(const toml::node& node, std::string_view key, double value) const {
@@ -240,10 +342,13 @@ class ModelReader {
     for (const sim::ParameterInfo& parameter : info.parameters) {
       if (!parameter.pair_of.empty())
         require_one_form(table, info, parameter, entry);
-      else if (!parameter.optional && !entry.has(std::string(parameter.id)))
+      else if (!parameter.optional && !entry.has_any(parameter.id))
         fail(line_of(table), "missing field {} in effect {} ({}); add it", parameter.key(model_.data.kind), info.kind,
              parameter.doc);
     }
+    if (info.kind == "nonlinear_viscous" && entry.has("exponent") == entry.has("saturation"))
+      fail(line_of(table), "effect {} takes one form: give {} or {}", info.kind,
+           info.parameter("exponent")->key(model_.data.kind), info.parameter("saturation")->key(model_.data.kind));
   }
 
   void require_one_form(const toml::table& table, const sim::EffectInfo& info, const sim::ParameterInfo& both,

@@ -12,6 +12,7 @@
 #include "firmware/app/parameters/axis_values.hpp"
 #include "host/identify/friction_law.hpp"
 #include "host/parameters/parameter_names.hpp"
+#include "sim/harmonic.hpp"
 
 namespace host {
 
@@ -19,20 +20,35 @@ namespace {
 
 using Parameters = std::vector<CompensationParameter>;
 
-double amplitude(const sim::EffectEntry& harmonic) { return std::hypot(harmonic.at("cosine"), harmonic.at("sine")); }
+/// One sine over the travel, as the board holds it.
+struct BoardHarmonic {
+  double cosine, sine, period;
+
+  double amplitude() const { return std::hypot(cosine, sine); }
+};
+
+/// Every order of every effect of a kind, largest first.
+std::vector<BoardHarmonic> board_harmonics(const sim::DriveDescription& model, std::string_view kind) {
+  std::vector<BoardHarmonic> harmonics;
+  for (const sim::EffectEntry& entry : model.effects) {
+    if (entry.kind != kind) continue;
+    for (const sim::HarmonicTerm& term : sim::harmonics_of(entry))
+      harmonics.push_back({term.cosine, term.sine, entry.at("period") / term.order});
+  }
+  std::ranges::stable_sort(harmonics, std::ranges::greater{}, &BoardHarmonic::amplitude);
+  return harmonics;
+}
 
 void append_cogging(const sim::DriveDescription& model, Parameters& list) {
-  std::vector<sim::EffectEntry> harmonics;
-  std::ranges::copy_if(model.effects, std::back_inserter(harmonics),
-                       [](const sim::EffectEntry& entry) { return entry.kind == "cogging"; });
-  std::ranges::stable_sort(harmonics, std::ranges::greater{}, amplitude);
+  std::vector<BoardHarmonic> harmonics = board_harmonics(model, "cogging");
   list.push_back({"cogging.on", harmonics.empty() ? 0.0 : 1.0});
   if (harmonics.empty()) return;
-  harmonics.resize(firmware::kCoggingHarmonics,
-                   {"cogging", {{"cosine", 0.0}, {"sine", 0.0}, {"period", harmonics.front().at("period")}}, {}, {}});
-  for (std::size_t i = 0; i < harmonics.size(); ++i)
-    for (const char* value : {"cosine", "sine", "period"})
-      list.push_back({fmt::format("cogging.{}_{}", value, i + 1), harmonics[i].at(value)});
+  harmonics.resize(firmware::kCoggingHarmonics, {0.0, 0.0, harmonics.front().period});
+  for (std::size_t i = 0; i < harmonics.size(); ++i) {
+    list.push_back({fmt::format("cogging.cosine_{}", i + 1), harmonics[i].cosine});
+    list.push_back({fmt::format("cogging.sine_{}", i + 1), harmonics[i].sine});
+    list.push_back({fmt::format("cogging.period_{}", i + 1), harmonics[i].period});
+  }
 }
 
 void append_contact(const sim::DriveDescription& model, Parameters& list) {
@@ -42,11 +58,12 @@ void append_contact(const sim::DriveDescription& model, Parameters& list) {
     list.push_back({"presliding.stiffness", contact->at("sigma0")});
     list.push_back({"presliding.damping", contact->at("sigma1")});
   }
-  const sim::EffectEntry* along_travel = model.find("position_dependent_friction");
-  list.push_back({"position_friction.on", along_travel != nullptr ? 1.0 : 0.0});
-  if (along_travel == nullptr) return;
-  for (const char* value : {"cosine", "sine", "period"})
-    list.push_back({fmt::format("position_friction.{}", value), along_travel->at(value)});
+  const std::vector<BoardHarmonic> along_travel = board_harmonics(model, "position_dependent_friction");
+  list.push_back({"position_friction.on", along_travel.empty() ? 0.0 : 1.0});
+  if (along_travel.empty()) return;
+  list.push_back({"position_friction.cosine", along_travel.front().cosine});
+  list.push_back({"position_friction.sine", along_travel.front().sine});
+  list.push_back({"position_friction.period", along_travel.front().period});
 }
 
 void append_backlash(const sim::DriveDescription& model, Parameters& list) {
@@ -55,13 +72,14 @@ void append_backlash(const sim::DriveDescription& model, Parameters& list) {
   list.push_back({"backlash.on", gap > 0.0 ? 1.0 : 0.0});
   if (gap <= 0.0) return;
   list.push_back({"backlash.gap", gap});
-  // The stiffness of two masses that meet at this resonance; friction sits on the table's side, as in the model.
+  // The stiffness of two masses that meet at this resonance, under the friction on the table's side.
   const sim::EffectEntry* inertia = model.find("inertia");
   const double load = backlash->at("load_fraction");
   const double rate = 2.0 * std::numbers::pi * backlash->at("resonance");
   const double stiffness = inertia != nullptr ? inertia->at("J") * load * (1.0 - load) * rate * rate : 0.0;
   const FrictionLaw friction = friction_law(model);
-  const double level = 0.5 * (friction.positive.coulomb + friction.negative.coulomb);
+  const double share = backlash->has("load_friction") ? backlash->at("load_friction") : 1.0;
+  const double level = 0.5 * share * (friction.positive.coulomb + friction.negative.coulomb);
   list.push_back({"backlash.wind_up", stiffness > 0.0 ? model.data.lead * level / stiffness : 0.0});
 }
 

@@ -1,6 +1,7 @@
 #include "host/report/effect_pages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 
 #include "host/model/effect_forms.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
 
 namespace host {
 
@@ -85,8 +87,11 @@ std::vector<const sim::ParameterInfo*> example_parameters(const sim::EffectInfo&
   for (const sim::ParameterInfo& parameter : info.parameters)
     for (const std::string_view id : ids_of_pair(parameter)) replaced.push_back(id);
   std::vector<const sim::ParameterInfo*> parameters;
-  for (const sim::ParameterInfo& parameter : info.parameters)
-    if (std::ranges::find(replaced, parameter.id) == replaced.end()) parameters.push_back(&parameter);
+  for (const sim::ParameterInfo& parameter : info.parameters) {
+    const bool extra = parameter.optional && parameter.pair_of.empty() && parameter.id != "exponent";
+    const bool one_of_a_pair = std::ranges::find(replaced, parameter.id) != replaced.end();
+    if (!one_of_a_pair && !extra) parameters.push_back(&parameter);
+  }
   return parameters;
 }
 
@@ -195,6 +200,13 @@ std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal) {
 
 std::string effect_example_toml(const sim::EffectInfo& info, sim::DriveKind kind) {
   std::string text = fmt::format("[[effect]]\nkind = \"{}\"\n", info.kind);
+  if (info.curve) {
+    fmt::format_to(std::back_inserter(text),
+                   "over = \"speed\"  # or {}\n{} = [-1.0, 0.0, 1.0]\n{} = [-0.1, 0.0, 0.1]\n",
+                   fmt::join(std::begin(sim::kCurveCoordinates) + 1, std::end(sim::kCurveCoordinates), ", "),
+                   info.parameter("knot")->key(kind), info.parameter("value")->key(kind));
+    return text;
+  }
   for (const sim::ParameterInfo* parameter : example_parameters(info))
     fmt::format_to(std::back_inserter(text), "{} = {:.3g}\n", parameter->key(kind), example_value(*parameter, kind));
   return text;

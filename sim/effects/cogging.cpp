@@ -10,8 +10,8 @@ namespace sim::effects {
 namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
-  drive.finest_period = std::min(drive.finest_period, entry.at("period"));
+  const Harmonics harmonic(entry);
+  drive.finest_period = std::min(drive.finest_period, harmonic.finest_period());
   drive.load_effort.push_back([harmonic](double, double x) { return harmonic(x); });
 }
 
@@ -21,7 +21,7 @@ extern const EffectInfo cogging;
 const EffectInfo cogging{
     .kind = "cogging",
     .title = "Cogging",
-    .equation = "T = T_motor + c cos(2 pi x/L) + s sin(2 pi x/L); x: travel",
+    .equation = "T = T_motor + c cos(2 pi x/L) + s sin(2 pi x/L), and further orders of L; x: travel",
     .stage = Stage::load,
     .periodic = true,
     .parameters = {{.id = "cosine",

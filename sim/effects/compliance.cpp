@@ -7,8 +7,8 @@ namespace sim::effects {
 namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  drive.second_mass =
-      SecondMass{entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"), /*gap=*/0.0};
+  drive.second_mass = SecondMass{entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"),
+                                 /*gap=*/0.0, entry.has("load_friction") ? entry.at("load_friction") : 1.0};
 }
 
 }  // namespace
@@ -18,8 +18,11 @@ const EffectInfo compliance{
     .kind = "compliance",
     .title = "A second mass on a spring",
     .equation =
-        "J1 dw1/dt = T - s, J2 dw2/dt = s - T_f, s = k d + c dd/dt; 1: motor, 2: load behind the spring, d: twist, "
-        "T_f: friction on the load; k, c from resonance and damping",
+        "J1 dw1/dt = T - s - (1 - p) T_f, J2 dw2/dt = s - p T_f, s = k d + c dd/dt; 1: motor, 2: load behind the "
+        "spring, "
+        "d: twist, T_f: friction at the speed of its side, p: its part on the load, 1 unless given; k, c from "
+        "resonance "
+        "and damping",
     .stage = Stage::mechanics,
     .parameters = {{.id = "resonance",
                     .rotary_key = "resonance_Hz",
@@ -41,7 +44,15 @@ const EffectInfo compliance{
                     .doc = "part of the inertia behind the spring",
                     .lower = 0.02,
                     .upper = 0.95,
-                    .starts = {0.35}}},
+                    .starts = {0.35}},
+                   {.id = "load_friction",
+                    .rotary_key = "load_friction",
+                    .linear_key = "load_friction",
+                    .doc = "p: part of the friction that acts on the load's side; 1 unless given",
+                    .lower = 0.0,
+                    .upper = 1.0,
+                    .starts = {0.5},
+                    .optional = true}},
     .shows =
         "Residual rings at one frequency after each change of torque, the same at any speed. Below the resonance both "
         "inertias act, above it the motor's alone",

@@ -8,7 +8,7 @@ namespace sim::effects {
 namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  drive.encoder_error.push_back(Harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")});
+  drive.encoder_error.push_back(Harmonics(entry));
 }
 
 }  // namespace
@@ -17,7 +17,7 @@ extern const EffectInfo encoder_cyclic_error;
 const EffectInfo encoder_cyclic_error{
     .kind = "encoder_cyclic_error",
     .title = "Cyclic error of the encoder",
-    .equation = "x_m = x + c cos(2 pi x/L) + s sin(2 pi x/L); x: travel, x_m: reading",
+    .equation = "x_m = x + c cos(2 pi x/L) + s sin(2 pi x/L), and further orders of L; x: travel, x_m: reading",
     .stage = Stage::encoder,
     .periodic = true,
     .parameters = {{.id = "cosine",

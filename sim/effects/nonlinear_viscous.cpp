@@ -12,8 +12,17 @@ namespace {
 void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   // The reference speed only gives the coefficient a readable unit.
   const double reference = data.kind == DriveKind::rotary ? 10.0 : 0.1;
-  const double coefficient = entry.at("coefficient"), exponent = entry.at("exponent");
-  drive.sliding_friction.push_back([=](double speed) {
+  const double coefficient = entry.at("coefficient");
+  if (entry.has("saturation")) {
+    const double saturation = entry.at("saturation");
+    drive.sliding_friction.push_back([=](int, double speed) {
+      const double rest = std::exp(-speed / saturation);
+      return FrictionPoint{-coefficient * rest, coefficient * rest / saturation};
+    });
+    return;
+  }
+  const double exponent = entry.has("exponent") ? entry.at("exponent") : 1.0;
+  drive.sliding_friction.push_back([=](int, double speed) {
     // A law that flattens is infinitely steep at rest; below a thousandth of the reference its slope is held.
     const double ratio = speed / reference, steepest = std::max(ratio, 1e-3);
     const double at_steepest = coefficient * std::pow(steepest, exponent);
@@ -29,7 +38,10 @@ extern const EffectInfo nonlinear_viscous;
 const EffectInfo nonlinear_viscous{
     .kind = "nonlinear_viscous",
     .title = "Friction curve that bends at speed",
-    .equation = "T_f = T_coul + B |w| + c (|w|/w_r)^p, against the motion; reference speed w_r = 10 rad/s or 0.1 m/s",
+    .equation =
+        "T_f = T_coul + B |w| + c (|w|/w_r)^p, against the motion; reference speed w_r = 10 rad/s or 0.1 m/s. Or, "
+        "where "
+        "w_s is given instead of p: T_f = T_coul + B |w| - c exp(-|w|/w_s)",
     .stage = Stage::friction,
     .parameters = {{.id = "coefficient",
                     .rotary_key = "coefficient_Nm",
@@ -45,7 +57,17 @@ const EffectInfo nonlinear_viscous{
                     .doc = "p: below 1 the curve flattens, above 1 it steepens",
                     .lower = 0.2,
                     .upper = 3.0,
-                    .starts = {0.5, 2.0}}},
+                    .starts = {0.5, 2.0},
+                    .optional = true},
+                   {.id = "saturation",
+                    .rotary_key = "saturation_rad_s",
+                    .linear_key = "saturation_m_s",
+                    .doc = "w_s, instead of p: friction that reaches its level only at this speed",
+                    .lower = 1e-6,
+                    .upper = 1e4,
+                    .scale = Scale::top_speed,
+                    .starts = {0.1},
+                    .optional = true}},
     .shows = "Residual torque over speed curves at the plateaus, alike in both directions, fast or slow",
     .confused_with = {"thermal_friction_drift", "voltage_limit", "stribeck", "viscous_asymmetry", "tach_gain"},
     .separate_by =

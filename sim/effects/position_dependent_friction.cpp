@@ -10,8 +10,8 @@ namespace sim::effects {
 namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
-  drive.finest_period = std::min(drive.finest_period, entry.at("period"));
+  const Harmonics harmonic(entry);
+  drive.finest_period = std::min(drive.finest_period, harmonic.finest_period());
   drive.level_factor.push_back([harmonic](double, double x) { return std::max(0.0, 1.0 + harmonic(x)); });
 }
 
@@ -21,7 +21,9 @@ extern const EffectInfo position_dependent_friction;
 const EffectInfo position_dependent_friction{
     .kind = "position_dependent_friction",
     .title = "Friction that varies along the travel",
-    .equation = "T_f(x) = T_f (1 + c cos(2 pi x/L) + s sin(2 pi x/L)); x: travel, T_f: Coulomb and static friction",
+    .equation =
+        "T_f(x) = T_f (1 + c cos(2 pi x/L) + s sin(2 pi x/L)), and further orders of L; x: travel, T_f: Coulomb and "
+        "static friction",
     .stage = Stage::friction,
     .periodic = true,
     .parameters = {{.id = "cosine",

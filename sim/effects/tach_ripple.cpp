@@ -8,7 +8,7 @@ namespace sim::effects {
 namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  drive.tach_ripple.push_back(Harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")});
+  drive.tach_ripple.push_back(Harmonics(entry));
 }
 
 }  // namespace
@@ -17,7 +17,9 @@ extern const EffectInfo tach_ripple;
 const EffectInfo tach_ripple{
     .kind = "tach_ripple",
     .title = "Ripple of the tachometer",
-    .equation = "w_m = w (1 + c cos(2 pi x/L) + s sin(2 pi x/L)); w: true speed, w_m: reading, x: travel",
+    .equation =
+        "w_m = w (1 + c cos(2 pi x/L) + s sin(2 pi x/L)), and further orders of L; w: true speed, w_m: reading, x: "
+        "travel",
     .stage = Stage::tachometer,
     .periodic = true,
     .parameters = {{.id = "cosine",

@@ -10,8 +10,8 @@ namespace sim::effects {
 namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  const Harmonic harmonic{entry.at("cosine"), entry.at("sine"), entry.at("period")};
-  drive.finest_period = std::min(drive.finest_period, entry.at("period"));
+  const Harmonics harmonic(entry);
+  drive.finest_period = std::min(drive.finest_period, harmonic.finest_period());
   drive.effort_factor.push_back([harmonic](double x) { return 1.0 + harmonic(x); });
 }
 
@@ -21,7 +21,8 @@ extern const EffectInfo torque_ripple;
 const EffectInfo torque_ripple{
     .kind = "torque_ripple",
     .title = "Torque ripple",
-    .equation = "T = K_t i (1 + c cos(2 pi x/L) + s sin(2 pi x/L)); i: motor current, x: travel",
+    .equation =
+        "T = K_t i (1 + c cos(2 pi x/L) + s sin(2 pi x/L)), and further orders of L; i: motor current, x: travel",
     .stage = Stage::motor,
     .periodic = true,
     .parameters = {{.id = "cosine",

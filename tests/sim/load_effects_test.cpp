@@ -54,6 +54,62 @@ TEST(Cogging, ShiftsTheBreakawayLevelAlongTheTravel) {
   }
 }
 
+// An order that is read as a period of its own, or that loses its number, breaks away elsewhere.
+TEST(Cogging, OfSeveralOrdersIsTheSumOfThem) {
+  const double period_mm = 6.0;
+  const Drive drive(with(coulomb_drive(), "cogging",
+                         {{"cosine", 0.05},
+                          {"sine", 0.0},
+                          {"cosine_3", 0.0},
+                          {"sine_3", 0.10},
+                          {"cosine_12", 0.04},
+                          {"sine_12", 0.02},
+                          {"period", period_mm}}));
+  EXPECT_DOUBLE_EQ(drive.finest_period, period_mm / 12.0);
+  for (const double x : {0.0, 0.7, 2.0, 4.4}) {
+    const double angle = 2.0 * M_PI * x / period_mm;
+    const double cogging = 0.05 * std::cos(angle) + 0.10 * std::sin(3.0 * angle) + 0.04 * std::cos(12.0 * angle) +
+                           0.02 * std::sin(12.0 * angle);
+    EXPECT_EQ(run(drive, drive.at(x, 0.0), kCoulomb - cogging - 1e-6, 5, 0.001).w, 0.0) << x;
+    EXPECT_GT(run(drive, drive.at(x, 0.0), kCoulomb - cogging + 1e-6, 5, 0.001).w, 0.0) << x;
+  }
+}
+
+sim::DriveDescription with_curve(sim::DriveDescription drive, std::string over, std::map<std::string, double> points) {
+  drive = with(std::move(drive), "free_curve", std::move(points));
+  drive.effects.back().over = std::move(over);
+  return drive;
+}
+
+TEST(FreeCurve, OverSpeedIsFrictionWithALevelOfItsOwnInEachDirection) {
+  // Forward 0.2 Nm at 10 rad/s, backward 0.1 Nm; a drive of that speed and effort keeps it.
+  const auto drive = Drive(with_curve(
+      free_mass(), "speed",
+      {{"knot_0", -20.0}, {"value_0", -0.1}, {"knot_1", 0.0}, {"value_1", 0.0}, {"knot_2", 20.0}, {"value_2", 0.4}}));
+  EXPECT_NEAR(run(drive, drive.at(0.0, 10.0), 0.2, 200, 0.001).w, 10.0, 1e-9);
+  EXPECT_NEAR(run(drive, drive.at(0.0, -10.0), -0.05, 200, 0.001).w, -10.0, 1e-9);
+  EXPECT_LT(run(drive, drive.at(0.0, 10.0), 0.0, 10, 0.001).w, 10.0) << "passive";
+}
+
+TEST(FreeCurve, OverPositionIsWhatTheMotorMustGiveThere) {
+  const auto drive = Drive(
+      with_curve(coulomb_drive(), "position", {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 10.0}, {"value_1", 0.5}}));
+  EXPECT_EQ(run(drive, drive.at(4.0, 0.0), kCoulomb + 0.2 - 1e-6, 5, 0.001).w, 0.0);
+  EXPECT_GT(run(drive, drive.at(4.0, 0.0), kCoulomb + 0.2 + 1e-6, 5, 0.001).w, 0.0);
+}
+
+TEST(FreeCurve, OverTravelSinceReversalBeginsAnewWhenTheMotionTurns) {
+  const auto drive = Drive(with_curve(coulomb_drive(), "travel_since_reversal",
+                                      {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 1.0}, {"value_1", 0.3}}));
+  const DriveState far = run(drive, drive.at(0.0, 1.0), 2.0, 100, 0.001);
+  ASSERT_GT(far.x, 1.0);
+  EXPECT_EQ(far.heading, 1.0);
+  const DriveState back = run(drive, far, -4.0, 300, 0.001);
+  ASSERT_LT(back.w, 0.0);
+  EXPECT_EQ(back.heading, -1.0);
+  EXPECT_GT(back.turned_x, far.x);
+}
+
 TEST(Cogging, IsConservative) {
   // Kinetic energy and the integral of the torque along the travel; at a speed that crosses several periods a sample.
   const double cosine = 0.2, sine = 0.1, period_mm = 2.0, wavenumber = 2.0 * M_PI / period_mm;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/data_sheet_conflict.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
 namespace {
@@ -46,6 +48,38 @@ TEST(FitBudget, CountsTheStepsInsideASample) {
   host::RecordSet thin = set;
   thin.stride = set.used_windows();
   EXPECT_EQ(host::steps_of(sim::Drive(model), thin) * static_cast<double>(set.used_windows()), 5.0 * samples);
+}
+
+TEST(Fit, LeavesWhatIsHeldAndMovesTheRest) {
+  const host::Record record = HandMade::record(3.0);
+  sim::DriveDescription model = heavier(HandMade::model());
+  model.find("inertia")->held.insert("J");
+  const double held = model.find("inertia")->at("J"), friction = model.find("viscous")->at("B");
+  const host::RecordSet set = host::compare_on({&record}, model);
+  const sim::DriveDescription fitted = host::fit_base(model, set);
+  EXPECT_EQ(fitted.find("inertia")->at("J"), held) << "no start may move it either";
+  EXPECT_NE(fitted.find("viscous")->at("B"), friction);
+  const auto conflicts = host::data_sheet_conflicts(fitted, set);
+  ASSERT_EQ(conflicts.size(), 1u);
+  EXPECT_EQ(conflicts.front().parameter, "inertia J_kg_m2");
+  EXPECT_NEAR(conflicts.front().wanted, held / 1.3, 0.03 * held);
+}
+
+// A belief that is not weighed, or weighed like every sample, fails here.
+TEST(Fit, WeighsABeliefAgainstTheRecord) {
+  const host::Record record = HandMade::record(3.0);
+  sim::DriveDescription model = heavier(HandMade::model());
+  const double believed = model.find("inertia")->at("J"), truth = believed / 1.3;
+  const host::RecordSet set = host::compare_on({&record}, model);
+  const auto fitted_with = [&](double deviation) {
+    model.find("inertia")->believed["J"] = {believed, deviation};
+    return host::fit_model(model, set).model;
+  };
+  EXPECT_NEAR(fitted_with(0.3 * believed).find("inertia")->at("J"), truth, 0.02 * truth) << "a vague belief gives way";
+  EXPECT_NEAR(fitted_with(1e-6 * believed).find("inertia")->at("J"), believed, 1e-3 * believed);
+  const auto conflicts = host::data_sheet_conflicts(fitted_with(0.02 * believed), set);
+  ASSERT_EQ(conflicts.size(), 1u) << "the record is eleven deviations off";
+  EXPECT_EQ(conflicts.front().known, believed);
 }
 
 }  // namespace

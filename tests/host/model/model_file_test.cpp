@@ -259,7 +259,7 @@ TEST(WriteModel, EveryEffectOfTheCatalogueBothKinds) {
   for (const sim::DriveKind kind : {sim::DriveKind::rotary, sim::DriveKind::linear}) {
     sim::DriveDescription model = host::parse_model(kind == sim::DriveKind::rotary ? kPaperX : kLinear, "drive.toml");
     for (const sim::EffectInfo* info : sim::catalogue()) {
-      if (model.find(info->kind) != nullptr) continue;
+      if (model.find(info->kind) != nullptr || info->curve) continue;
       sim::EffectEntry entry{std::string(info->kind), {}, {}, "r.csv"};
       for (const sim::ParameterInfo& parameter : info->parameters) {
         if (!parameter.pair_of.empty()) continue;
@@ -271,6 +271,80 @@ TEST(WriteModel, EveryEffectOfTheCatalogueBothKinds) {
     }
     expect_same(model, host::parse_model(host::format_model(model), "drive.toml"));
   }
+}
+
+constexpr const char* kSeveralOrders = R"([[effect]]
+kind = "cogging"
+period_mm = 10.0
+harmonics = [
+  { order = 1, cosine_Nm = 0.1, sine_Nm = -0.2 },
+  { order = 6, cosine_Nm = 0.03, sine_Nm = 0.04, sine_Nm_ci95 = [0.03, 0.05] },
+]
+)";
+
+// An order that is written under the id of another, or dropped, does not come back.
+TEST(WriteModel, KeepsTheOrdersOfAPeriod) {
+  const sim::DriveDescription model = host::parse_model(std::string(kPaperX) + kSeveralOrders, "drive.toml");
+  const sim::EffectEntry& cogging = *model.find("cogging");
+  EXPECT_EQ(cogging.at("cosine"), 0.1);
+  EXPECT_EQ(cogging.at("sine_6"), 0.04);
+  EXPECT_EQ(cogging.ci95.at("sine_6"), (std::array{0.03, 0.05}));
+  expect_same(model, host::parse_model(host::format_model(model), "again.toml"));
+  EXPECT_THAT(host::format_model(model), HasSubstr("{ order = 6, cosine_Nm = 0.03, sine_Nm = 0.04"));
+}
+
+TEST(ReadModel, OrdersInOneFormAndOnce) {
+  const std::string text = std::string(kPaperX) + kSeveralOrders;
+  EXPECT_THAT(message_of(replaced(text, "period_mm", "cosine_Nm = 1.0\nperiod_mm")), HasSubstr("keep one form"));
+  EXPECT_THAT(message_of(replaced(text, "order = 6", "order = 1")), HasSubstr("order 1 stands twice"));
+  EXPECT_THAT(message_of(replaced(text, "{ order = 6,", "{")), HasSubstr("order = 1"));
+  EXPECT_THAT(message_of(replaced(text, "order = 6, cosine_Nm", "order = 6, cosine_mm")), HasSubstr("cosine_mm"));
+}
+
+TEST(WriteModel, KeepsWhatIsKnownOfAParameter) {
+  const std::string text = replaced(replaced(kPaperX, "J_kg_m2 = 0.00765", "J_kg_m2 = 0.00765\nJ_kg_m2_held = true"),
+                                    "B_Nm_s_per_rad = 0.0296", "B_Nm_s_per_rad = 0.0296\nB_Nm_s_per_rad_sd = 0.003");
+  const sim::DriveDescription model = host::parse_model(text, "drive.toml");
+  EXPECT_TRUE(model.find("inertia")->held.contains("J"));
+  EXPECT_EQ(model.find("viscous")->believed.at("B"), (sim::Belief{0.0296, 0.003}));
+  const sim::DriveDescription again = host::parse_model(host::format_model(model), "again.toml");
+  EXPECT_EQ(again.find("inertia")->held, model.find("inertia")->held);
+  EXPECT_EQ(again.find("viscous")->believed, model.find("viscous")->believed);
+  sim::DriveDescription fitted = model;
+  fitted.find("viscous")->parameters["B"] = 0.031;
+  const sim::DriveDescription moved = host::parse_model(host::format_model(fitted), "moved.toml");
+  EXPECT_EQ(moved.find("viscous")->at("B"), 0.031);
+  EXPECT_EQ(moved.find("viscous")->believed, model.find("viscous")->believed) << "a fit is no data sheet";
+  EXPECT_THAT(message_of("B_Nm_s_per_rad = 0.0296", "B_Nm_s_per_rad_sd = 0.003\nB_Nm_s_per_rad = 0.0296"),
+              testing::Eq("no failure"));
+  EXPECT_THAT(message_of("B_Nm_s_per_rad = 0.0296", "B_Nm_s_per_rad_held = true"), HasSubstr("stands without"));
+}
+
+constexpr const char* kCurve = R"([[effect]]
+kind = "free_curve"
+over = "speed"
+knots = [-10.0, 0.0, 10.0]
+values_Nm = [-0.2, 0.0, 0.1]
+sd_Nm = [0.01, 0.02, 0.01]
+)";
+
+TEST(WriteModel, KeepsACurve) {
+  const sim::DriveDescription model = host::parse_model(std::string(kPaperX) + kCurve, "drive.toml");
+  const sim::EffectEntry& curve = *model.find("free_curve");
+  EXPECT_EQ(curve.over, "speed");
+  EXPECT_EQ(curve.at("knot_2"), 10.0);
+  EXPECT_EQ(curve.at("value_0"), -0.2);
+  const sim::DriveDescription again = host::parse_model(host::format_model(model), "again.toml");
+  EXPECT_EQ(again.find("free_curve")->parameters, curve.parameters);
+  EXPECT_EQ(again.find("free_curve")->over, "speed");
+  EXPECT_NEAR(again.find("free_curve")->ci95.at("value_1")[1], 0.02 * 1.96, 1e-12);
+}
+
+TEST(ReadModel, ACurveThatIsNone) {
+  const std::string text = std::string(kPaperX) + kCurve;
+  EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"weather\"")), HasSubstr("position"));
+  EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0, 0.0]")), HasSubstr("above"));
+  EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0]")), HasSubstr("as many"));
 }
 
 TEST(WriteModel, WritesNumbersAsPeopleDo) {

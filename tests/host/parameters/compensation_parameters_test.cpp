@@ -51,6 +51,17 @@ TEST(CompensationParameters, OfCoggingsTheLargestAreTaken) {
   EXPECT_EQ(value_of(model, "cogging.sine_2"), 0.4);
 }
 
+// Orders that are read as periods of their own, or left out, would take out a ripple that is not there.
+TEST(CompensationParameters, OrdersOfOnePeriodAreRipplesOfTheirOwn) {
+  sim::EffectEntry motor = cogging(0.1, 0.0, 12.0);
+  motor.parameters.insert({{"cosine_6", 0.0}, {"sine_6", 0.3}, {"cosine_24", 0.2}, {"sine_24", 0.0}});
+  const auto model = paper_x_with({motor});
+  EXPECT_EQ(value_of(model, "cogging.period_1"), 2.0);
+  EXPECT_EQ(value_of(model, "cogging.sine_1"), 0.3);
+  EXPECT_EQ(value_of(model, "cogging.period_2"), 0.5);
+  EXPECT_EQ(value_of(model, "cogging.period_3"), 12.0);
+}
+
 TEST(CompensationParameters, BacklashBringsTheTwistUnderFriction) {
   const auto model = paper_x_with(
       {{"backlash", {{"gap", 0.04}, {"resonance", 90.0}, {"damping_ratio", 0.1}, {"load_fraction", 0.3}}, {}, {}}});

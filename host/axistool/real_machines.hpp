@@ -1,0 +1,12 @@
+// Measured machines with the answers that their records allow: what diagnose makes of them.
+#pragma once
+
+#include <string>
+
+namespace axistool {
+
+/// Diagnoses every machine of FOLDER/expected.json and prints the table; `json` as in other commands. Throws
+/// Failure(bad_input) where the file or a record is missing.
+void score_real_machines(const std::string& folder, const std::string& json);
+
+}  // namespace axistool

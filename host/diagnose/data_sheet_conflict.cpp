@@ -1,0 +1,62 @@
+#include "host/diagnose/data_sheet_conflict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/diagnose/model_fit.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kDeviations = 2.0;
+constexpr double kMoved = 0.1;
+constexpr double kLeastGain = 0.05;
+constexpr std::size_t kWindows = 200;
+
+std::string name_of(const sim::EffectEntry& entry, const std::string& id, sim::DriveKind kind) {
+  return fmt::format("{} {}", entry.kind, sim::find_effect(entry.kind)->parameter(id)->key(kind));
+}
+
+}  // namespace
+
+std::vector<DataSheetConflict> data_sheet_conflicts(const sim::DriveDescription& fitted, const RecordSet& set) {
+  std::vector<DataSheetConflict> conflicts;
+  bool holds = false;
+  for (const sim::EffectEntry& entry : fitted.effects) {
+    holds = holds || !entry.held.empty();
+    for (const auto& [id, belief] : entry.believed) {
+      const double off = std::abs(entry.at(id) - belief.value) / belief.deviation;
+      if (off <= kDeviations || entry.held.contains(id)) continue;
+      const std::string name = name_of(entry, id, fitted.data.kind);
+      conflicts.push_back({name, belief.value, entry.at(id),
+                           fmt::format("The data fight the data sheet: {} came out as {:.4g}, {:.1f} deviations from "
+                                       "the {:.4g} ± {:.2g} that is believed.",
+                                       name, entry.at(id), off, belief.value, belief.deviation)});
+    }
+  }
+  if (!holds || set.records.empty()) return conflicts;
+  sim::DriveDescription free = fitted;
+  for (sim::EffectEntry& entry : free.effects) entry.held.clear();
+  RecordSet few = set;
+  few.stride = std::max<std::size_t>(few.stride, set.used_windows() / kWindows);
+  free = fit_model(free, few).model;
+  const double before = error_of(sim::Drive(fitted), few).robust, after = error_of(sim::Drive(free), few).robust;
+  if (!(after < (1.0 - kLeastGain) * before)) return conflicts;
+  for (std::size_t k = 0; k < fitted.effects.size(); ++k)
+    for (const std::string& id : fitted.effects[k].held) {
+      const double known = fitted.effects[k].at(id), wanted = free.effects[k].at(id);
+      if (std::abs(wanted - known) <= kMoved * std::abs(known)) continue;
+      const std::string name = name_of(fitted.effects[k], id, fitted.data.kind);
+      conflicts.push_back({name, known, wanted,
+                           fmt::format("The data fight the data sheet: {} is held at {:.4g}; free, it would be {:.4g}, "
+                                       "and the error {:.0f} % lower.",
+                                       name, known, wanted, 100.0 * (1.0 - after / before))});
+    }
+  return conflicts;
+}
+
+}  // namespace host

@@ -1,0 +1,229 @@
+#include "host/diagnose/effort_diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "host/diagnose/effort_terms.hpp"
+#include "host/diagnose/free_curve_fit.hpp"
+#include "host/diagnose/probability.hpp"
+#include "host/diagnose/verdict.hpp"
+#include "host/record/columns.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// The best model of a made drive, whatever it lacks, leaves one to five times the sensors' noise; real machines leave
+/// ten to sixty.
+constexpr double kFarAboveNoise = 6.0;
+/// An effort is explained when this part of the error remains: nine tenths of its square are gone.
+constexpr double kExplainedPart = 0.316;
+
+/// Base parameters that moved by more than this were off, relative.
+constexpr double kMoved = 0.05;
+
+/// Residual over the sensors' noise on the rows that judge, or on the training rows.
+double over_noise(const EffortScreen& screen, const ScreenedModel& model, bool judges) {
+  const double residual = judges ? model.validate * screen.effort_validate : model.train * screen.effort_train;
+  return residual / std::max(screen.rows.noise, 1e-12);
+}
+
+JudgedCandidate judged(const EffortScreen& screen, const ScreenedModel& model) {
+  JudgedCandidate candidate;
+  candidate.kinds = model.kinds;
+  candidate.before = over_noise(screen, screen.base, true);
+  candidate.after = over_noise(screen, model, true);
+  candidate.train_after = over_noise(screen, model, false);
+  candidate.confidence = model.confidence;
+  candidate.luck = 1.0 - model.confidence;
+  candidate.model = model.model;
+  return candidate;
+}
+
+std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base) {
+  std::vector<std::string> moved;
+  for (const char* kind : {"inertia", "viscous", "coulomb"}) {
+    const sim::EffectEntry *before = given.find(kind), *after = base.find(kind);
+    if (before == nullptr || after == nullptr) continue;
+    const auto off = [&](const auto& parameter) {
+      return std::abs(after->at(parameter.first) - parameter.second) > kMoved * std::abs(parameter.second);
+    };
+    if (std::ranges::any_of(before->parameters, off)) moved.emplace_back(kind);
+  }
+  return moved;
+}
+
+std::string described(const ScreenedModel& model) {
+  const std::string title(sim::find_effect(model.kinds.back())->title);
+  return model.words.empty() ? title : fmt::format("{} ({})", title, model.words);
+}
+
+std::string steps_in_words(const EffortScreen& screen) {
+  std::string words;
+  double before = screen.base.validate;
+  for (const ScreenedModel& step : screen.chosen) {
+    words +=
+        fmt::format(" {} brings that from {:.1f} to {:.1f} %.", described(step), 100.0 * before, 100.0 * step.validate);
+    before = step.validate;
+  }
+  return words;
+}
+
+DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescription& given) {
+  DiagnosisVerdict verdict;
+  verdict.parameters = moved_parameters(given, screen.best().model);
+  verdict.explanation = fmt::format(
+      "Judged by the effort that the motion needed, by plain least squares where the axis slides: inertia and friction "
+      "leave {:.1f} % of it on validation data.",
+      100.0 * screen.base.validate);
+  if (screen.chosen.empty()) {
+    verdict.status = Status::unexplained;
+    verdict.explanation += " No effect of the catalogue takes a tenth of that on training and on validation data.";
+    if (!screen.steps.empty() && !screen.steps.front().empty()) {
+      const ScreenedModel& closest = screen.steps.front().front();
+      verdict.explanation +=
+          fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest), 100.0 * closest.validate);
+    }
+    if (const std::optional<FreeCurveFit> curve = fit_free_curve(screen))
+      verdict.explanation += fmt::format(
+          " It goes with {} most: a free curve of {} knots over it leaves {:.1f} % (axistool add MODEL free_curve "
+          "--over {}).",
+          curve->over, curve->knots, 100.0 * curve->model.validate, curve->over);
+    verdict.next_experiment =
+        "Repeat one motion ten times: what repeats a model can explain. Then jogs at several speeds over the whole "
+        "travel, both ways.";
+  } else {
+    const std::string& first = screen.chosen.front().kinds.front();
+    verdict.status = Status::missing;
+    verdict.effects = screen.chosen.back().kinds;
+    verdict.explanation += steps_in_words(screen);
+    verdict.next_experiment = std::string(sim::find_effect(first)->separate_by) + ".";
+    for (std::size_t step = 0; step < screen.chosen.size(); ++step) {
+      if (screen.tied[step].empty()) continue;
+      std::vector<std::string> group = {screen.chosen[step].kinds.back()};
+      group.insert(group.end(), screen.tied[step].begin(), screen.tied[step].end());
+      verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
+      if (screen.chosen.size() == 1) {
+        verdict.status = Status::ambiguous;
+        verdict.effects = group;
+      }
+      verdict.alternatives.push_back(std::move(group));
+    }
+  }
+  if (screen.repeatable)
+    verdict.explanation += fmt::format(
+        " Of what is left, {:.0f} % comes back when the motion is repeated and could be explained; {:.1f} % of the "
+        "effort does not, and is this machine's floor.",
+        100.0 * screen.repeatable->share, 100.0 * screen.repeatable->floor / screen.effort_validate);
+  for (const std::string& held : screen.held) verdict.explanation += fmt::format(" Held as given: {}.", held);
+  if (screen.rows.by_speed && screen.rows.has_position)
+    verdict.explanation += " The motion was taken from the speed channel: the position differentiates worse.";
+  return verdict;
+}
+
+/// What the forward prediction says to the effects that the regression chose.
+std::string confirmed(const SetError& before, const SetError& after) {
+  constexpr double kHardly = 0.98;
+  const char* said = after.combined < kHardly * before.combined ? "falls, which confirms it"
+                     : after.combined > before.combined / kHardly
+                         ? "rises: it does not confirm that, so record more of the motion in which it shows"
+                         : "stays as it was";
+  return fmt::format(" Predicted forward from the command, the error {} ({:.3g} -> {:.3g} times the floor).", said,
+                     before.combined, after.combined);
+}
+
+/// Channels predicted forward over windows so short that the position shows a force before it adds up to a drift; a
+/// second mass, whose state no sensor shows at a restart, needs the usual ones.
+void append_channels(const EffortScreen& screen, const std::vector<const Record*>& training,
+                     const std::vector<const Record*>& validation, Diagnosis& diagnosis) {
+  const bool hidden = sim::Drive(diagnosis.best).has_second_mass();
+  const double window_s = hidden ? kWindow_s : std::min(kWindow_s, rough_window_s(training));
+  PreparedSets sets = split_sets(diagnosis.best, training, validation, window_s);
+  renew_floors(sets.training, diagnosis.best);
+  renew_floors(sets.validation, diagnosis.best);
+  const sim::Drive base(diagnosis.base), best(diagnosis.best);
+  const SetError before_train = error_of(base, sets.training), after_train = error_of(best, sets.training);
+  const SetError before = error_of(base, sets.validation), after = error_of(best, sets.validation);
+  if (!screen.chosen.empty() && !screen.rows.steady) diagnosis.verdict.explanation += confirmed(before, after);
+  const auto append = [&](std::vector<double> Record::*channel, double SetError::*rms, double SetError::*floor) {
+    diagnosis.channels.push_back({std::string(column_name(channel, diagnosis.base.data.kind)), before_train.*rms,
+                                  before.*rms, after_train.*rms, after.*rms, after_train.*floor, after.*floor});
+  };
+  const Record& record = *diagnosis.training.records.front().prepared.record;
+  if (record.has_position()) append(&Record::x, &SetError::x_rms, &SetError::x_floor);
+  if (record.has_speed()) append(&Record::w, &SetError::w_rms, &SetError::w_floor);
+  const ScreenedModel &first = screen.base, &last = screen.best();
+  diagnosis.channels.push_back({diagnosis.base.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
+                                first.train * screen.effort_train, first.validate * screen.effort_validate,
+                                last.train * screen.effort_train, last.validate * screen.effort_validate,
+                                screen.rows.noise, screen.rows.noise});
+}
+
+}  // namespace
+
+bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
+  if (screen.empty()) return false;
+  if (screen.rows.steady) return true;
+  const double left = over_noise(screen, screen.best(), true), before = over_noise(screen, screen.base, true);
+  if (before > kFarAboveNoise && left < kExplainedPart * before) return true;
+  if (left < kFarAboveNoise) return false;
+  return !screen.chosen.empty() || is_rough(error_of(sim::Drive(screen.base.model), validation));
+}
+
+std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model,
+                                            const std::vector<const Record*>& training,
+                                            const std::vector<const Record*>& validation,
+                                            std::shared_ptr<const EffortScreen>& seen, bool rough) {
+  PreparedSets sets = split_sets(model, training, validation, kWindow_s, Measure::motion);
+  if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
+  auto screen = std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation));
+  if (!screen->empty()) seen = screen;
+  if (!effort_decides(*screen, sets.validation)) return {};
+  Diagnosis diagnosis(std::move(sets));
+  diagnosis.measure = Measure::effort;
+  diagnosis.rough = diagnosis.by_effort = true;
+  diagnosis.base = screen->base.model;
+  diagnosis.best = screen->best().model;
+  for (std::size_t step = 0; step < screen->steps.size(); ++step)
+    for (const ScreenedModel& tried : screen->steps[step]) {
+      diagnosis.candidates.push_back(judged(*screen, tried));
+      // What was not worth its place on top of the verdict is no evidence for the whole.
+      if (step >= screen->chosen.size() && step > 0) diagnosis.candidates.back().luck = 1.0;
+    }
+  std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
+  diagnosis.given_train = diagnosis.before_train = over_noise(*screen, screen->base, false);
+  diagnosis.given_validate = diagnosis.before_validate = over_noise(*screen, screen->base, true);
+  diagnosis.after_train = over_noise(*screen, screen->best(), false);
+  diagnosis.after_validate = over_noise(*screen, screen->best(), true);
+  renew_floors(diagnosis.training, diagnosis.best);
+  renew_floors(diagnosis.validation, diagnosis.best);
+  diagnosis.where = error_regions(diagnosis.base, diagnosis.validation);
+  diagnosis.verdict = verdict_of(*screen, model);
+  assign_probabilities(diagnosis);
+  append_channels(*screen, training, validation, diagnosis);
+  diagnosis.screen = std::move(screen);
+  return diagnosis;
+}
+
+nlohmann::json effort_screen_json(const EffortScreen& screen) {
+  const auto relative = [](const ScreenedModel& model) {
+    return nlohmann::json{{"train", model.train}, {"validate", model.validate}};
+  };
+  nlohmann::json steps = nlohmann::json::array();
+  for (const ScreenedModel& step : screen.chosen)
+    steps.push_back({{"kinds", step.kinds}, {"words", step.words}, {"relative_error", relative(step)}});
+  return {{"rows", screen.rows.size()},
+          {"motion_from", screen.rows.by_speed ? "speed" : "position"},
+          {"inertia_shows", !screen.rows.steady},
+          {"lowest_cutoff_Hz", screen.rows.lowest_cutoff_Hz},
+          {"relative_error", {{"before", relative(screen.base)}, {"after", relative(screen.best())}}},
+          {"steps", std::move(steps)},
+          {"held", screen.held}};
+}
+
+}  // namespace host

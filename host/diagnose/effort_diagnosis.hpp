@@ -1,0 +1,29 @@
+// The diagnosis of machines whose effort tells more than their motion: records without acceleration, and errors far
+// above what the sensors make. Plain least squares decides, forward prediction is shown beside it.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host/diagnose/diagnosis.hpp"
+#include "host/diagnose/effort_screen.hpp"
+
+namespace host {
+
+/// Whether the regression, not the search by motion, is to judge: no inertia shows in the records, so that any motion
+/// could be predicted with a wrong one; or what the best model leaves of the effort is far above the sensors' noise.
+bool effort_decides(const EffortScreen& screen, const RecordSet& validation);
+
+/// The diagnosis by the regression, or nothing where the search by motion is to judge; `screen` is then what the
+/// regression saw, where it saw anything. `rough`: the search by motion has shown that it is not to judge. Throws as
+/// prepare_sets() does.
+std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model,
+                                            const std::vector<const Record*>& training,
+                                            const std::vector<const Record*>& validation,
+                                            std::shared_ptr<const EffortScreen>& screen, bool rough = false);
+
+/// What the regression saw: relative errors of the effort, the channel that it took the motion from, what it held.
+nlohmann::json effort_screen_json(const EffortScreen& screen);
+
+}  // namespace host

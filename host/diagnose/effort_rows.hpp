@@ -1,0 +1,43 @@
+// Rows for plain least squares: what the motor gave, and how the axis moved meanwhile, wherever it slides.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "host/compare/comparison.hpp"
+
+namespace host {
+
+/// One record's signals at its own rate, low-passed without delay, and the rows of them that count.
+struct EffortSignals {
+  double period_s = 0.0;
+  double cutoff_Hz = 0.0;
+  std::vector<double> speed;         ///< rad/s or m/s, every sample
+  std::vector<double> acceleration;  ///< rad/s^2 or m/s^2, every sample
+  std::vector<double> motion;        ///< travel, or the speed where there is no position, every sample
+  std::vector<std::size_t> kept;     ///< samples that became rows, in order
+  std::size_t first_row = 0;         ///< of those, in EffortRows
+};
+
+/// All records after one another; one element a row. Speeds in rad/s or m/s, travel in mm or m, effort in Nm or N.
+struct EffortRows {
+  Eigen::VectorXd t_s, x, w, acceleration, effort;
+  std::vector<bool> judges;         ///< a row of the validation set
+  std::vector<bool> fast;           ///< well away from sticking and slipping
+  std::vector<std::size_t> block;   ///< rows of one block are half a second of one record, and alike
+  std::vector<std::size_t> record;  ///< rising from 0; a record that serves both sets counts twice
+  std::vector<EffortSignals> signals;
+  bool by_speed = false;      ///< acceleration and speed come from the speed channel, which was the cleaner one
+  bool has_position = false;  ///< in every record
+  bool steady = true;         ///< the speed hardly changes within the records: no inertia can be found from them
+  double lowest_cutoff_Hz = 0.0;
+  double noise = 0.0;  ///< RMS effort that the sensor's own noise makes through the model's inertia, Nm or N
+
+  std::size_t size() const { return judges.size(); }
+};
+
+/// Rows of both sets, from the channel that leaves less of the effort unexplained by inertia and friction. Empty where
+/// a record has no effort, or nothing slides for a second in either set.
+EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation);
+
+}  // namespace host

@@ -1,0 +1,63 @@
+// A curve that no formula gives.
+#include "sim/curve.hpp"
+#include "sim/drive.hpp"
+#include "sim/effect.hpp"
+
+namespace sim::effects {
+
+namespace {
+
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  const Curve curve(entry);
+  if (entry.over == "speed") {
+    drive.sliding_friction.push_back([curve](int side, double speed) {
+      const double sign = side == 0 ? 1.0 : -1.0;
+      return FrictionPoint{sign * curve(sign * speed), curve.slope(sign * speed)};
+    });
+  } else if (entry.over == "travel_since_reversal") {
+    drive.friction_after_reversal.push_back(curve);
+  } else if (entry.over == "current") {
+    drive.effort_limit.push_back([curve](double effort, double) { return effort - curve(effort); });
+  } else {
+    const bool by_time = entry.over == "time";
+    drive.load_effort.push_back([curve, by_time](double t_s, double x) { return -curve(by_time ? t_s : x); });
+  }
+}
+
+}  // namespace
+
+extern const EffectInfo free_curve;
+const EffectInfo free_curve{
+    .kind = "free_curve",
+    .title = "A curve without a formula",
+    .equation =
+        "T_motor = ... + f(q), f straight between its knots and level beyond them; q: speed, position, "
+        "travel_since_reversal, time or current (the motor's torque). Over speed and travel since reversal f is "
+        "friction",
+    .stage = Stage::load,
+    .curve = true,
+    .parameters = {{.id = "knot",
+                    .rotary_key = "knots",
+                    .linear_key = "knots",
+                    .doc = "q, rising: rad/s or m/s, mm or m, s, Nm or N",
+                    .lower = -1e7,
+                    .upper = 1e7,
+                    .starts = {0.0}},
+                   {.id = "value",
+                    .rotary_key = "values_Nm",
+                    .linear_key = "values_N",
+                    .doc = "f there: what the motion needs beyond the other effects",
+                    .lower = -1e6,
+                    .upper = 1e6,
+                    .scale = Scale::coulomb,
+                    .starts = {0.0}}},
+    .shows = "Residual torque follows one coordinate, and no effect of the catalogue has that shape",
+    .confused_with = {"nonlinear_viscous", "cogging", "thermal_friction_drift", "presliding"},
+    .separate_by =
+        "It names nothing: look at its shape, then record that coordinate alone, slowly and over its whole range",
+    .origin = "Whatever the catalogue does not hold, or holds in another shape",
+    .remedy = "The curve itself serves a feed-forward, over speed and position",
+    .install = install,
+};
+
+}  // namespace sim::effects
