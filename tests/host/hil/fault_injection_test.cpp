@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,16 +22,23 @@ using host::TrialOutcome;
 /// How much of what is stated the trials have needed, beyond their ramps.
 struct Worst {
   double extra_s = 0.0, extra_mm = 0.0;
+  std::array<double, 5> extra_mm_by_speed{};  ///< of axes slower than 50, 100, 150, 200 mm/s, and the rest
   std::string slowest, longest;
 
   void add(const FaultTrial& trial, const TrialOutcome& outcome) {
     const host::StatedStop stated = host::stated_stop(outcome.speed_mm_s, trial.acceleration_mm_s2);
     note(outcome.stop_s - stated.time_s + host::kStatedExtra_s, extra_s, trial, slowest);
-    note(outcome.distance_mm - stated.distance_mm + host::kStatedExtra_mm, extra_mm, trial, longest);
+    const double way_mm = outcome.distance_mm - stated.distance_mm + host::kStatedExtra_mm;
+    note(way_mm, extra_mm, trial, longest);
+    const auto band = std::min(static_cast<std::size_t>(outcome.speed_mm_s / 50.0), extra_mm_by_speed.size() - 1);
+    extra_mm_by_speed[band] = std::max(extra_mm_by_speed[band], way_mm);
   }
   void print(int trials) const {
     std::printf("%d trials: slowest stop %.3f s beyond its ramp (%s)\nlongest way %.1f mm beyond it (%s)\n", trials,
                 extra_s, slowest.c_str(), extra_mm, longest.c_str());
+    for (std::size_t band = 0; band < extra_mm_by_speed.size(); ++band)
+      std::printf("%s%zu mm/s %.1f mm", band == 0 ? "by speed, from: " : ", ", 50 * band, extra_mm_by_speed[band]);
+    std::printf("\n");
   }
 
  private:
