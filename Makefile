@@ -34,6 +34,13 @@ install: ## Install program, manual, completions and udev rule below PREFIX (now
 	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents
 	cmake --install $(BUILD) --component axistool --prefix $(PREFIX) --strip
 
+.PHONY: install-cpp
+install-cpp: ## Install the library, its headers and its CMake package (find_package(axis)) below PREFIX
+	$(NEED) build
+	$(call configure,$(BUILD),-DCMAKE_INSTALL_PREFIX=$(PREFIX))
+	ninja -C $(BUILD) -j $(JOBS) axis_host
+	cmake --install $(BUILD) --component development --prefix $(PREFIX)
+
 .PHONY: deb
 deb: ## Make the Debian package build/axistool_VERSION_ARCHITECTURE.deb, and let lintian look at it
 	$(NEED) build package

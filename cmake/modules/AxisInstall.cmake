@@ -22,6 +22,17 @@ install(FILES "${DOCUMENTS}/axistool.fish" DESTINATION share/fish/vendor_complet
 install(FILES "${DOCUMENTS}/70-axis.rules" DESTINATION lib/udev/rules.d ${IN_PACKAGE})
 install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/axistool ${IN_PACKAGE})
 
+# The library for C++, of the component "development": find_package(axis), target axis::host.
+set(FOR_CPP COMPONENT development)
+install(TARGETS axis_host axis_sim axis_hal_usbip ARCHIVE DESTINATION lib/axis ${FOR_CPP})
+install(DIRECTORY "${AXIS_ROOT}/host" "${AXIS_ROOT}/sim" "${AXIS_ROOT}/hal" "${AXIS_ROOT}/firmware"
+  DESTINATION include/axis ${FOR_CPP} FILES_MATCHING PATTERN "*.hpp" PATTERN "axistool" EXCLUDE PATTERN "boards" EXCLUDE)
+include(CMakePackageConfigHelpers)
+write_basic_package_version_file("${CMAKE_BINARY_DIR}/axis-config-version.cmake" VERSION ${AXIS_VERSION}
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES "${AXIS_ROOT}/cmake/package/axis-config.cmake" "${CMAKE_BINARY_DIR}/axis-config-version.cmake"
+  DESTINATION lib/cmake/axis ${FOR_CPP})
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME axistool)
 set(CPACK_PACKAGE_VERSION "${AXIS_VERSION}")

@@ -1,0 +1,21 @@
+// Error over floor on a record that the model has not seen: about 1 for a perfect model.
+#include <cstdio>
+#include <string>
+
+#include "host/compare/model_comparison.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/exit_codes.hpp"
+#include "host/model/model_file.hpp"
+
+int main(int argc, char** argv) try {
+  const std::string drive = argc > 1 ? argv[1] : "/usr/share/axistool/drive";
+  const sim::DriveDescription read = host::read_model(drive + "/model.toml");
+  const host::Measurements measured =
+      host::MeasurementGate(read, {.accepted = {}, .as_logged = true}).read({drive + "/validate.csv"});
+  const sim::DriveDescription model = host::with_measured_sensors(read, measured.training());
+  const host::RecordSet set = host::compare_on(measured.training_records(), model);
+  std::printf("error over floor = %.16g\n", host::compare_model(model, measured, set, host::kWindow_s).combined);
+} catch (const host::Failure& failure) {
+  std::fprintf(stderr, "%s\n", failure.what());
+  return static_cast<int>(failure.code);
+}
