@@ -291,7 +291,11 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     return trigger_.state();
   }
-  const TriggeredCapture& triggered() const { return trigger_; }
+  /// False beyond the end, and while rows still come.
+  bool read_triggered(std::uint32_t first, TriggeredPayload& payload) const {
+    const typename Board::ControlShutOut guard;
+    return trigger_.read(first, payload);
+  }
 
   /// The state of an axis at one instant.
   AxisStatus axis_status(std::size_t axis) {

@@ -153,7 +153,7 @@ class ProtocolServer {
       case MessageType::read_triggered:
         return with<ReadTriggeredRequest>(request, [&](const ReadTriggeredRequest& r) {
           TriggeredPayload payload;
-          if (!app_.triggered().read(r.first, payload)) return Status::no_such_row;
+          if (!app_.read_triggered(r.first, payload)) return Status::no_such_row;
           reply.put(payload);
           return Status::ok;
         });
