@@ -111,8 +111,9 @@ class Errors(unittest.TestCase):
         threading.Thread(target=lambda: (time.sleep(0.5), os.kill(os.getpid(), signal.SIGINT)), daemon=True).start()
         with self.assertRaises(KeyboardInterrupt):
             axistool.improve(case / "model.toml", case / "train-jog.csv", case / "validate.csv")
-        children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
-        self.assertEqual(children, [], "nothing goes on behind")
+        children = Path(f"/proc/self/task/{os.getpid()}/children")
+        if children.exists():  # not on every kernel
+            self.assertEqual(children.read_text().split(), [], "nothing goes on behind")
 
 
 if __name__ == "__main__":
