@@ -152,8 +152,8 @@ std::vector<std::string> uncompensated_effects(const sim::DriveDescription& mode
   for (const sim::EffectEntry& entry : model.effects)
     if (std::ranges::find(kTakenUp, entry.kind) == kTakenUp.end() && std::ranges::find(rest, entry.kind) == rest.end())
       rest.push_back(entry.kind);
-  const auto coggings = std::ranges::count(model.effects, "cogging", &sim::EffectEntry::kind);
-  if (coggings > static_cast<std::ptrdiff_t>(firmware::kCoggingHarmonics))
+  const std::size_t coggings = board_harmonics(model, "cogging").size();
+  if (coggings > firmware::kCoggingHarmonics)
     rest.push_back(fmt::format("cogging beyond its {} largest harmonics", firmware::kCoggingHarmonics));
   return rest;
 }
