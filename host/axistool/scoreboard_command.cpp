@@ -11,6 +11,7 @@
 #include "host/axistool/insight_arguments.hpp"
 #include "host/axistool/real_machines.hpp"
 #include "host/scoreboard/answer.hpp"
+#include "host/scoreboard/rewriting.hpp"
 
 namespace axistool {
 
@@ -27,7 +28,7 @@ constexpr double kSomethingToFind = 2.0;
 
 struct Arguments {
   std::string folder, real, json;
-  bool cuts = false;
+  bool cuts = false, rewritten = false;
   std::size_t nulls = 0, sample = 0;
   std::uint64_t seed = 1;
 };
@@ -235,12 +236,47 @@ std::vector<host::Trial> trials_of(const Arguments& arguments, std::map<std::str
   return wholes;
 }
 
+/// Whole cases, each written in other ways: one line a way.
+void run_rewritten(const std::vector<host::Trial>& trials, std::size_t width, bool talks, const std::string& json) {
+  constexpr double kMostRatio = 1.1;
+  nlohmann::json lines = nlohmann::json::array();
+  std::size_t verdicts = 0, parameters = 0, errors = 0;
+  for (const host::Trial& trial : trials) {
+    const auto results = host::try_rewritings(host::read_question(trial), host::rewritings());
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      const host::Invariance& result = results[k];
+      const std::string_view name = host::rewritings()[k].name;
+      if (!result.same_verdict) ++verdicts;
+      if (result.worst_parameter > 1.0) ++parameters;
+      if (result.error_ratio > kMostRatio) ++errors;
+      lines.push_back({{"case", trial.name},
+                       {"rewriting", name},
+                       {"verdict", result.original},
+                       {"rewritten_verdict", result.rewritten},
+                       {"worst_parameter", result.worst_parameter},
+                       {"error_ratio", result.error_ratio}});
+      if (!talks) continue;
+      fmt::print("{:<{}}  {:<12} {:8.3f} {:8.3f}  {}{}\n", trial.name, width, name, result.worst_parameter,
+                 result.error_ratio, result.original,
+                 result.same_verdict ? "" : fmt::format(" -> {}", result.rewritten));
+      std::fflush(stdout);
+    }
+  }
+  if (talks)
+    fmt::print(
+        "{} trials: {} another verdict, {} a base parameter outside its interval, {} an error more than {:g} % "
+        "off\n",
+        lines.size(), verdicts, parameters, errors, 100.0 * (kMostRatio - 1.0));
+  if (!json.empty()) write_json({{"format", "axis-invariance/1"}, {"trials", lines}}, json);
+}
+
 void run(const Arguments& arguments) {
   const bool talks = arguments.json != "-";
   std::map<std::string, bool> worth;
   const std::vector<host::Trial> trials = trials_of(arguments, worth);
   std::size_t width = 4;
   for (const host::Trial& trial : trials) width = std::max(width, trial.name.size());
+  if (arguments.rewritten) return run_rewritten(trials, width, talks, arguments.json);
   if (talks) print_head(width);
   std::vector<Answer> answers;
   const auto note = [&](Answer answer) {
@@ -279,6 +315,9 @@ void add_scoreboard(CLI::App& app) {
   command->add_flag("--cuts", arguments->cuts,
                     "also each training record alone, each pair, and their first 2, 4 and 8 s (1 to 10 s where nothing "
                     "is hidden)");
+  command->add_flag("--rewritten", arguments->rewritten,
+                    "instead: each whole case written in other ways that leave the physics alone (another volt, linear "
+                    "for rotary, mirrored, cut in two ...), and how far the answers differ");
   command->add_option("--nulls", arguments->nulls, "also so many simulated drives in which nothing is hidden");
   command->add_option("--sample", arguments->sample, "only so many of the cases and of the cuts, drawn at random");
   command->add_option("--seed", arguments->seed, "of the sample and of the simulated drives")->capture_default_str();

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/chance.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/record/columns.hpp"
-#include "sim/catalogue.hpp"
 
 namespace host {
 
@@ -46,15 +44,6 @@ RecordSet together(const RecordSet& training, const RecordSet& validation) {
   return all;
 }
 
-/// Effects that could be added to the base, and to the best single where pairs were tried.
-std::size_t candidates_tried(const sim::DriveDescription& base, const Findings& findings, const RecordSet& training) {
-  const auto applicable = [&](const sim::DriveDescription& model) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        sim::catalogue(), [&](const sim::EffectInfo* info) { return is_applicable(*info, model, training); }));
-  };
-  return applicable(base) + (findings.pairs.empty() ? 0 : applicable(findings.singles.front().model));
-}
-
 }  // namespace
 
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,
@@ -88,7 +77,7 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   renew_floors(training, reference);
   renew_floors(validation, reference);
   const SetError before = error_of(sim::Drive(diagnosis.base), validation);
-  diagnosis.tried = candidates_tried(diagnosis.base, findings, training);
+  diagnosis.tried = findings.singles.size() + findings.pairs.size();
   for (const std::vector<Candidate>* list : {&findings.singles, &findings.pairs})
     for (const Candidate& candidate : *list)
       diagnosis.candidates.push_back(judge_candidate(candidate, training, validation, before, diagnosis.tried));

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "host/exit_codes.hpp"
@@ -33,6 +34,30 @@ double squares_left(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& ta
   const Eigen::MatrixXd normal = regressors.transpose() * regressors;
   const Eigen::VectorXd cross = regressors.transpose() * target;
   return std::max(0.0, target.squaredNorm() - cross.dot(normal.ldlt().solve(cross)));
+}
+
+/// Part of the effort's square that inertia and friction leave at `rows`, for each shift of the effort.
+std::vector<double> rigid_squares(const Motion& motion, std::span<const std::size_t> rows) {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd regressors(count, 4);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::size_t k = rows[static_cast<std::size_t>(row)];
+    regressors.row(row) << motion.acceleration[k], motion.speed[k], motion.speed[k] > 0.0 ? 1.0 : 0.0,
+        motion.speed[k] < 0.0 ? 1.0 : 0.0;
+  }
+  Eigen::MatrixXd normal = regressors.transpose() * regressors;
+  normal.diagonal() *= 1.0 + 1e-9;  // a record may run one way only
+  const auto solver = normal.ldlt();
+  std::vector<double> squares;
+  Eigen::VectorXd effort(count);
+  for (int shift = -kMostSamples; shift <= kMostSamples; ++shift) {
+    for (Eigen::Index row = 0; row < count; ++row)
+      effort(row) = motion.effort[static_cast<std::size_t>(
+          static_cast<std::ptrdiff_t>(rows[static_cast<std::size_t>(row)]) + shift)];
+    const Eigen::VectorXd cross = regressors.transpose() * effort;
+    squares.push_back(std::max(0.0, effort.squaredNorm() - cross.dot(solver.solve(cross))) / effort.squaredNorm());
+  }
+  return squares;
 }
 
 }  // namespace
@@ -91,6 +116,7 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
   constexpr double kGain = 0.5;              // the squares must fall to this part
   constexpr double kExplained = 0.02;        // of the effort's square: else friction decides where the optimum lies
+  constexpr double kAlike = 0.5;             // samples, between the halves of a record
   MotionOptions options;
   options.decimation = 1;
   const std::optional<Motion> prepared = motion_if_long_enough(record, model.data, options);
@@ -101,25 +127,7 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   for (std::size_t k = kMostSamples; k + kMostSamples < n; ++k)
     if (motion.counts[k]) rows.push_back(k);
   if (rows.size() < 200) return {};
-  const auto count = static_cast<Eigen::Index>(rows.size());
-  Eigen::MatrixXd regressors(count, 4);
-  for (Eigen::Index row = 0; row < count; ++row) {
-    const std::size_t k = rows[static_cast<std::size_t>(row)];
-    regressors.row(row) << motion.acceleration[k], motion.speed[k], motion.speed[k] > 0.0 ? 1.0 : 0.0,
-        motion.speed[k] < 0.0 ? 1.0 : 0.0;
-  }
-  Eigen::MatrixXd normal = regressors.transpose() * regressors;
-  normal.diagonal() *= 1.0 + 1e-9;  // a record may run one way only
-  const auto solver = normal.ldlt();
-  std::vector<double> squares;
-  Eigen::VectorXd effort(count);
-  for (int shift = -kMostSamples; shift <= kMostSamples; ++shift) {
-    for (Eigen::Index row = 0; row < count; ++row)
-      effort(row) = motion.effort[static_cast<std::size_t>(
-          static_cast<std::ptrdiff_t>(rows[static_cast<std::size_t>(row)]) + shift)];
-    const Eigen::VectorXd cross = regressors.transpose() * effort;
-    squares.push_back(std::max(0.0, effort.squaredNorm() - cross.dot(solver.solve(cross))) / effort.squaredNorm());
-  }
+  const std::vector<double> squares = rigid_squares(motion, rows);
   const std::optional<double> shift = lowest_shift(squares);
   if (!shift) return {};
   const sim::Drive drive(model);
@@ -132,6 +140,12 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   if (std::abs(*shift - std::round(*shift)) > kWhole || squares[index] > kGain * squares[kMostSamples] ||
       squares[index] > kExplained)
     return {};
+  // A logger shifts all of a record alike; friction that a rigid drive does not know feigns a shift here and there.
+  const std::span<const std::size_t> all(rows);
+  for (const auto half : {all.first(rows.size() / 2), all.last(rows.size() / 2)}) {
+    const std::optional<double> own = lowest_shift(rigid_squares(motion, half));
+    if (!own || std::abs(*own - *shift) > kAlike) return {};
+  }
   return std::round(*shift);
 }
 

@@ -72,7 +72,7 @@ bool MeasurementGate::is_accepted(const LogFault& fault) const {
 
 std::vector<LogFault> MeasurementGate::check(Record& record) const {
   adapt_to(record, drive_.data);
-  if (position_and_speed_swapped(record)) {
+  if (position_and_speed_swapped(record) && !scaled_copy(record)) {
     const std::string column(name_in_file(record, &Record::w));
     return {{LogFaultKind::swapped, column, record.path, record.t_s.front(), 0.0,
              fmt::format("{}: the change of {} follows {}, as a position follows its speed: the two columns are "

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -24,9 +25,11 @@ struct MotionSmoother::Observation {
 
 namespace {
 
-/// Step of the disturbance's random walk while nothing happens, V per sample at 1 kHz: the speed is then averaged over
-/// some 5 ms. A tenth of the paper's on-line variance (48), since a smoother sees both sides of a sample.
-constexpr double kQuietStep_V = 0.03;
+/// Step of the disturbance's random walk while nothing happens, per sample at 1 kHz, as a part of the friction level:
+/// on the paper's x axis 0.03 V, a tenth of the on-line variance (48), since a smoother sees both sides of a sample;
+/// the speed is then averaged over some 5 ms. Of a drive of little friction, as a part of its command's rms.
+constexpr double kQuietPartOfFriction = 0.045;
+constexpr double kQuietPartOfCommand = 0.01;
 
 /// Signals farther from a sample do not reach its smoothed state, s: ten times the time over which the speed is
 /// averaged.
@@ -95,6 +98,12 @@ void doubt_friction(const std::vector<double>& w, const std::vector<bool>& stand
   }
 }
 
+double rms_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 template <typename Observations>
 void doubt_command(const std::vector<double>& u_V, double period_s, Observations& observed) {
   const auto memory = std::max<std::size_t>(1, static_cast<std::size_t>(kCommandMemory_s / period_s));
@@ -148,13 +157,24 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   const double resolution = data.encoder_resolution;
   const double noise =
       by_position_ ? std::max(resolution * resolution / 12.0, 1e-18) : data.tach_noise_variance.value_or(1e-6);
-  const double quiet_V = kQuietStep_V * std::sqrt(period_s / 1e-3);
+  const double level_V = friction_level / effort_per_volt_;
+  const double rms_V = rms_of(u_V);
+  const double quiet_V =
+      std::max({kQuietPartOfFriction * level_V, kQuietPartOfCommand * rms_V, std::numeric_limits<double>::min()}) *
+      std::sqrt(period_s / 1e-3);
   const double creep = kCreepCounts * resolution / data.lead / kStanding_s;
 
   std::vector<Observation> observed(record.size());
   for (std::size_t k = 0; k < record.size(); ++k) observed[k] = {measured[k], noise, quiet_V, false};
   doubt_command(u_V, period_s, observed);
   const Vector3d start(by_position_ ? measured[0] : 0.0, by_position_ ? 0.0 : measured[0], u_V[0]);
+  // What a start may be off by: an unknown disturbance as large as friction or command, and what it does in a tenth of
+  // a second.
+  constexpr double kUnknown_s = 0.1;
+  const double unknown_V = std::max({level_V, rms_V, quiet_V});
+  const double unknown_w = gain * unknown_V * kUnknown_s;
+  const double unknown_x = std::max(data.lead * unknown_w * kUnknown_s, std::sqrt(noise));
+  start_variance_ = Vector3d(unknown_x, unknown_w, unknown_V).array().square();
   solve_gains(observed, creep * creep);
   smooth(observed, u_V, start);
   if (!by_position_) return;
@@ -163,7 +183,7 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   const std::vector<double> rough_w = motion_.w;
   const std::vector<bool> standing = find_standing(record.x, resolution, period_s);
   for (std::size_t k = 0; k < record.size(); ++k) observed[k].standing = standing[k];
-  doubt_friction(rough_w, standing, friction_level / effort_per_volt_, observed);
+  doubt_friction(rough_w, standing, level_V, observed);
   if (resolution > 0.0) observe_counts(record.x, resolution, period_s, data.lead, rough_w, observed);
   solve_gains(observed, creep * creep);
   smooth(observed, u_V, start);
@@ -181,7 +201,7 @@ void MotionSmoother::solve_gains(const std::vector<Observation>& observed, doubl
   };
   gains_.resize(n);
   std::vector<Matrix3d> filtered(n), predicted(n);
-  Matrix3d P = Vector3d(1e-2, 1.0, 1.0).asDiagonal();
+  Matrix3d P = start_variance_.asDiagonal();
   for (std::size_t k = 0; k < n; ++k) {
     predicted[k] = P;
     gains_[k].standing = observed[k].standing;

@@ -72,6 +72,7 @@ class MotionSmoother {
   bool by_position_;
   std::size_t reach_;
   double effort_per_volt_;
+  Eigen::Vector3d start_variance_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d A_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d B_ = Eigen::Vector3d::Zero();
   std::vector<Gains> gains_;

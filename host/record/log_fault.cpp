@@ -11,14 +11,14 @@ struct Row {
 /// In the order of LogFaultKind.
 constexpr Row kRows[] = {
     {"integer_wrap", "jump", "unwrap the counter with axistool import, and log with a wider one"},
-    {"new_zero", "jump", "cut the record there"},
+    {"new_zero", "jump", "cut the record there with axistool cut"},
     {"dropped_samples", "gap",
-     "record again, cut the record there, or fill it knowingly with axistool import --resample"},
+     "record again, cut the record there with axistool cut, or fill it knowingly with axistool import --resample"},
     {"derived_channel", "duplicate", "log the tachometer, or leave the column out"},
     {"command_sign", "sign", "turn the sign of the command, or of position and speed, with axistool import --map"},
     {"command_scale", "unit", "scale the column with axistool import --map, or mend the gains of the data sheet"},
     {"position_scale", "unit", "scale the column with axistool import --map, or mend the lead of the data sheet"},
-    {"time_shift", "time_shift", "shift the column by whole samples before using the record"},
+    {"time_shift", "time_shift", "shift the column with axistool shift RECORD --channel COLUMN --by SECONDS"},
     {"speed_sign", "sign", "turn the sign of the speed or of the position with axistool import --map"},
     {"wrong_unit", "unit", "scale the column with axistool import --map"},
     {"dead_channel", "dead", "check wiring and assignment, or leave the column out"},

@@ -1,0 +1,186 @@
+#include "host/scoreboard/rewriting.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "host/diagnose/diagnosis.hpp"
+#include "host/diagnose/model_fit.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/model/model_file.hpp"
+
+namespace host {
+
+namespace {
+
+void scale(std::vector<double>& channel, double factor) {
+  for (double& value : channel) value *= factor;
+}
+
+template <typename Change>
+void for_each_record(Question& question, const Change& change) {
+  for (auto* records : {&question.train, &question.validate})
+    for (Record& record : *records) change(record);
+}
+
+void rescale_volt(Question& question, double volts_per_volt) {
+  sim::DataSheet& data = question.model.data;
+  data.amplifier_gain_A_per_V /= volts_per_volt;
+  data.force_constant_N_per_V /= volts_per_volt;
+  data.dac_resolution_V *= volts_per_volt;
+  data.dac_limit_V *= volts_per_volt;
+  for_each_record(question, [&](Record& record) { scale(record.u_V, volts_per_volt); });
+}
+
+/// Part of a rotary drive's parameter in the linear drive whose table moves as far: effort by lead, speed times lead.
+double in_linear_units(double lead_m, std::string_view id, double value) {
+  return id == "J" || id == "B" ? value / (lead_m * lead_m) : value / lead_m;
+}
+
+double metres_a_radian(const Question& question) { return 1e-3 * question.model.data.lead; }
+
+/// A model of a rotary base alone, and its records, as those of a linear drive.
+void make_linear(Question& question) {
+  sim::DataSheet& data = question.model.data;
+  if (data.kind == sim::DriveKind::linear) return;
+  const double lead_m = metres_a_radian(question);
+  for (sim::EffectEntry& entry : question.model.effects) {
+    for (auto& [id, value] : entry.parameters) value = in_linear_units(lead_m, id, value);
+    entry.ci95.clear();
+  }
+  data.force_constant_N_per_V = data.effort_per_volt() / lead_m;
+  data.kind = sim::DriveKind::linear;
+  data.amplifier_gain_A_per_V = data.torque_constant_Nm_per_A = 0.0;
+  data.lead = 1.0;
+  data.encoder_resolution *= 1e-3;
+  if (data.tach_noise_variance) *data.tach_noise_variance *= lead_m * lead_m;
+  for_each_record(question, [&](Record& record) {
+    record.kind = sim::DriveKind::linear;
+    for (auto* positions : {&record.x, &record.x_ref}) scale(*positions, 1e-3);
+    for (auto* speeds : {&record.w, &record.w_ref}) scale(*speeds, lead_m);
+    for (std::string& column : record.columns)
+      column = column == "w_rad_s" ? "v_m_s" : column == "x_mm" ? "x_m" : column;
+  });
+}
+
+/// Directions change places in a base with two Coulomb levels.
+void mirror(Question& question) {
+  for (sim::EffectEntry& entry : question.model.effects)
+    if (entry.has("positive") && entry.has("negative")) {
+      const double positive = entry.at("positive");
+      entry.parameters["positive"] = -entry.at("negative");
+      entry.parameters["negative"] = -positive;
+    }
+  for_each_record(question, [](Record& record) {
+    for (auto* channel : {&record.u_V, &record.i_A, &record.x, &record.w, &record.x_ref, &record.w_ref})
+      scale(*channel, -1.0);
+  });
+}
+
+void shift_time(Question& question) {
+  constexpr double kLater_s = 1000.0;
+  for_each_record(question, [](Record& record) {
+    for (double& t_s : record.t_s) t_s += kLater_s;
+  });
+}
+
+void cut_in_two(Question& question) {
+  Record& first = question.train.front();
+  Record second = first;
+  const auto half = static_cast<std::ptrdiff_t>(first.size() / 2);
+  for (auto channel : {&Record::t_s, &Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref,
+                       &Record::temp_C}) {
+    if ((first.*channel).empty()) continue;
+    (second.*channel).erase((second.*channel).begin(), (second.*channel).begin() + half);
+    (first.*channel).resize(static_cast<std::size_t>(half));
+  }
+  first.extra.clear();
+  second.extra.clear();
+  second.path += ", second half";
+  question.train.push_back(std::move(second));
+}
+
+double mirrored(const Question& original, std::string_view id, double value) {
+  const sim::EffectEntry* coulomb = original.model.find("coulomb");
+  if (coulomb == nullptr || (id != "positive" && id != "negative")) return value;
+  return -coulomb->at(id == "positive" ? "negative" : "positive");
+}
+
+struct Answered {
+  std::string words;
+  Question question;  ///< with the base as it was re-fitted
+  double error = 0.0;
+};
+
+Answered answer(Question question) {
+  const Measurements measured = MeasurementGate(question.model).admit(question.train, question.validate);
+  Diagnosis diagnosis = diagnose(question.model, measured);
+  std::vector<std::string> effects = diagnosis.verdict.effects;
+  std::ranges::sort(effects);
+  estimate_intervals(diagnosis.best, diagnosis.training);
+  question.model = diagnosis.best;
+  return {fmt::format("{} {}", status_name(diagnosis.verdict.status), fmt::join(effects, ", ")), std::move(question),
+          diagnosis.after_validate};
+}
+
+}  // namespace
+
+Question read_question(const Trial& trial) {
+  Question question{read_model((trial.folder / "model.toml").string()), {}, {}};
+  for (const Piece& piece : trial.train) question.train.push_back(read_piece(piece, question.model.data));
+  for (const Piece& piece : trial.validate) question.validate.push_back(read_piece(piece, question.model.data));
+  return question;
+}
+
+std::span<const Rewriting> rewritings() {
+  static const std::array all{
+      Rewriting{"volt x 100", [](Question& question) { rescale_volt(question, 100.0); }},
+      Rewriting{"volt x 0.01", [](Question& question) { rescale_volt(question, 0.01); }},
+      Rewriting{"linear", make_linear,
+                [](const Question& original, std::string_view id, double value) {
+                  return original.model.data.kind == sim::DriveKind::linear
+                             ? value
+                             : in_linear_units(metres_a_radian(original), id, value);
+                }},
+      Rewriting{"mirrored", mirror, mirrored},
+      Rewriting{"later", shift_time},
+      Rewriting{"reordered", [](Question& question) { std::ranges::reverse(question.train); }},
+      Rewriting{"cut in two", cut_in_two},
+      Rewriting{"given twice", [](Question& question) { question.train.push_back(question.train.front()); }},
+  };
+  return all;
+}
+
+std::vector<Invariance> try_rewritings(const Question& question, std::span<const Rewriting> chosen) {
+  const Answered original = answer(question);
+  std::vector<Invariance> results;
+  for (const Rewriting& rewriting : chosen) {
+    Question anew = question;
+    rewriting.apply(anew);
+    const Answered rewritten = answer(std::move(anew));
+    Invariance result;
+    result.original = original.words;
+    result.rewritten = rewritten.words;
+    result.same_verdict = original.words == rewritten.words;
+    result.error_ratio = std::max(original.error, rewritten.error) / std::min(original.error, rewritten.error);
+    for (const char* kind : {"inertia", "viscous", "coulomb"}) {
+      const sim::EffectEntry* before = original.question.model.find(kind);
+      const sim::EffectEntry* after = rewritten.question.model.find(kind);
+      if (before == nullptr || after == nullptr) continue;
+      for (const auto& [id, value] : before->parameters) {
+        const double expected = rewriting.expected ? rewriting.expected(original.question, id, value) : value;
+        const auto interval = after->ci95.find(id);
+        if (!after->has(id) || interval == after->ci95.end()) continue;
+        const double half = 0.5 * (interval->second[1] - interval->second[0]);
+        result.worst_parameter = std::max(result.worst_parameter, std::abs(after->at(id) - expected) / half);
+      }
+    }
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+}  // namespace host

@@ -1,0 +1,49 @@
+// The same measurements written another way: what does not change the physics must not change the diagnosis.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/record/record.hpp"
+#include "host/scoreboard/trial.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// What a diagnosis starts from, before the gate.
+struct Question {
+  sim::DriveDescription model;
+  std::vector<Record> train, validate;  ///< adapted to the model; `validate` may be empty
+};
+
+/// Throws Failure(bad_input) for a bad file.
+Question read_question(const Trial& trial);
+
+/// A way to write a question anew.
+struct Rewriting {
+  std::string_view name;  ///< "volt x 100"
+  std::function<void(Question&)> apply;
+  /// A fitted base parameter as it should be found now: its id and value in the original. Empty: unchanged.
+  std::function<double(const Question&, std::string_view id, double)> expected = {};
+};
+
+/// The volt a hundred times larger and smaller (data sheet along with it), metres and N for rad and Nm (for a rotary
+/// drive), the direction mirrored, time shifted, the training records in reverse order, the first of them cut in two,
+/// and given twice.
+std::span<const Rewriting> rewritings();
+
+/// How a rewritten question was answered, against the original.
+struct Invariance {
+  bool same_verdict = false;     ///< status and effects
+  double worst_parameter = 0.0;  ///< largest difference of a fitted base parameter in half widths of its 95 % interval
+  double error_ratio = 1.0;      ///< error over floor on validation data, the larger over the smaller
+  std::string original, rewritten;  ///< both verdicts in words
+};
+
+/// Diagnoses a question and its rewritings; one answer for each of `chosen`.
+std::vector<Invariance> try_rewritings(const Question& question, std::span<const Rewriting> chosen);
+
+}  // namespace host
