@@ -22,7 +22,8 @@ enum class Scale {
   coulomb_per_travel,  ///< the Coulomb level over the travel of the records
   stall_effort,        ///< effort at the converter's limit, Nm or N
   stall_current,       ///< current at the converter's limit, A; a linear drive's force, N
-  speed,               ///< 1 rad/s; 1 mm/s for a linear drive
+  speed,               ///< 1.59 mm/s of travel, as shaft or table speed: 1 rad/s of a screw of 10 mm pitch
+  converter_range,     ///< largest voltage of the D/A converter, V
   millimetre,          ///< 1 mm; 0.001 m for a linear drive
   top_speed,           ///< the highest speed of the records
   travel,              ///< the travel that the records cover

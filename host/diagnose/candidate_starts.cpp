@@ -17,6 +17,9 @@ namespace {
 /// The contact of guide and bristle is about so long in a machine, mm (rolling guides break away over 5 to 100 um).
 constexpr double kBreakawayTravel_mm = 0.02;
 
+/// A screw of 10 mm pitch that turns at 1 rad/s.
+constexpr double kUsualSpeed_mm_s = 10.0 / (2.0 * std::numbers::pi);
+
 double scale_value(sim::Scale scale, const sim::DriveDescription& model, const RecordScales& scales) {
   const sim::Drive drive(model);
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
@@ -42,7 +45,9 @@ double scale_value(sim::Scale scale, const sim::DriveDescription& model, const R
     case sim::Scale::stall_current:
       return scales.top_command_V * (rotary ? model.data.amplifier_gain_A_per_V : drive.effort_per_volt);
     case sim::Scale::speed:
-      return rotary ? 1.0 : 1e-3;
+      return kUsualSpeed_mm_s * (rotary ? 1.0 : 1e-3) / model.data.lead;
+    case sim::Scale::converter_range:
+      return model.data.dac_limit_V;
     case sim::Scale::millimetre:
       return rotary ? 1.0 : 1e-3;
     case sim::Scale::top_speed:

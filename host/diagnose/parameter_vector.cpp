@@ -77,6 +77,11 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
       FreeParameter free{index, {{id, 1.0}}, magnitude, parameter.lower, parameter.upper};
       if (parameter.scale == sim::Scale::bristle_stiffness)
         free.upper = std::max(magnitude, std::min(free.upper, stiffest_contact(description)));
+      if (parameter.scale == sim::Scale::converter_range) {  // the range's other half is for what moves the axis
+        const double most = std::max(magnitude, 0.5 * description.data.dac_limit_V);
+        free.lower = std::max(free.lower, -most);
+        free.upper = std::min(free.upper, most);
+      }
       if (id.starts_with("omega") && magnitude > 0.0) {
         const double slowest = std::min(magnitude, slowest_fading(description));
         (value > 0.0 ? free.lower : free.upper) = value > 0.0 ? slowest : -slowest;

@@ -20,6 +20,8 @@ constexpr std::size_t kWindows = 100;
 constexpr std::size_t kMostSizes = 4;
 /// Difference step of the slopes, relative to a parameter's scale.
 constexpr double kStep = 1e-3;
+/// Of a linear drive, whose model knows no screw, a ripple recurs with a usual screw's pitch.
+constexpr double kUsualPitch_m = 0.01;
 /// Usual amplitudes of ripples: cogging and friction along the travel relative to the Coulomb level, ripple of the
 /// torque constant and of the tachometer relative to what they ripple on, an encoder's error in steps of a micrometre.
 constexpr double kUsualCogging = 0.05, kUsualFrictionWave = 0.15, kUsualRipple = 0.03, kUsualEncoderError_um = 5.0;
@@ -56,7 +58,9 @@ std::vector<sim::DriveDescription> usual_sizes(const sim::EffectInfo& info, cons
                              : info.kind == "cogging"            ? kUsualCogging * coulomb
                              : info.stage == sim::Stage::encoder ? kUsualEncoderError_um * (rotary ? 1e-3 : 1e-6)
                                                                  : kUsualRipple;
-    const double period = slow ? scales.travel : rotary ? 2.0 * std::numbers::pi * base.data.lead : 0.1 * scales.travel;
+    const double period = slow     ? scales.travel
+                          : rotary ? 2.0 * std::numbers::pi * base.data.lead
+                                   : std::min(kUsualPitch_m, 0.1 * scales.travel);
     all.push_back(base);
     all.back().effects.push_back(
         {std::string(info.kind), {{"cosine", amplitude}, {"sine", 0.0}, {"period", period}}, {}, {}});

@@ -206,6 +206,12 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
 
 }  // namespace
 
+std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet& data) {
+  FaultList faults(record);
+  find_copies(record, data, faults);
+  return faults.take();
+}
+
 std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescription& model) {
   FaultList faults(record);
   find_copies(record, model.data, faults);

@@ -17,6 +17,9 @@ namespace host {
 /// where physics could explain a finding: a delay, a lag, a changed inertia, a limit of the amplifier.
 std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescription& model);
 
+/// Of these, the channels that tell what another one tells. Wrong units and exchanged names may come of them.
+std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet& data);
+
 /// The list "log" of every command that reads records.
 nlohmann::json log_faults_json(const std::vector<LogFault>& faults);
 

@@ -84,7 +84,10 @@ std::vector<LogFault> MeasurementGate::check(Record& record) const {
     check_units(record, drive_.data);
   } catch (const FaultyLog& refused) {
     faults = refused.faults;
-    if (!std::ranges::all_of(faults, [&](const LogFault& fault) { return is_accepted(fault); })) return faults;
+    if (!std::ranges::all_of(faults, [&](const LogFault& fault) { return is_accepted(fault); })) {
+      std::ranges::move(copied_channels(record, drive_.data), std::back_inserter(faults));
+      return faults;
+    }
   }
   std::ranges::copy(log_faults(record, drive_), std::back_inserter(faults));
   if (options_.as_logged) return faults;

@@ -65,6 +65,8 @@ double example_size(sim::Scale scale, sim::DriveKind kind) {
     case sim::Scale::speed:
     case sim::Scale::millimetre:
       return rotary ? 1.0 : 0.001;
+    case sim::Scale::converter_range:
+      return 10.0;
     case sim::Scale::top_speed:
       return rotary ? 60.0 : 0.3;
     case sim::Scale::travel:

@@ -172,10 +172,13 @@ std::vector<Invariance> try_rewritings(const Question& question, std::span<const
       if (before == nullptr || after == nullptr) continue;
       for (const auto& [id, value] : before->parameters) {
         const double expected = rewriting.expected ? rewriting.expected(original.question, id, value) : value;
-        const auto interval = after->ci95.find(id);
-        if (!after->has(id) || interval == after->ci95.end()) continue;
-        const double half = 0.5 * (interval->second[1] - interval->second[0]);
-        result.worst_parameter = std::max(result.worst_parameter, std::abs(after->at(id) - expected) / half);
+        const auto interval = after->ci95.find(id), original_interval = before->ci95.find(id);
+        if (!after->has(id) || interval == after->ci95.end() || original_interval == before->ci95.end()) continue;
+        const auto half = [](const std::array<double, 2>& ci95) { return 0.5 * (ci95[1] - ci95[0]); };
+        const double scale = std::abs(value) > 0.0 ? std::abs(expected / value) : 1.0;
+        result.worst_parameter =
+            std::max(result.worst_parameter, std::abs(after->at(id) - expected) /
+                                                 (half(interval->second) + scale * half(original_interval->second)));
       }
     }
     results.push_back(std::move(result));

@@ -37,9 +37,9 @@ std::span<const Rewriting> rewritings();
 
 /// How a rewritten question was answered, against the original.
 struct Invariance {
-  bool same_verdict = false;     ///< status and effects
-  double worst_parameter = 0.0;  ///< largest difference of a fitted base parameter in half widths of its 95 % interval
-  double error_ratio = 1.0;      ///< error over floor on validation data, the larger over the smaller
+  bool same_verdict = false;        ///< status and effects
+  double worst_parameter = 0.0;     ///< of a fitted base parameter: 1 where both 95 % intervals just touch
+  double error_ratio = 1.0;         ///< error over floor on validation data, the larger over the smaller
   std::string original, rewritten;  ///< both verdicts in words
 };
 

@@ -27,8 +27,9 @@ const EffectInfo dac_dead_zone{
                     .linear_key = "width_V",
                     .doc = "d",
                     .lower = 0.0,
-                    .upper = 5.0,
-                    .starts = {0.05}}},
+                    .upper = 500.0,
+                    .scale = Scale::converter_range,
+                    .starts = {0.005}}},
     .shows = "Residual changes sign with the command, not with the motion; commands below the zone move nothing",
     .confused_with = {"load_dependent_friction", "stribeck", "coulomb", "dac_offset"},
     .separate_by =

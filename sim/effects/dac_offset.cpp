@@ -23,9 +23,10 @@ const EffectInfo dac_offset{
                     .rotary_key = "offset_V",
                     .linear_key = "offset_V",
                     .doc = "u_0: output at zero command",
-                    .lower = -5.0,
-                    .upper = 5.0,
-                    .starts = {0.02, -0.02}}},
+                    .lower = -500.0,
+                    .upper = 500.0,
+                    .scale = Scale::converter_range,
+                    .starts = {0.002, -0.002}}},
     .shows =
         "Residual torque constant, of one sign in both directions and at rest, from the electronics instead of the "
         "mechanics",

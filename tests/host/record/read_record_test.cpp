@@ -33,6 +33,22 @@ TEST(ReadRecord, RotaryChannelsInMillimetresAndRadiansPerSecond) {
   EXPECT_DOUBLE_EQ(record.u_V[7], 0.7);
 }
 
+TEST(ReadRecord, OrderOfColumnsUnknownOnesAndTrailingDecimalsChangeNothing) {
+  std::string plain = "# format: axis-record/1\nt_s,u_V,x_mm,w_rad_s\n";
+  std::string written = "# format: axis-record/1\nw_rad_s,room_humidity,x_mm,t_s,u_V\n";
+  for (int k = 0; k < 40; ++k) {
+    const double t_s = 0.001 * k, u_V = 0.1 * k, x_mm = 0.5 * k * k, w_rad_s = 1.25 * k;
+    plain += fmt::format("{:.3f},{:.2f},{:.2f},{:.2f}\n", t_s, u_V, x_mm, w_rad_s);
+    written += fmt::format("{:.9f},{},{:.8f},{:.6f},{:.7f}\n", w_rad_s, 40 + k % 3, x_mm, t_s, u_V);
+  }
+  const host::Record one = host::parse_record(plain, "a.csv"), other = host::parse_record(written, "b.csv");
+  EXPECT_EQ(one.t_s, other.t_s);
+  EXPECT_EQ(one.u_V, other.u_V);
+  EXPECT_EQ(one.x, other.x);
+  EXPECT_EQ(one.w, other.w);
+  EXPECT_EQ(one.sample_period_s, other.sample_period_s);
+}
+
 TEST(ReadRecord, MetresOnARotaryDriveBecomeMillimetres) {
   const host::Record record = host::parse_record(record_text("t_s,u_V,x_m,w_rad_s", "0.0125,0.25"), "r.csv");
   EXPECT_DOUBLE_EQ(record.x[0], 12.5);
