@@ -68,9 +68,9 @@ struct Diagnosis : PreparedSets {
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
-  std::size_t tried = 0;                             ///< candidates that validation data judged; the others fell behind in training
-  std::vector<JudgedCandidate> candidates;           ///< best first
-  std::vector<std::string> not_searched;             ///< kinds of which a fit ended at its budget, not at its best
+  std::size_t tried = 0;  ///< candidates that validation data judged; the others fell behind in training
+  std::vector<JudgedCandidate> candidates;  ///< best first
+  std::vector<std::string> not_searched;    ///< kinds of which a fit ended at its budget, not at its best
   DiagnosisVerdict verdict;
   sim::DriveDescription best;                  ///< with the effects of the verdict; the base where there are none
   std::shared_ptr<const EffortScreen> screen;  ///< what plain least squares of the effort saw; may be absent

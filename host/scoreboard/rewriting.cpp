@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "host/diagnose/diagnosis.hpp"
 #include "host/diagnose/model_fit.hpp"
@@ -35,8 +37,9 @@ void rescale_volt(Question& question, double volts_per_volt) {
   for_each_record(question, [&](Record& record) { scale(record.u_V, volts_per_volt); });
 }
 
-/// Part of a rotary drive's parameter in the linear drive whose table moves as far: effort by lead, speed times lead.
+/// A base parameter of a rotary drive for the linear drive whose table moves as far: effort by lead, speed times lead.
 double in_linear_units(double lead_m, std::string_view id, double value) {
+  if (id.starts_with("omega")) return value * lead_m;
   return id == "J" || id == "B" ? value / (lead_m * lead_m) : value / lead_m;
 }
 
@@ -66,14 +69,23 @@ void make_linear(Question& question) {
   });
 }
 
-/// Directions change places in a base with two Coulomb levels.
+/// The parameter that stands for the other direction; the same where both share one.
+std::string other_direction(std::string id) {
+  constexpr std::string_view kForward = "positive", kBackward = "negative";
+  for (const auto& [from, to] : {std::pair{kForward, kBackward}, {kBackward, kForward}})
+    if (id.ends_with(from)) return id.replace(id.size() - from.size(), from.size(), to);
+  return id;
+}
+
+/// Directions change places; values of the backward one carry a minus.
 void mirror(Question& question) {
-  for (sim::EffectEntry& entry : question.model.effects)
-    if (entry.has("positive") && entry.has("negative")) {
-      const double positive = entry.at("positive");
-      entry.parameters["positive"] = -entry.at("negative");
-      entry.parameters["negative"] = -positive;
+  for (sim::EffectEntry& entry : question.model.effects) {
+    const std::map<std::string, double> original = entry.parameters;
+    for (auto& [id, value] : entry.parameters) {
+      const std::string other = other_direction(id);
+      if (other != id) value = -original.at(other);
     }
+  }
   for_each_record(question, [](Record& record) {
     for (auto* channel : {&record.u_V, &record.i_A, &record.x, &record.w, &record.x_ref, &record.w_ref})
       scale(*channel, -1.0);
@@ -104,9 +116,8 @@ void cut_in_two(Question& question) {
 }
 
 double mirrored(const Question& original, std::string_view id, double value) {
-  const sim::EffectEntry* coulomb = original.model.find("coulomb");
-  if (coulomb == nullptr || (id != "positive" && id != "negative")) return value;
-  return -coulomb->at(id == "positive" ? "negative" : "positive");
+  const std::string other = other_direction(std::string(id));
+  return other == id ? value : -original.model.find("coulomb")->at(other);
 }
 
 struct Answered {
