@@ -15,8 +15,8 @@ struct AxisFigures {
   double period_s, lead, fastest, count, full_change;
 
   explicit AxisFigures(const firmware::AxisParameters<float>& p)
-      : period_s(p.sample_period_s),
-        lead(p.lead),
+      : period_s(static_cast<double>(p.sample_period_s)),
+        lead(static_cast<double>(p.lead)),
         fastest(static_cast<double>(p.velocity_limit) / lead),
         count(static_cast<double>(p.encoder_resolution) / (lead * period_s)),
         full_change(static_cast<double>(p.drive.Bd2) * static_cast<double>(p.dac_limit_V)) {}
@@ -35,8 +35,9 @@ std::string fastest_text(const firmware::AxisParameters<float>& p, const AxisFig
 
 std::string overspeed_relation(const firmware::AxisParameters<float>& p) {
   const AxisFigures axis(p);
-  const double least = axis.fastest + axis.count, most = axis.ceiling(ceilings::kOverspeed_s, 3, 8);
-  const double overspeed = p.monitors.overspeed;
+  const double least = axis.fastest + axis.count,
+               most = axis.ceiling(static_cast<double>(ceilings::kOverspeed_s), 3, 8);
+  const auto overspeed = static_cast<double>(p.monitors.overspeed);
   if (!(overspeed > least))
     return fmt::format(
         "it must be above {} and a count a sample more, {:.4g}: above {:.4g} and at most {:.4g} fits; or keep it, with "
@@ -50,9 +51,10 @@ std::string overspeed_relation(const firmware::AxisParameters<float>& p) {
 
 std::string disagreement_relation(const firmware::AxisParameters<float>& p) {
   const AxisFigures axis(p);
-  const double floor = p.monitors.disagreement_floor, jump = p.monitors.encoder_jump;
-  const double most_floor = axis.ceiling(ceilings::kDisagreement_s, 1, 8);
-  const double most_jump = axis.ceiling(ceilings::kJump_s, 2, 32);
+  const auto floor = static_cast<double>(p.monitors.disagreement_floor);
+  const auto jump = static_cast<double>(p.monitors.encoder_jump);
+  const double most_floor = axis.ceiling(static_cast<double>(ceilings::kDisagreement_s), 1, 8);
+  const double most_jump = axis.ceiling(static_cast<double>(ceilings::kJump_s), 2, 32);
   if (!(jump > floor))
     return fmt::format(
         "it must be below monitor.encoder_jump = {:.4g}; at most {:.4g} of the one and {:.4g} of the "
