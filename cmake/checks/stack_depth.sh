@@ -28,7 +28,7 @@ find "$folder" -name '*.ci' -exec cat {} + | awk -v limit="$limit" -v roots="$*"
     if (!((source, target) in seen)) { seen[source, target] = 1; callee[source, ++callees[source]] = target }
   }
   # What the compiler does not see the inside of: block operations and integer division, which use little or no stack.
-  function is_library(f) { return f ~ /^(mem(cpy|set|move|cmp)|__aeabi_[a-z0-9_]+|__builtin_[a-z_]+)$/ }
+  function is_library(f) { return f ~ /^(mem(cpy|set|move|cmp)|__aeabi_[a-z0-9_]+|__builtin_[a-z_]+|__popcountsi2)$/ }
   function complain(text) { print text > "/dev/stderr"; broken = 1 }
   function depth(f,   i, most, d) {
     if (f in known) return known[f]
