@@ -34,6 +34,26 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// Whether a record moves at one speed a direction, starts and reversals included, so that inertia hardly shows.
+bool is_steady(const std::vector<double>& speed, double slow, double inertia, const std::vector<double>& acceleration,
+               const std::vector<double>& effort) {
+  double mean[2] = {0.0, 0.0};
+  std::size_t count[2] = {0, 0};
+  double squares = 0.0, inertial = 0.0, efforts = 0.0;
+  for (std::size_t k = 0; k < speed.size(); ++k) {
+    if (std::abs(speed[k]) <= slow) continue;
+    mean[speed[k] > 0.0 ? 0 : 1] += speed[k];
+    ++count[speed[k] > 0.0 ? 0 : 1];
+    squares += speed[k] * speed[k];
+    inertial += std::pow(inertia * acceleration[k], 2);
+    efforts += effort[k] * effort[k];
+  }
+  double spread = squares;
+  for (const int side : {0, 1})
+    if (count[side] > 0) spread -= mean[side] * mean[side] / static_cast<double>(count[side]);
+  return spread <= kSteadyShare * kSteadyShare * squares && inertial <= kIdleShare * kIdleShare * efforts;
+}
+
 double quantile(std::vector<double> values, double part) {
   const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
@@ -83,7 +103,7 @@ struct Builder {
   double inertia;
   std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(5);
   EffortRows rows{};
-  double spread = 0.0, squares = 0.0, noise = 0.0, inertial = 0.0, efforts = 0.0;
+  double noise = 0.0;
   std::size_t blocks = 0;
 
   void add(const RecordSet& set, bool judges, std::size_t stride) {
@@ -126,8 +146,6 @@ struct Builder {
     std::vector<std::size_t> run(speed.size(), 0);
     for (std::size_t k = 1; k < speed.size(); ++k)
       run[k] = sizes[k] > slow ? (speed[k] * speed[k - 1] > 0.0 ? run[k - 1] : 0) + 1 : 0;
-    double mean[2] = {0.0, 0.0};
-    std::size_t count[2] = {0, 0};
     std::size_t in_block = 0;
     const auto rows_a_block =
         std::max<std::size_t>(4, static_cast<std::size_t>(kBlock_s * rate_Hz / static_cast<double>(stride)));
@@ -142,19 +160,10 @@ struct Builder {
         rows.record.push_back(rows.signals.size());
         if (in_block++ % rows_a_block == 0) ++blocks;
         rows.block.push_back(blocks);
-        mean[speed[k] > 0.0 ? 0 : 1] += speed[k];
-        ++count[speed[k] > 0.0 ? 0 : 1];
       }
     }
     ++blocks;
-    for (const std::size_t k : signals.kept) {
-      const std::size_t side = speed[k] > 0.0 ? 0 : 1;
-      if (!judges) spread += std::pow(speed[k] - mean[side] / static_cast<double>(count[side]), 2);
-      if (judges) continue;
-      squares += speed[k] * speed[k];
-      inertial += std::pow(inertia * signals.acceleration[k], 2);
-      efforts += effort[k] * effort[k];
-    }
+    if (!judges && !is_steady(speed, slow, inertia, signals.acceleration, effort)) rows.steady = false;
     noise += std::pow(inertia * acceleration_deviation(record, model.data, by_speed, signals.cutoff_Hz), 2) *
              static_cast<double>(signals.kept.size());
     const double cutoff_Hz = signals.cutoff_Hz;
@@ -167,7 +176,6 @@ struct Builder {
     for (std::size_t c = 0; c < 5; ++c)
       *targets[c] = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), static_cast<Eigen::Index>(columns[c].size()));
     rows.by_speed = by_speed;
-    rows.steady = spread <= kSteadyShare * kSteadyShare * squares && inertial <= kIdleShare * kIdleShare * efforts;
     if (!columns[0].empty()) rows.noise = std::sqrt(noise / static_cast<double>(columns[0].size()));
     return std::move(rows);
   }
