@@ -147,12 +147,12 @@ bench: ## Measure speed: plant and predictor against real time, identification, 
 	$(BUILD)/bin/axis_bench $(if $(FILTER),--benchmark_filter='$(FILTER)')
 
 .PHONY: scoreboard
-scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR, CUTS=1, NULLS=1000, SAMPLE=20; REAL=DIR: measured machines)
+scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=DIR, CUTS=1, NULLS=1000, REWRITTEN=1, SAMPLE=20; REAL=DIR: measured machines)
 	$(NEED) build
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	$(BUILD)/bin/axistool scoreboard $(if $(REAL),--real $(REAL),$(or $(CASES),tests/data/drive-cases)) $(if $(CUTS),--cuts) \
-	  $(if $(NULLS),--nulls $(NULLS)) $(if $(SAMPLE),--sample $(SAMPLE))
+	  $(if $(REWRITTEN),--rewritten) $(if $(NULLS),--nulls $(NULLS)) $(if $(SAMPLE),--sample $(SAMPLE))
 
 .PHONY: mutants
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
