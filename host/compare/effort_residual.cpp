@@ -4,9 +4,20 @@
 
 namespace host {
 
+namespace {
+
+/// A drive whose load moves with its motor.
+sim::DriveDescription moving_as_one(sim::DriveDescription model) {
+  std::erase_if(model.effects,
+                [](const sim::EffectEntry& entry) { return entry.kind == "compliance" || entry.kind == "backlash"; });
+  return model;
+}
+
+}  // namespace
+
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride) {
-  const sim::Drive drive(model);
+  const sim::Drive drive(moving_as_one(model));
   const SmoothedMotion& motion = prepared.motion();
   const bool tach = prepared.record->has_speed();
   ResidualSamples samples;

@@ -19,7 +19,7 @@ struct ResidualSamples {
 };
 
 /// Residuals of `model` on every `stride`-th moving sample of a record. Friction is the model's curve at the smoothed
-/// speed; effects that remember are left out.
+/// speed; effects that remember are left out, and a load on a spring or behind a gap moves with the motor.
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride);
 

@@ -1,0 +1,25 @@
+// The effort that a model leaves unexplained, on a record made by hand from a force balance.
+#include "host/compare/effort_residual.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/host/evidence/hand_made_record.hpp"
+
+namespace {
+
+// Slow against its resonance a load moves with its motor: what the pair leaves is what the rigid drive leaves.
+TEST(ResidualSamples, ALoadOnASpringOrBehindAGapMovesWithItsMotor) {
+  const host::Record record = HandMade::record();
+  const sim::DriveDescription rigid = HandMade::model();
+  const host::PreparedRecord prepared = host::prepare(record, rigid);
+  const host::ResidualSamples expected = host::residual_samples(rigid, prepared, 5);
+  ASSERT_FALSE(expected.missing.empty());
+  for (const char* kind : {"compliance", "backlash"}) {
+    sim::DriveDescription pair = rigid;
+    pair.effects.push_back({kind, {{"load_fraction", 0.4}, {"resonance", 120.0}, {"damping_ratio", 0.05}}, {}, {}});
+    if (std::string_view(kind) == "backlash") pair.effects.back().parameters["gap"] = 0.05;
+    EXPECT_EQ(host::residual_samples(pair, prepared, 5).missing, expected.missing) << kind;
+  }
+}
+
+}  // namespace
