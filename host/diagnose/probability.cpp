@@ -41,33 +41,32 @@ double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& 
 
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
-  double nothing = probability_complete(diagnosis, scale);
-  const JudgedCandidate* best = nullptr;
-  std::vector<double> costs;
-  for (const JudgedCandidate& candidate : diagnosis.candidates) {
-    costs.push_back(cost_of(candidate, scale));
-    if (best == nullptr || costs.back() < cost_of(*best, scale)) best = &candidate;
+  const double nothing = probability_complete(diagnosis, scale);
+  // What may be luck is no evidence for a candidate, nor against the others.
+  std::vector<double> costs, weights;
+  for (const JudgedCandidate& candidate : diagnosis.candidates) costs.push_back(cost_of(candidate, scale));
+  const double least = costs.empty() ? 0.0 : *std::ranges::min_element(costs);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    weights.push_back((1.0 - diagnosis.candidates[k].luck) * std::exp((least - costs[k]) / scale.tie));
+    sum += weights.back();
   }
-  if (best == nullptr) {
+  if (!(sum > 0.0)) {
     verdict.probability_nothing = nothing;
     verdict.probability_other = 1.0 - nothing;
     return;
   }
+  const JudgedCandidate* best =
+      &diagnosis.candidates[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
   const double unexplained = 1.0 - std::min(explained_share(best->before, best->after),
                                             explained_share(diagnosis.before_train, best->train_after));
   constexpr double kLeastPart = 0.01;
   const double other = logistic(scale.other_slope * std::log((unexplained + kLeastPart) / scale.other_at) -
                                 (diagnosis.rough ? scale.rough : 0.0));
-  const double least = *std::ranges::min_element(costs);
-  double sum = 0.0;
-  for (const double cost : costs) sum += std::exp((least - cost) / scale.tie);
   double candidates = 0.0;
-  for (std::size_t k = 0; k < costs.size(); ++k) {
-    JudgedCandidate& candidate = diagnosis.candidates[k];
-    // What may be luck is no evidence for the candidate.
-    candidate.probability =
-        (1.0 - nothing) * (1.0 - other) * (1.0 - candidate.luck) * std::exp((least - costs[k]) / scale.tie) / sum;
-    candidates += candidate.probability;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    diagnosis.candidates[k].probability = (1.0 - nothing) * (1.0 - other) * (1.0 - best->luck) * weights[k] / sum;
+    candidates += diagnosis.candidates[k].probability;
   }
   verdict.probability_nothing = nothing;
   verdict.probability_other = 1.0 - nothing - candidates;
