@@ -69,7 +69,8 @@ TEST(Report, AnotherVersionAndALengthThatCannotBeAreRefused) {
 TEST(Report, APayloadOfAnotherLengthIsNotTaken) {
   Message message;
   message.put(firmware::JogRequest{1, {}, 1.0F});
-  firmware::MoveRequest move{7, {}, 7, 7};
+  firmware::MoveRequest move{};
+  move.axis = 7;
   EXPECT_FALSE(message.get(move));
   EXPECT_EQ(move.axis, 7) << "untouched";
 }
