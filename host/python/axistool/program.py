@@ -65,6 +65,17 @@ class Workspace:
         return str(path)
 
 
+def end(child: subprocess.Popen[str]) -> None:
+    """Ends a program as Ctrl-C does and waits until it is gone, which Popen alone does for a quarter of a second."""
+    patience_s = 10.0
+    child.send_signal(signal.SIGINT)
+    try:
+        child.wait(patience_s)
+    except BaseException:
+        child.kill()
+        child.wait()
+
+
 def run(arguments: list[str]) -> dict[str, Any]:
     """The document that `--json -` prints. Ctrl-C ends the program and comes through as KeyboardInterrupt."""
     with subprocess.Popen([program(), *arguments, "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -72,7 +83,7 @@ def run(arguments: list[str]) -> dict[str, Any]:
         try:
             said, complaint = child.communicate()
         except BaseException:
-            child.send_signal(signal.SIGINT)
+            end(child)
             raise
     if child.returncode not in (0, 1):
         raise error_of(child.returncode, complaint)

@@ -108,12 +108,23 @@ class Errors(unittest.TestCase):
 
     def test_interrupted_the_program_ends_too(self) -> None:
         case = CASES / "pairs" / "case-00"
-        threading.Thread(target=lambda: (time.sleep(0.5), os.kill(os.getpid(), signal.SIGINT)), daemon=True).start()
+        threading.Thread(target=interrupt_once_it_runs, daemon=True).start()
         with self.assertRaises(KeyboardInterrupt):
             axistool.improve(case / "model.toml", case / "train-jog.csv", case / "validate.csv")
         children = Path(f"/proc/self/task/{os.getpid()}/children")
         if children.exists():  # not on every kernel
             self.assertEqual(children.read_text().split(), [], "nothing goes on behind")
+
+
+def interrupt_once_it_runs() -> None:
+    """Ctrl-C some time after the program has started, however long that takes on a busy machine."""
+    children = Path(f"/proc/self/task/{os.getpid()}/children")
+    for _ in range(600):
+        if not children.exists() or children.read_text().split():
+            break
+        time.sleep(0.05)
+    time.sleep(0.3)
+    os.kill(os.getpid(), signal.SIGINT)
 
 
 if __name__ == "__main__":
