@@ -8,6 +8,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/identify/friction_json.hpp"
 #include "host/model/model_file.hpp"
+#include "host/statistics.hpp"
 
 namespace axistool {
 
@@ -31,7 +32,7 @@ void print_points(const host::FrictionIdentification& found, const char* speed, 
   for (const host::FrictionPoint& point : found.points) {
     const std::string observed = point.observed_effort ? fmt::format("{:.4f}", *point.observed_effort) : "-";
     fmt::print("  {:>10.4g} {:>10.4f} {:>8.4f} {:>12} {:>10.4f} {:>7.2f}{}\n", point.speed, point.effort,
-               1.96 * point.standard_error, observed, found.fit.law.effort(point.speed), point.duration_s,
+               host::kNormal95 * point.standard_error, observed, found.fit.law.effort(point.speed), point.duration_s,
                point.is_steady() ? "" : " *");
     jitters = jitters || !point.is_steady();
   }

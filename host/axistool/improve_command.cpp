@@ -12,6 +12,7 @@
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/report/terminal.hpp"
+#include "host/statistics.hpp"
 
 namespace axistool {
 
@@ -89,8 +90,8 @@ void run_add(const InsightArguments& arguments, const std::string& kind, const s
              judged.after, 100.0 * judged.confidence);
   fmt::print("  {:<32} {:>12} {:>12}\n", "parameter", "value", "+- (95 %)");
   for (const host::ParameterEstimate& estimate : addition.estimates) {
-    fmt::print("  {:<32} {:>12.5g} {:>12.2g}{}{}\n", estimate.name, estimate.value, 1.96 * estimate.deviation,
-               estimate.determined ? "" : "  not determined by these data",
+    fmt::print("  {:<32} {:>12.5g} {:>12.2g}{}{}\n", estimate.name, estimate.value,
+               host::kNormal95 * estimate.deviation, estimate.determined ? "" : "  not determined by these data",
                estimate.correlated_with.empty()
                    ? ""
                    : fmt::format("  moves with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));

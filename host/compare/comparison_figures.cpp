@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "host/compare/effort_residual.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/report/binned_curve.hpp"
 
 namespace host {
@@ -15,31 +16,12 @@ namespace host {
 namespace {
 
 constexpr std::size_t kBins = 60;
+constexpr std::size_t kStride = 2;
 constexpr std::size_t kFewestSamples = 20;  // a mean of fewer tells of their noise
-
-/// Samples of all records behind one another.
-ResidualSamples pooled_samples(const sim::DriveDescription& model, const RecordSet& set) {
-  constexpr std::size_t kStride = 2;
-  ResidualSamples pool;
-  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  for (const ComparedRecord& compared : set.records) {
-    const ResidualSamples samples = residual_samples(model, compared.prepared, kStride);
-    append(pool.t_s, samples.t_s);
-    append(pool.x, samples.x);
-    append(pool.w, samples.w);
-    append(pool.acceleration, samples.acceleration);
-    append(pool.missing, samples.missing);
-    append(pool.tach_error, samples.tach_error);
-  }
-  return pool;
-}
 
 ScatterSeries curve_of(const std::string& name, SeriesRole role, const std::vector<double>& x,
                        const std::vector<double>& y) {
-  const BinnedCurve curve = binned_curve(x, y, kBins, kFewestSamples);
-  return {name, role, SeriesStyle::line_and_points, curve.x, curve.mean, curve.lower, curve.upper, curve.samples};
+  return curve_series(name, role, binned_curve(x, y, kBins, kFewestSamples));
 }
 
 /// One coordinate's values of each model's samples, and of what is drawn over it.
@@ -85,7 +67,7 @@ std::string ComparedModel::name() const { return std::filesystem::path(path).fil
 TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record_index) {
   const PreparedRecord& prepared = models.front().set.records[record_index].prepared;
   const Record& record = *prepared.record;
-  const bool rotary = record.kind == sim::DriveKind::rotary;
+  const DriveUnits units = units_of(record.kind);
   std::vector<Prediction> predictions;
   for (const ComparedModel& one : models)
     predictions.push_back(predict_all_rows(one.model, one.set.records[record_index].prepared));
@@ -110,22 +92,23 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
     plot.panels.push_back(std::move(traces));
     plot.panels.push_back(std::move(errors));
   };
-  if (record.has_speed()) add("speed", rotary ? "rad/s" : "m/s", record.w, &Prediction::w);
-  if (record.has_position()) add("position", rotary ? "mm" : "m", record.x, &Prediction::x);
+  if (record.has_speed()) add("speed", units.speed, record.w, &Prediction::w);
+  if (record.has_position()) add("position", units.travel, record.x, &Prediction::x);
   plot.panels.push_back({"command", "V", {{"command", SeriesRole::other, prepared.u_V}}});
   return plot;
 }
 
 void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
   std::vector<ResidualSamples> samples;
-  for (const ComparedModel& one : models) samples.push_back(pooled_samples(one.model, one.set));
+  for (const ComparedModel& one : models) samples.push_back(residual_samples(one.model, one.set, kStride));
   const ResidualSamples& first = samples.front();
   if (first.w.empty()) return;
   const bool rotary = models.front().model.data.kind == sim::DriveKind::rotary;
   const bool has_position = models.front().set.records.front().prepared.record->has_position();
-  const Axis missing{rotary ? "missing torque" : "missing force", rotary ? "Nm" : "N"};
+  const DriveUnits units = units_of(models.front().model.data.kind);
+  const Axis missing{rotary ? "missing torque" : "missing force", units.effort};
   const std::string effort = rotary ? "torque" : "force";
-  const Axis speed{"speed", rotary ? "rad/s" : "m/s"}, acceleration{"acceleration", rotary ? "rad/s²" : "m/s²"};
+  const Axis speed{"speed", units.speed}, acceleration{"acceleration", units.acceleration};
   report.section(
       "What is missing, as " + effort,
       "The " + effort +
@@ -139,13 +122,13 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
                        &ResidualSamples::missing));
   };
   add("speed", speed, &ResidualSamples::w);
-  if (has_position) add("position", {"position", rotary ? "mm" : "m"}, &ResidualSamples::x);
+  if (has_position) add("position", {"position", units.travel}, &ResidualSamples::x);
   add("acceleration", acceleration, &ResidualSamples::acceleration);
   add("time", {"time", "s"}, &ResidualSamples::t_s);
   if (first.tach_error.size() != first.w.size() || !has_position) return;
   report.section("What the tachometer adds",
                  "Tachometer less what the model's tachometer reads at the encoder's speed.");
-  const Axis error{"tachometer error", rotary ? "rad/s" : "m/s"};
+  const Axis error{"tachometer error", units.speed};
   report.add(
       against("Against speed", speed, error, models, samples, &ResidualSamples::w, &ResidualSamples::tach_error));
   report.add(against("Against acceleration", acceleration, error, models, samples, &ResidualSamples::acceleration,

@@ -43,4 +43,16 @@ ResidualSamples residual_samples(const sim::DriveDescription& model, const Prepa
   return samples;
 }
 
+ResidualSamples residual_samples(const sim::DriveDescription& model, const RecordSet& set, std::size_t stride) {
+  ResidualSamples all;
+  for (const ComparedRecord& compared : set.records) {
+    const ResidualSamples part = residual_samples(model, compared.prepared, stride);
+    for (const auto channel :
+         {&ResidualSamples::t_s, &ResidualSamples::x, &ResidualSamples::w, &ResidualSamples::acceleration,
+          &ResidualSamples::effort, &ResidualSamples::missing, &ResidualSamples::tach_error})
+      (all.*channel).insert((all.*channel).end(), (part.*channel).begin(), (part.*channel).end());
+  }
+  return all;
+}
+
 }  // namespace host

@@ -23,4 +23,7 @@ struct ResidualSamples {
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride);
 
+/// Of all records of a set, one after the other.
+ResidualSamples residual_samples(const sim::DriveDescription& model, const RecordSet& set, std::size_t stride);
+
 }  // namespace host

@@ -10,6 +10,7 @@
 #include "host/compare/error_partition.hpp"
 #include "host/compare/error_spectra.hpp"
 #include "host/evidence/regime.hpp"
+#include "host/record/drive_units.hpp"
 
 namespace host {
 
@@ -21,16 +22,6 @@ struct ErrorRow {
   std::size_t row;
   double square;
 };
-
-struct Units {
-  const char* travel;
-  const char* speed;
-  const char* effort;
-};
-
-Units units_of(const sim::DataSheet& data) {
-  return data.kind == sim::DriveKind::rotary ? Units{"mm", "rad/s", "Nm"} : Units{"m", "m/s", "N"};
-}
 
 /// 1, 2 or 5 times a power of ten, so that `span` takes about `count` steps.
 double round_step(double span, double count) {
@@ -121,7 +112,7 @@ Partition by_direction(const std::vector<ErrorRow>& rows, const RecordSet& set) 
   return partition;
 }
 
-Partition by_speed(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
+Partition by_speed(const std::vector<ErrorRow>& rows, const RecordSet& set, const DriveUnits& units) {
   Partition partition("speed");
   double top = 0.0;
   for (const ComparedRecord& compared : set.records)
@@ -137,7 +128,7 @@ Partition by_speed(const std::vector<ErrorRow>& rows, const RecordSet& set, cons
   return partition;
 }
 
-Partition by_position(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
+Partition by_position(const std::vector<ErrorRow>& rows, const RecordSet& set, const DriveUnits& units) {
   Partition partition("position");
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const ComparedRecord& compared : set.records) {
@@ -185,7 +176,7 @@ Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
 
 /// The stretch of the travel that stands out most, found as by_event finds one of time. Absent where it is most of the
 /// travel.
-Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const Units& units) {
+Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const DriveUnits& units) {
   constexpr std::size_t kBins = 200;
   Partition partition("place");
   std::vector<double> travel;
@@ -302,7 +293,7 @@ Partition by_event(const std::vector<ErrorRow>& rows, const RecordSet& set) {
 
 std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const RecordSet& set) {
   const sim::Drive drive(model);
-  const Units units = units_of(model.data);
+  const DriveUnits units = units_of(model.data.kind);
   const std::vector<ErrorRow> rows = rows_of(drive, set);
   std::vector<ErrorRegion> regions;
   by_regime(rows, set, model.data).append_to(regions);

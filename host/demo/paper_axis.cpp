@@ -11,6 +11,7 @@
 #include "host/identify/identification.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/report/text_format.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -75,8 +76,8 @@ void add_friction_plot(const FrictionIdentification& found, const sim::DriveDesc
     if (!point.is_steady()) continue;
     points.x.push_back(point.speed);
     points.y.push_back(point.effort);
-    points.lower.push_back(point.effort - 1.96 * point.standard_error);
-    points.upper.push_back(point.effort + 1.96 * point.standard_error);
+    points.lower.push_back(point.effort - kNormal95 * point.standard_error);
+    points.upper.push_back(point.effort + kNormal95 * point.standard_error);
     top_speed = std::max(top_speed, std::abs(point.speed));
   }
   ScatterPlot plot;

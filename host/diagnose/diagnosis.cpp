@@ -64,10 +64,9 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
 
 namespace {
 
-Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescription& model,
-                        const std::vector<const Record*>& training, const std::vector<const Record*>& validation,
-                        const ShareDone& progress) {
-  Diagnosis result(prepare_sets(model, training, validation, window_s, measure));
+/// By a search over the effects, on sets of `model` whose base is fitted.
+Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& model, const ShareDone& progress) {
+  Diagnosis result(std::move(sets));
   const sim::Drive given(model);
   if (!result.moves_enough) {
     result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
@@ -77,7 +76,7 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
     return result;
   }
   if (progress) progress(0.05);
-  SearchEffort effort = SearchEffort{}.over(window_s);
+  SearchEffort effort = SearchEffort{}.over(result.window_s);
   effort.nominal = &model;
   effort.cut_short = &result.not_searched;
   Findings found;
@@ -96,10 +95,6 @@ Diagnosis diagnose_over(double window_s, Measure measure, const sim::DriveDescri
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether the motion shows an effect that the regression of the effort could not have seen.
 bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   const DiagnosisVerdict& verdict = by_motion.verdict;
@@ -114,14 +109,16 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
 Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
-  const auto over = [&](double window_s, Measure measure) {
-    Diagnosis result = diagnose_over(window_s, measure, model, training, validation, progress);
+  const bool by_short_windows = before != nullptr && before->rough;
+  const PreparedSets split = by_short_windows ? PreparedSets{} : split_sets(model, training, validation);
+  const auto search = [&](PreparedSets sets) {
+    Diagnosis result = diagnose_by_search(std::move(sets), model, progress);
     result.log = measured.log();
     return result;
   };
   std::shared_ptr<const EffortScreen> screen;
   const auto by_effort = [&](bool rough) {
-    std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, training, validation, screen, rough);
+    std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, split, training, validation, screen, rough);
     if (diagnosis) diagnosis->log = measured.log();
     if (diagnosis && progress) progress(1.0);
     return diagnosis;
@@ -132,13 +129,13 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
     if (diagnosis && (!screen->chosen.empty() || screen->rows.steady)) return *std::move(diagnosis);
     if (diagnosis) {
       // Nothing that shows in the effort while the axis slides: a current limit, say, shows in the motion.
-      over_long_windows = over(kWindow_s, Measure::motion);
+      over_long_windows = search(with_base_fitted(split));
       over_long_windows->screen = screen;
       return *std::move(goes_beyond(*over_long_windows, *screen) ? over_long_windows : diagnosis);
     }
   }
-  if (before == nullptr || !before->rough) {
-    over_long_windows = over(kWindow_s, Measure::motion);
+  if (!by_short_windows) {
+    over_long_windows = search(with_base_fitted(split));
     over_long_windows->screen = screen;
     if (!over_long_windows->rough) return *std::move(over_long_windows);
     if (before == nullptr && !screen)
@@ -147,11 +144,12 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
   const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
       rough_measure(model, training, validation) == Measure::effort) {
-    Diagnosis result = over(short_s, Measure::effort);
+    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort));
     const Status status = result.verdict.status;
     if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
   }
-  if (short_s < kWindow_s || !over_long_windows) return over(std::min(short_s, kWindow_s), Measure::motion);
+  if (short_s < kWindow_s || !over_long_windows)
+    return search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s)));
   return *std::move(over_long_windows);
 }
 

@@ -9,59 +9,26 @@
 #include <utility>
 
 #include "host/compare/effort_residual.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/report/binned_curve.hpp"
 
 namespace host {
 
 namespace {
 
-struct Units {
-  std::string travel, speed, effort, acceleration;
-};
-
-Units units_of(const sim::DriveDescription& model) {
-  if (model.data.kind == sim::DriveKind::rotary) return {"mm", "rad/s", "Nm", "rad/s²"};
-  return {"m", "m/s", "N", "m/s²"};
-}
-
-/// Samples of all validation records, residual effort of one model.
+/// Samples of all validation records, thinned to what curves of a hundred bins need.
 ResidualSamples residuals_on(const sim::DriveDescription& model, const RecordSet& set) {
-  constexpr std::size_t kEnough = 30'000;  // samples, for curves of a hundred bins
+  constexpr std::size_t kEnough = 30'000;
   std::size_t rows = 0;
   for (const ComparedRecord& compared : set.records) rows += compared.prepared.record->size();
-  const std::size_t stride = 1 + rows / kEnough;
-  ResidualSamples all;
-  for (const ComparedRecord& compared : set.records) {
-    const ResidualSamples part = residual_samples(model, compared.prepared, stride);
-    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.t_s, part.t_s);
-    append(all.x, part.x);
-    append(all.w, part.w);
-    append(all.acceleration, part.acceleration);
-    append(all.effort, part.effort);
-    append(all.missing, part.missing);
-    append(all.tach_error, part.tach_error);
-  }
-  return all;
+  return residual_samples(model, set, 1 + rows / kEnough);
 }
 
 ScatterSeries curve(const std::string& name, SeriesRole role, const std::vector<double>& x,
                     const std::vector<double>& y) {
   constexpr std::size_t kMostBins = 160, kFewestBins = 8, kSamplesABin = 40, kFewestSamples = 20;
-  const BinnedCurve binned =
-      binned_curve(x, y, std::clamp(x.size() / kSamplesABin, kFewestBins, kMostBins), kFewestSamples);
-  ScatterSeries series;
-  series.name = name;
-  series.role = role;
-  series.style = SeriesStyle::line_and_points;
-  series.x = binned.x;
-  series.y = binned.mean;
-  series.lower = binned.lower;
-  series.upper = binned.upper;
-  series.samples = binned.samples;
-  return series;
+  const std::size_t bins = std::clamp(x.size() / kSamplesABin, kFewestBins, kMostBins);
+  return curve_series(name, role, binned_curve(x, y, bins, kFewestSamples));
 }
 
 ScatterPlot before_and_after(const std::string& title, const std::string& caption, const Axis& x, const Axis& y,
@@ -98,7 +65,7 @@ std::optional<double> period_of(const sim::DriveDescription& model, const Diagno
 }  // namespace
 
 void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {
-  const Units units = units_of(best);
+  const DriveUnits units = units_of(best.data.kind);
   const ResidualSamples before = residuals_on(diagnosis.base, diagnosis.validation);
   const ResidualSamples after = residuals_on(best, diagnosis.validation);
   report.section(
@@ -130,7 +97,7 @@ void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveD
 }
 
 void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {
-  const Units units = units_of(best);
+  const DriveUnits units = units_of(best.data.kind);
   const ComparedRecord& compared = diagnosis.validation.records.front();
   const Record& record = *compared.prepared.record;
   Prediction before, after;

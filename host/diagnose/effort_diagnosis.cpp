@@ -24,40 +24,6 @@ constexpr double kFarAboveNoise = 6.0;
 /// An effort is explained when this part of the error remains: nine tenths of its square are gone.
 constexpr double kExplainedPart = 0.316;
 
-/// Base parameters that moved by more than this were off, relative.
-constexpr double kMoved = 0.05;
-
-/// Residual over the sensors' noise on the rows that judge, or on the training rows.
-double over_noise(const EffortScreen& screen, const ScreenedModel& model, bool judges) {
-  const double residual = judges ? model.validate * screen.effort_validate : model.train * screen.effort_train;
-  return residual / std::max(screen.rows.noise, 1e-12);
-}
-
-JudgedCandidate judged(const EffortScreen& screen, const ScreenedModel& model) {
-  JudgedCandidate candidate;
-  candidate.kinds = model.kinds;
-  candidate.before = over_noise(screen, screen.base, true);
-  candidate.after = over_noise(screen, model, true);
-  candidate.train_after = over_noise(screen, model, false);
-  candidate.confidence = model.confidence;
-  candidate.luck = 1.0 - model.confidence;
-  candidate.model = model.model;
-  return candidate;
-}
-
-std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base) {
-  std::vector<std::string> moved;
-  for (const char* kind : {"inertia", "viscous", "coulomb"}) {
-    const sim::EffectEntry *before = given.find(kind), *after = base.find(kind);
-    if (before == nullptr || after == nullptr) continue;
-    const auto off = [&](const auto& parameter) {
-      return std::abs(after->at(parameter.first) - parameter.second) > kMoved * std::abs(parameter.second);
-    };
-    if (std::ranges::any_of(before->parameters, off)) moved.emplace_back(kind);
-  }
-  return moved;
-}
-
 std::string described(const ScreenedModel& model) {
   const std::string title(sim::find_effect(model.kinds.back())->title);
   return model.words.empty() ? title : fmt::format("{} ({})", title, model.words);
@@ -166,6 +132,23 @@ void append_channels(const EffortScreen& screen, const std::vector<const Record*
 
 }  // namespace
 
+double over_noise(const EffortScreen& screen, const ScreenedModel& model, bool judges) {
+  const double residual = judges ? model.validate * screen.effort_validate : model.train * screen.effort_train;
+  return residual / std::max(screen.rows.noise, 1e-12);
+}
+
+JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel& model) {
+  JudgedCandidate candidate;
+  candidate.kinds = model.kinds;
+  candidate.before = over_noise(screen, screen.base, true);
+  candidate.after = over_noise(screen, model, true);
+  candidate.train_after = over_noise(screen, model, false);
+  candidate.confidence = model.confidence;
+  candidate.luck = 1.0 - model.confidence;
+  candidate.model = model.model;
+  return candidate;
+}
+
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   if (screen.empty()) return false;
   if (screen.rows.steady) return true;
@@ -175,23 +158,22 @@ bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   return !screen.chosen.empty() || is_rough(error_of(sim::Drive(screen.base.model), validation));
 }
 
-std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model,
+std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
                                             const std::vector<const Record*>& training,
                                             const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& seen, bool rough) {
-  PreparedSets sets = split_sets(model, training, validation, kWindow_s, Measure::motion);
   if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
   auto screen = std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation));
   if (!screen->empty()) seen = screen;
   if (!effort_decides(*screen, sets.validation)) return {};
-  Diagnosis diagnosis(std::move(sets));
+  Diagnosis diagnosis(sets);
   diagnosis.measure = Measure::effort;
   diagnosis.rough = diagnosis.by_effort = true;
   diagnosis.base = screen->base.model;
   diagnosis.best = screen->best().model;
   for (std::size_t step = 0; step < screen->steps.size(); ++step)
     for (const ScreenedModel& tried : screen->steps[step]) {
-      diagnosis.candidates.push_back(judged(*screen, tried));
+      diagnosis.candidates.push_back(judged_by_effort(*screen, tried));
       // What was not worth its place on top of the verdict is no evidence for the whole.
       if (step >= screen->chosen.size() && step > 0) diagnosis.candidates.back().luck = 1.0;
     }

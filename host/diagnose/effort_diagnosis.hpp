@@ -11,14 +11,20 @@
 
 namespace host {
 
+/// Residual over the sensors' noise on the rows that judge, or on the training rows.
+double over_noise(const EffortScreen& screen, const ScreenedModel& model, bool judges);
+
+/// A model of the regression as a candidate, its errors over the sensors' noise.
+JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel& model);
+
 /// Whether the regression, not the search by motion, is to judge: no inertia shows in the records, so that any motion
 /// could be predicted with a wrong one; or what the best model leaves of the effort is far above the sensors' noise.
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation);
 
 /// The diagnosis by the regression, or nothing where the search by motion is to judge; `screen` is then what the
-/// regression saw, where it saw anything. `rough`: the search by motion has shown that it is not to judge. Throws as
-/// prepare_sets() does.
-std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model,
+/// regression saw, where it saw anything. `sets`: of these records, split_sets() of the model. `rough`: the search by
+/// motion has shown that it is not to judge. Throws as prepare_sets() does.
+std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
                                             const std::vector<const Record*>& training,
                                             const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& screen, bool rough = false);

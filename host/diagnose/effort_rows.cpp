@@ -10,6 +10,7 @@
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/motion.hpp"
 #include "host/identify/zero_phase_filter.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -27,12 +28,6 @@ constexpr double kIdleShare = 0.3;
 constexpr double kBlock_s = 0.5;
 /// What slides for less than this in all proves nothing, s.
 constexpr double kLeastSliding_s = 0.2;
-
-double root_mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
 
 /// Whether a record moves at one speed a direction, starts and reversals included, so that inertia hardly shows.
 bool is_steady(const std::vector<double>& speed, double slow, double inertia, const std::vector<double>& acceleration,
@@ -222,6 +217,17 @@ bool enough(const EffortRows& rows, bool judges) {
 }
 
 }  // namespace
+
+double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges, bool fast_alone) {
+  double sum = 0.0, count = 0.0;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (rows.judges[row] != judges || (fast_alone && !rows.fast[row])) continue;
+    sum += values(k) * values(k);
+    count += 1.0;
+  }
+  return std::sqrt(sum / std::max(count, 1.0));
+}
 
 EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation) {
   bool position = true, speed = true;

@@ -36,6 +36,9 @@ struct EffortRows {
   std::size_t size() const { return judges.size(); }
 };
 
+/// Of one value a row, over the rows that judge or those that train; `fast_alone`: without those near sticking.
+double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges, bool fast_alone = false);
+
 /// Rows of both sets, from the channel that leaves less of the effort unexplained by inertia and friction. Empty where
 /// a record has no effort, or nothing slides for a second in either set.
 EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation);

@@ -46,8 +46,8 @@ class Regressor {
   Regressor(const sim::DriveDescription& model, const EffortRows& rows) : model_(model), rows_(rows) {
     train_.resize(rows.effort.size());
     for (Index k = 0; k < train_.size(); ++k) train_(k) = rows.judges[static_cast<std::size_t>(k)] ? 0.0 : 1.0;
-    effort_train_ = root_mean(rows.effort, false);
-    effort_validate_ = root_mean(rows.effort, true);
+    effort_train_ = root_mean_square(rows, rows.effort, false);
+    effort_validate_ = root_mean_square(rows, rows.effort, true);
   }
 
   /// Fits the base and the further terms; false where a further term's factor has no room within physics.
@@ -108,17 +108,6 @@ class Regressor {
     }
     measure(out);
     return true;
-  }
-
-  double root_mean(const VectorXd& values, bool judges, bool fast_alone = false) const {
-    double sum = 0.0, count = 0.0;
-    for (Index k = 0; k < values.size(); ++k) {
-      const auto row = static_cast<std::size_t>(k);
-      if (rows_.judges[row] != judges || (fast_alone && !rows_.fast[row])) continue;
-      sum += values(k) * values(k);
-      count += 1.0;
-    }
-    return std::sqrt(sum / std::max(count, 1.0));
   }
 
   /// That the judging rows' error falls, by a bootstrap over their blocks.
@@ -193,10 +182,10 @@ class Regressor {
   }
 
   void measure(ScreenedModel& model) const {
-    model.train = root_mean(model.residual, false) / effort_train_;
-    model.validate = root_mean(model.residual, true) / effort_validate_;
-    model.fast_train = root_mean(model.residual, false, true) / effort_train_;
-    model.fast_validate = root_mean(model.residual, true, true) / effort_validate_;
+    model.train = root_mean_square(rows_, model.residual, false) / effort_train_;
+    model.validate = root_mean_square(rows_, model.residual, true) / effort_validate_;
+    model.fast_train = root_mean_square(rows_, model.residual, false, true) / effort_train_;
+    model.fast_validate = root_mean_square(rows_, model.residual, true, true) / effort_validate_;
   }
 
   SetError by_block(const VectorXd& residual) const {
@@ -352,8 +341,8 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
   screen.rows = effort_rows(model, training, validation);
   if (screen.empty()) return screen;
   const Regressor regressor(model, screen.rows);
-  screen.effort_train = regressor.root_mean(screen.rows.effort, false);
-  screen.effort_validate = regressor.root_mean(screen.rows.effort, true);
+  screen.effort_train = root_mean_square(screen.rows, screen.rows.effort, false);
+  screen.effort_validate = root_mean_square(screen.rows, screen.rows.effort, true);
   screen.rows.effort -= standing_effort(model, screen.rows);
   const std::vector<EffortTerm> base = base_terms(model, screen.rows);
   if (!(screen.effort_train > 0.0) || !(screen.effort_validate > 0.0) ||

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/statistics.hpp"
 #include "sim/curve.hpp"
 
 namespace host {
@@ -83,16 +84,6 @@ MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
   return columns;
 }
 
-double root_mean(const EffortRows& rows, const VectorXd& residual, bool judges) {
-  double sum = 0.0, count = 0.0;
-  for (Index k = 0; k < residual.size(); ++k) {
-    if (rows.judges[static_cast<std::size_t>(k)] != judges) continue;
-    sum += residual(k) * residual(k);
-    count += 1.0;
-  }
-  return std::sqrt(sum / std::max(1.0, count));
-}
-
 std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view over, std::size_t count) {
   const EffortRows& rows = screen.rows;
   const std::optional<Coordinate> coordinate = coordinate_of(rows, over);
@@ -118,21 +109,20 @@ std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view 
 
   FreeCurveFit fit{std::string(over), knots.size(), before};
   fit.model.residual = before.residual - columns * values;
-  fit.model.train = root_mean(rows, fit.model.residual, false) / screen.effort_train;
-  fit.model.validate = root_mean(rows, fit.model.residual, true) / screen.effort_validate;
+  fit.model.train = root_mean_square(rows, fit.model.residual, false) / screen.effort_train;
+  fit.model.validate = root_mean_square(rows, fit.model.residual, true) / screen.effort_validate;
   fit.model.kinds.emplace_back("free_curve");
   fit.model.words = fmt::format("over {}, {} knots", over, knots.size());
   sim::EffectEntry entry;
   entry.kind = "free_curve";
   entry.over = over;
-  const double variance = std::pow(root_mean(rows, fit.model.residual, false), 2);
+  const double variance = std::pow(root_mean_square(rows, fit.model.residual, false), 2);
   const MatrixXd covariance = variance * moments.ldlt().solve(MatrixXd::Identity(moments.cols(), moments.cols()));
   for (std::size_t n = 0; n < knots.size(); ++n) {
     const auto c = static_cast<Index>(n);
     const std::string id = sim::numbered_id("value", static_cast<double>(n));
     entry.parameters[sim::numbered_id("knot", static_cast<double>(n))] = knots[n];
     entry.parameters[id] = values(c);
-    constexpr double kNormal95 = 1.96;
     const double reach = kNormal95 * std::sqrt(std::max(0.0, covariance(c, c)));
     entry.ci95[id] = {values(c) - reach, values(c) + reach};
   }

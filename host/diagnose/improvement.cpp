@@ -12,6 +12,7 @@
 #include "host/diagnose/free_curve_fit.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/exit_codes.hpp"
+#include "host/statistics.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"
 
@@ -40,14 +41,12 @@ Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::stri
 /// The rungs of a regression: it chose one effect after the other against one floor, and stopped by itself.
 void append_effort_ladder(const Diagnosis& diagnosis, Improvement& result) {
   const EffortScreen& screen = *diagnosis.screen;
-  const double train = diagnosis.before_train / screen.base.train;
-  const double validate = diagnosis.before_validate / screen.base.validate;
   std::size_t known = 0;
   for (const ScreenedModel& step : screen.chosen) {
     Rung rung = rung_of(diagnosis, true, {step.kinds.begin() + static_cast<std::ptrdiff_t>(known), step.kinds.end()});
     known = step.kinds.size();
-    rung.train = train * step.train;
-    rung.validate = validate * step.validate;
+    rung.train = over_noise(screen, step, false);
+    rung.validate = over_noise(screen, step, true);
     result.ladder.push_back(std::move(rung));
   }
   result.stopped_because = "no further effect takes its part of the effort that is left";
@@ -107,23 +106,15 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
 namespace {
 
 Addition addition_of(const EffortScreen& screen, const ScreenedModel& added, const PreparedSets& sets) {
-  const double noise = std::max(screen.rows.noise, 1e-12);
   Addition addition;
   addition.held_back = sets.held_back;
-  addition.judged.kinds = added.kinds;
-  addition.judged.before = screen.base.validate * screen.effort_validate / noise;
-  addition.judged.after = added.validate * screen.effort_validate / noise;
-  addition.judged.train_after = added.train * screen.effort_train / noise;
-  addition.judged.confidence = added.confidence;
-  addition.judged.model = added.model;
+  addition.judged = judged_by_effort(screen, added);
   return addition;
 }
 
 /// The addition by plain least squares, where that is to judge and knows the effect.
 std::optional<Addition> add_by_effort(const sim::DriveDescription& model, const std::string& kind,
-                                      const std::vector<const Record*>& training,
-                                      const std::vector<const Record*>& validation) {
-  const PreparedSets sets = split_sets(model, training, validation);
+                                      const PreparedSets& sets) {
   const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 1);
   if (!effort_decides(screen, sets.validation) || screen.steps.empty()) return {};
   for (const ScreenedModel& tried : screen.steps.front()) {
@@ -154,7 +145,7 @@ Addition add_free_curve(const sim::DriveDescription& model, const std::string& o
   for (const auto& [id, value] : fit->model.model.effects.back().parameters) {
     const auto interval = fit->model.model.effects.back().ci95.find(id);
     if (interval == fit->model.model.effects.back().ci95.end()) continue;
-    const double deviation = 0.5 * (interval->second[1] - interval->second[0]) / 1.96;
+    const double deviation = 0.5 * (interval->second[1] - interval->second[0]) / kNormal95;
     addition.estimates.push_back({"free_curve." + id, value, deviation, true, {}, 0.0});
   }
   return addition;
@@ -164,11 +155,12 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
-  if (std::optional<Addition> by_effort = add_by_effort(model, kind, training, validation)) return *by_effort;
+  const PreparedSets split = split_sets(model, training, validation);
+  if (std::optional<Addition> by_effort = add_by_effort(model, kind, split)) return *by_effort;
   PreparedSets sets;
   std::vector<Candidate> found;
-  const auto search = [&](double window_s, Measure measure) {
-    sets = prepare_sets(model, training, validation, window_s, measure);
+  const auto search = [&](PreparedSets fitted) {
+    sets = std::move(fitted);
     if (!sets.moves_enough)
       throw Failure(ExitCode::refused, fmt::format("{}: {:.1f} s more of motion are needed to fit and to judge it",
                                                    kind, std::max(0.1, missing_motion_s(sets))));
@@ -177,7 +169,7 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
                     fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or "
                                 "these records do not hold the channel in which it shows",
                                 kind));
-    SearchEffort effort = SearchEffort{}.over(window_s);
+    SearchEffort effort = SearchEffort{}.over(sets.window_s);
     effort.nominal = &model;
     found = search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, effort);
     if (found.empty())
@@ -185,9 +177,10 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
                     fmt::format("{}: no start of the fit lowers the error; these records do not show the effect. {}",
                                 kind, info->separate_by));
   };
-  search(kWindow_s, Measure::motion);
+  search(with_base_fitted(split));
   if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)))
-    search(rough_window_s(training), rough_measure(found.front().model, training, validation));
+    search(prepare_sets(model, training, validation, rough_window_s(training),
+                        rough_measure(found.front().model, training, validation)));
   Addition addition;
   addition.held_back = sets.held_back;
   renew_floors(sets.training, found.front().model);

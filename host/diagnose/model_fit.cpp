@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "host/statistics.hpp"
+
 namespace host {
 
 namespace {
@@ -164,7 +166,6 @@ std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, 
   for (; row < rows; ++row) meat += jacobian.row(row).transpose() * jacobian.row(row);  // what is believed
   const Eigen::MatrixXd bread = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
   const Eigen::MatrixXd covariance = bread * meat * bread;
-  constexpr double kNormal95 = 1.96;
   constexpr double kNearlyOne = 0.95;
   for (Eigen::Index k = 0; k < columns; ++k) {
     const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(k)];

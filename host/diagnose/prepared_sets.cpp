@@ -142,14 +142,17 @@ PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<co
   return sets;
 }
 
-PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                          const std::vector<const Record*>& validation, double window_s, Measure measure) {
-  PreparedSets sets = split_sets(model, training, validation, window_s, measure);
+PreparedSets with_base_fitted(PreparedSets sets) {
   if (!sets.moves_enough) return sets;
-  sets.base = fit_base(model, sets.training);
+  sets.base = fit_base(sets.base, sets.training);
   renew_floors(sets.training, sets.base);
   renew_floors(sets.validation, sets.base);
   return sets;
+}
+
+PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                          const std::vector<const Record*>& validation, double window_s, Measure measure) {
+  return with_base_fitted(split_sets(model, training, validation, window_s, measure));
 }
 
 }  // namespace host

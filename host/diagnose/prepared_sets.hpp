@@ -48,6 +48,9 @@ PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<co
                         const std::vector<const Record*>& validation, double window_s = kWindow_s,
                         Measure measure = Measure::motion);
 
+/// Split sets with their base fitted again, and its floors; as they are where the axis hardly moves.
+PreparedSets with_base_fitted(PreparedSets sets);
+
 /// The sets, floors and re-fitted base that a diagnosis begins with. Throws Failure(bad_input) for records that cannot
 /// be compared. Keeps references to the records.
 PreparedSets prepare_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,

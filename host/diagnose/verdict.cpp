@@ -81,21 +81,6 @@ const JudgedCandidate* simplest_near(const JudgedCandidate* best, const Diagnosi
   return simplest;
 }
 
-std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base) {
-  std::vector<std::string> moved;
-  for (const char* kind : {"inertia", "viscous", "coulomb"}) {
-    const sim::EffectEntry* before = given.find(kind);
-    const sim::EffectEntry* after = base.find(kind);
-    if (before == nullptr || after == nullptr) continue;
-    const bool off = std::ranges::any_of(before->parameters, [&](const auto& parameter) {
-      const auto& [id, value] = parameter;
-      return std::abs(after->at(id) - value) > kMoved * std::abs(value);
-    });
-    if (off) moved.emplace_back(kind);
-  }
-  return moved;
-}
-
 std::string title_of(const std::string& kind) { return std::string(sim::find_effect(kind)->title); }
 
 std::string parameters_in_words(const sim::EffectEntry& entry, sim::DriveKind kind) {
@@ -160,6 +145,21 @@ std::string doubt_in_words(const JudgedCandidate& closest, const Diagnosis& diag
 }
 
 }  // namespace
+
+std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base) {
+  std::vector<std::string> moved;
+  for (const char* kind : {"inertia", "viscous", "coulomb"}) {
+    const sim::EffectEntry* before = given.find(kind);
+    const sim::EffectEntry* after = base.find(kind);
+    if (before == nullptr || after == nullptr) continue;
+    const bool off = std::ranges::any_of(before->parameters, [&](const auto& parameter) {
+      const auto& [id, value] = parameter;
+      return std::abs(after->at(id) - value) > kMoved * std::abs(value);
+    });
+    if (off) moved.emplace_back(kind);
+  }
+  return moved;
+}
 
 DiagnosisVerdict insufficient_data(const sim::DriveDescription& model, const PreparedSets& sets) {
   DiagnosisVerdict verdict;

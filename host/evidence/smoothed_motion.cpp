@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "host/exit_codes.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -98,12 +99,6 @@ void doubt_friction(const std::vector<double>& w, const std::vector<bool>& stand
   }
 }
 
-double rms_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 template <typename Observations>
 void doubt_command(const std::vector<double>& u_V, double period_s, Observations& observed) {
   const auto memory = std::max<std::size_t>(1, static_cast<std::size_t>(kCommandMemory_s / period_s));
@@ -158,7 +153,7 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   const double noise =
       by_position_ ? std::max(resolution * resolution / 12.0, 1e-18) : data.tach_noise_variance.value_or(1e-6);
   const double level_V = friction_level / effort_per_volt_;
-  const double rms_V = rms_of(u_V);
+  const double rms_V = root_mean_square(u_V);
   const double quiet_V =
       std::max({kQuietPartOfFriction * level_V, kQuietPartOfCommand * rms_V, std::numeric_limits<double>::min()}) *
       std::sqrt(period_s / 1e-3);
@@ -174,8 +169,8 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   const double unknown_V = std::max({level_V, rms_V, quiet_V});
   const double unknown_w = gain * unknown_V * kUnknown_s;
   const double unknown_x = std::max(data.lead * unknown_w * kUnknown_s, std::sqrt(noise));
-  start_variance_ = Vector3d(unknown_x, unknown_w, unknown_V).array().square();
-  solve_gains(observed, creep * creep);
+  const Vector3d start_variance = Vector3d(unknown_x, unknown_w, unknown_V).array().square();
+  solve_gains(observed, creep * creep, start_variance);
   smooth(observed, u_V, start);
   if (!by_position_) return;
 
@@ -185,11 +180,12 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   for (std::size_t k = 0; k < record.size(); ++k) observed[k].standing = standing[k];
   doubt_friction(rough_w, standing, level_V, observed);
   if (resolution > 0.0) observe_counts(record.x, resolution, period_s, data.lead, rough_w, observed);
-  solve_gains(observed, creep * creep);
+  solve_gains(observed, creep * creep, start_variance);
   smooth(observed, u_V, start);
 }
 
-void MotionSmoother::solve_gains(const std::vector<Observation>& observed, double creep_variance) {
+void MotionSmoother::solve_gains(const std::vector<Observation>& observed, double creep_variance,
+                                 const Vector3d& start_variance) {
   const std::size_t n = observed.size();
   const Eigen::Index seen = by_position_ ? 0 : 1;
   const auto correct = [](Matrix3d& P, Eigen::Index channel, double variance) -> Vector3d {
@@ -201,7 +197,7 @@ void MotionSmoother::solve_gains(const std::vector<Observation>& observed, doubl
   };
   gains_.resize(n);
   std::vector<Matrix3d> filtered(n), predicted(n);
-  Matrix3d P = start_variance_.asDiagonal();
+  Matrix3d P = start_variance.asDiagonal();
   for (std::size_t k = 0; k < n; ++k) {
     predicted[k] = P;
     gains_[k].standing = observed[k].standing;

@@ -66,13 +66,13 @@ class MotionSmoother {
     Eigen::Matrix3d backward;
     bool standing;
   };
-  void solve_gains(const std::vector<Observation>& observed, double creep_variance);
+  void solve_gains(const std::vector<Observation>& observed, double creep_variance,
+                   const Eigen::Vector3d& start_variance);
   void smooth(const std::vector<Observation>& observed, const std::vector<double>& u_V, const Eigen::Vector3d& start);
 
   bool by_position_;
   std::size_t reach_;
   double effort_per_volt_;
-  Eigen::Vector3d start_variance_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d A_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d B_ = Eigen::Vector3d::Zero();
   std::vector<Gains> gains_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/identify/identification_json.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -54,7 +55,6 @@ nlohmann::json friction_json(const FrictionIdentification& found) {
   const std::string speed = rotary ? "w_rad_s" : "v_m_s", effort = rotary ? "torque_Nm" : "force_N";
   nlohmann::json points = nlohmann::json::array();
   for (const FrictionPoint& point : found.points) {
-    constexpr double kNormal95 = 1.96;
     const double half = kNormal95 * point.standard_error;
     nlohmann::json entry = {{speed, point.speed},
                             {effort, point.effort},

@@ -19,8 +19,6 @@ bool may_repeat(const sim::EffectInfo& info);
 constexpr std::string_view curve_deviation_key(sim::DriveKind kind) {
   return kind == sim::DriveKind::rotary ? "sd_Nm" : "sd_N";
 }
-/// Half of a 95 % interval in standard deviations.
-inline constexpr double kNormal95 = 1.96;
 
 /// All kinds of the catalogue, for messages.
 std::vector<std::string_view> effect_kinds();

@@ -11,6 +11,7 @@
 #include "host/model/effect_forms.hpp"
 #include "host/nearest_name.hpp"
 #include "host/read_file.hpp"
+#include "host/statistics.hpp"
 #include "host/toml_text.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"

@@ -10,6 +10,7 @@
 #include "host/model/data_sheet_fields.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
+#include "host/statistics.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"
 #include "sim/harmonic.hpp"

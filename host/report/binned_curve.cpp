@@ -76,4 +76,8 @@ BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, s
   return curve;
 }
 
+ScatterSeries curve_series(const std::string& name, SeriesRole role, const BinnedCurve& curve) {
+  return {name, role, SeriesStyle::line_and_points, curve.x, curve.mean, curve.lower, curve.upper, curve.samples};
+}
+
 }  // namespace host

@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
+
+#include "host/report/content.hpp"
 
 namespace host {
 
@@ -22,5 +25,8 @@ struct BinnedCurve {
 /// all is left out. Samples with a NaN are left out.
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
                          std::size_t min_samples = 10);
+
+/// As points that a line joins, with the spread as its band.
+ScatterSeries curve_series(const std::string& name, SeriesRole role, const BinnedCurve& curve);
 
 }  // namespace host

@@ -71,12 +71,19 @@ double five_orders(const Point& point) {
   return sum;
 }
 
+std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record*>& train,
+                                            const std::vector<const host::Record*>& validate,
+                                            std::shared_ptr<const host::EffortScreen>& seen) {
+  const sim::DriveDescription model = motor();
+  return host::diagnose_by_effort(model, host::split_sets(model, train, validate), train, validate, seen);
+}
+
 // A screen that stops at one order, counts orders over a wrong period or mistakes the sign leaves more.
 TEST(EffortScreen, FindsFiveOrdersOfCoggingInASlowRecord) {
   const host::Record train = record_of(slow_turning, five_orders, 0.0, 20.0, 1);
   const host::Record validate = record_of(slow_turning, five_orders, 23.0, 36.0, 2);
   std::shared_ptr<const host::EffortScreen> seen;
-  const auto by_effort = host::diagnose_by_effort(motor(), {&train}, {&validate}, seen);
+  const auto by_effort = by_effort_of({&train}, {&validate}, seen);
   ASSERT_TRUE(by_effort.has_value());
   const host::Diagnosis& diagnosis = *by_effort;
   EXPECT_EQ(diagnosis.verdict.status, host::Status::missing);
@@ -107,7 +114,7 @@ TEST(EffortScreen, SeesAWeightInPartOfATurn) {
   const host::Record train = record_of(swinging, weight, 0.0, 20.0, 6);
   const host::Record validate = record_of(swinging, weight, 23.0, 36.0, 7);
   std::shared_ptr<const host::EffortScreen> seen;
-  const auto by_effort = host::diagnose_by_effort(motor(), {&train}, {&validate}, seen);
+  const auto by_effort = by_effort_of({&train}, {&validate}, seen);
   ASSERT_TRUE(by_effort.has_value());
   EXPECT_THAT(by_effort->verdict.effects, ElementsAre("cogging"));
   EXPECT_NEAR(by_effort->best.find("cogging")->at("period"), kTurn, 1e-9);
@@ -143,7 +150,7 @@ TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
   std::vector<const host::Record*> train, validate;
   for (std::size_t k = 0; k < records.size(); ++k) (k % 4 < 2 ? train : validate).push_back(&records[k]);
   std::shared_ptr<const host::EffortScreen> seen;
-  const auto by_effort = host::diagnose_by_effort(motor(), train, validate, seen);
+  const auto by_effort = by_effort_of(train, validate, seen);
   ASSERT_TRUE(by_effort.has_value());
   const host::Diagnosis& diagnosis = *by_effort;
   EXPECT_EQ(diagnosis.verdict.status, host::Status::ambiguous);
