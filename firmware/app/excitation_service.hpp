@@ -37,8 +37,7 @@ class ExcitationService {
   bool plan(const ExcitationRequest& r, const AxisValues& values, float rate_Hz) {
     for (const float value : {r.speed, r.drive_velocity, r.volts, r.amplitude, r.ride})
       if (!ScalarTraits<float>::is_finite(value)) return false;
-    constexpr float kFastest = 16384;  // counts a sample
-    if (r.kind >= kExcitationKinds || r.input >= kExcitationInputs || !(r.speed > 0) || r.speed > kFastest)
+    if (r.kind >= kExcitationKinds || r.input >= kExcitationInputs || !(r.speed > 0) || r.speed > kMostSpeedCounts)
       return false;
     plan_.kind = static_cast<ExcitationKind>(r.kind);
     plan_.input = static_cast<ExcitationInput>(r.input);

@@ -11,6 +11,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/device/capture.hpp"
 #include "host/device/motion.hpp"
+#include "host/device/quantity.hpp"
 #include "host/device/triggered_capture.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/progress.hpp"
@@ -45,11 +46,9 @@ host::JogStep parse_jog(const std::string& text) {
 /// "0.05", "50ms", "2s".
 double seconds_of(const std::string& text) {
   if (text.empty()) return 0.0;
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
+  const auto [value, unit] = host::parse_quantity(text).value_or(host::Quantity{-1.0, {}});
   const double factor = unit.empty() || unit == "s" ? 1.0 : unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : 0.0;
-  if (end == text.c_str() || factor == 0.0 || !(value >= 0.0) || value * factor > 3600.0)
+  if (factor == 0.0 || !(value >= 0.0) || value * factor > 3600.0)
     throw host::Failure(host::ExitCode::usage, fmt::format("--pre {}: write seconds, or 50ms", text));
   return value * factor;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -44,9 +43,7 @@ Verdict verdict_of(const ComparedModel& compared) {
     verdict.label = comparison.combined <= kNear ? "nearly fits" : "does not fit";
     verdict.headline = fmt::format("The prediction error is {} times what the best possible model would leave.", times);
   }
-  std::string where = where_it_fails(comparison.where);
-  where.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(where.front())));
-  verdict.sentences.push_back(where + ".");
+  verdict.sentences.push_back(capitalised(where_it_fails(comparison.where)) + ".");
   if (comparison.log_faults.empty()) {
     verdict.sentences.push_back("Next: find out which effect is missing.");
     verdict.command = "axistool diagnose " + shell_word(compared.path) + " --train";

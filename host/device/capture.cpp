@@ -52,8 +52,7 @@ class CaptureRun {
     if (!settings_.jogs.empty()) board_.stop();
     if (settings_.trigger) capture_.trigger_s = (trigger_number_ - capture_.number.front()) * capture_.row_period_s;
     capture_.dropped_by_board = board_.stop_capture().dropped;
-    for (std::size_t i = 1; i < capture_.number.size(); ++i)
-      capture_.lost += capture_.number[i] - capture_.number[i - 1] - 1;
+    capture_.lost = lost_rows(capture_);
     return std::move(capture_);
   }
 
@@ -109,22 +108,14 @@ class CaptureRun {
   }
 
   void take(const BoardClient::Samples& samples) {
-    const std::size_t words = settings_.channels.size();
-    if (samples.words.size() % words != 0)
-      throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
-    for (std::size_t row = 0; row * words < samples.words.size() && after_ < wanted_; ++row)
-      take_row(samples.first_row + static_cast<std::uint32_t>(row), samples.words.data() + row * words);
+    const std::size_t rows = rows_in(samples, settings_.channels.size());
+    for (std::size_t row = 0; row < rows && after_ < wanted_; ++row)
+      take_row(samples.first_row + static_cast<std::uint32_t>(row),
+               samples.words.data() + row * settings_.channels.size());
   }
 
-  /// A row's words stand in the order of the channels' numbers.
   void take_row(std::uint32_t number, const std::uint32_t* words) {
-    std::vector<std::size_t> order(settings_.channels.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-      order[i] = static_cast<std::size_t>(std::ranges::count_if(
-          settings_.channels, [&](firmware::Channel other) { return other < settings_.channels[i]; }));
-    capture_.number.push_back(number);
-    for (std::size_t i = 0; i < order.size(); ++i)
-      capture_.channel[i].push_back(scale_(settings_.channels[i], words[order[i]]));
+    append_row(capture_, settings_.channels, scale_, number, words);
     if (!triggered_) {
       const double value = capture_.channel[trigger_column_].back();
       const bool beyond =
@@ -180,6 +171,27 @@ Trigger parse_trigger(std::string_view text, sim::DriveKind kind) {
     throw Failure(ExitCode::usage, fmt::format("{}: write CHANNEL>LEVEL or CHANNEL<LEVEL, for example '{}>5'", text,
                                                channel_name(firmware::Channel::tachometer_velocity, kind)));
   return {channel_named(text.substr(0, sign), kind), text[sign] == '>', value};
+}
+
+std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels) {
+  if (samples.words.size() % channels != 0)
+    throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
+  return samples.words.size() / channels;
+}
+
+void append_row(Capture& capture, const std::vector<firmware::Channel>& channels, ChannelScale& scale,
+                std::uint32_t number, const std::uint32_t* words) {
+  capture.number.push_back(number);
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const auto place = std::ranges::count_if(channels, [&](firmware::Channel other) { return other < channels[i]; });
+    capture.channel[i].push_back(scale(channels[i], words[place]));
+  }
+}
+
+std::size_t lost_rows(const Capture& capture) {
+  std::size_t lost = 0;
+  for (std::size_t i = 1; i < capture.number.size(); ++i) lost += capture.number[i] - capture.number[i - 1] - 1;
+  return lost;
 }
 
 Capture run_capture(BoardClient& board, const CaptureSettings& settings,

@@ -49,6 +49,16 @@ struct Capture {
   std::uint32_t dropped_by_board = 0;
 };
 
+/// Rows of one report of so many channels. Throws Failure(protocol) for a part of one.
+std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels);
+
+/// Appends a row; its words stand in the order of the channels' numbers.
+void append_row(Capture& capture, const std::vector<firmware::Channel>& channels, ChannelScale& scale,
+                std::uint32_t number, const std::uint32_t* words);
+
+/// Rows that are missing between the first and the last.
+std::size_t lost_rows(const Capture& capture);
+
 /// Runs a capture. `progress` is told the rows so far. Throws Failure: time_out (no trigger), what BoardClient throws,
 /// device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and the board to end
 /// the capture.

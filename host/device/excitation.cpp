@@ -43,16 +43,10 @@ class Rows {
   bool fetch(milliseconds patience) {
     const auto samples = board_.next_samples(patience);
     if (!samples) return false;
-    const std::size_t words = settings_.channels.size();
-    if (samples->words.size() % words != 0)
-      throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
-    for (std::size_t row = 0; row * words < samples->words.size(); ++row) {
-      const std::uint32_t number = samples->first_row + static_cast<std::uint32_t>(row);
-      if (!capture_.number.empty()) capture_.lost += number - capture_.number.back() - 1;
-      capture_.number.push_back(number);
-      for (std::size_t i = 0; i < words; ++i)
-        capture_.channel[i].push_back(scale_(settings_.channels[i], samples->words[row * words + i]));
-    }
+    const std::size_t channels = settings_.channels.size(), rows = rows_in(*samples, channels);
+    for (std::size_t row = 0; row < rows; ++row)
+      append_row(capture_, settings_.channels, scale_, samples->first_row + static_cast<std::uint32_t>(row),
+                 samples->words.data() + row * channels);
     return true;
   }
 
@@ -130,6 +124,7 @@ ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Ex
     }
     outcome.capture.dropped_by_board = board.stop_capture().dropped;
     while (rows.fetch(milliseconds(50))) continue;
+    outcome.capture.lost = lost_rows(outcome.capture);
   } catch (const Failure&) {
     try {
       board.stop_excitation();

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "host/device/excitation.hpp"
+#include "host/device/quantity.hpp"
 #include "host/exit_codes.hpp"
 #include "host/nearest_name.hpp"
 
@@ -115,7 +116,7 @@ class Designer {
       refuse(fmt::format("travel = {:g} is no window that the encoder can tell", box_.travel));
     r.travel_counts = static_cast<std::int32_t>(half);
     r.speed = static_cast<float>(counts_a_sample(box_.speed));
-    if (!(r.speed * firmware::kSpeedSamples >= 2.0F) || r.speed > 16384.0F)
+    if (!(r.speed * firmware::kSpeedSamples >= 2.0F) || r.speed > firmware::kMostSpeedCounts)
       refuse(fmt::format("speed = {:g} is {:g} counts a sample: the encoder cannot tell it", box_.speed,
                          static_cast<double>(r.speed)));
     r.drive_velocity = static_cast<float>(!scale_.has_tachometer ? -1.0
@@ -357,21 +358,15 @@ class Designer {
 
 /// "20", "20mm", "100mm/s" in the drive's own unit (rotary: mm; linear: m).
 double quantity(std::string_view name, std::string_view text, sim::DriveKind kind) {
-  const std::string copy(text);
-  char* end = nullptr;
-  const double value = std::strtod(copy.c_str(), &end);
-  std::string unit(end);
+  const std::optional<Quantity> written = parse_quantity(text);
+  std::string unit = written ? written->unit : "";
   const bool is_length = name == "travel" || name == "speed";
   if (name == "speed" && unit.ends_with("/s")) unit.resize(unit.size() - 2);
-  double factor = 0.0;
-  const bool is_rotary = kind == sim::DriveKind::rotary;
-  if (unit.empty() || (name == "volts" && unit == "V") || (name == "time" && unit == "s")) factor = 1.0;
-  if (is_length && unit == "mm") factor = is_rotary ? 1.0 : 1e-3;
-  if (is_length && unit == "m") factor = is_rotary ? 1e3 : 1.0;
-  if (is_length && unit == "um") factor = is_rotary ? 1e-3 : 1e-6;
-  if (end == copy.c_str() || factor == 0.0)
+  const bool is_own = unit.empty() || (name == "volts" && unit == "V") || (name == "time" && unit == "s");
+  const double factor = is_own ? 1.0 : is_length ? length_factor(unit, kind) : 0.0;
+  if (!written || factor == 0.0)
     throw Failure(ExitCode::usage, fmt::format("--box {}={}: not a number, or a unit of something else", name, text));
-  return value * factor;
+  return written->value * factor;
 }
 
 }  // namespace

@@ -13,7 +13,9 @@
 
 #include "firmware/app/channel_words.hpp"
 #include "firmware/app/parameters/axis_values.hpp"
+#include "host/device/quantity.hpp"
 #include "host/exit_codes.hpp"
+#include "host/record/number.hpp"
 
 namespace host {
 
@@ -52,28 +54,16 @@ Channel channel_called(std::string_view name, sim::DriveKind kind) {
   }
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 /// "20um", "0.5V", "12": in the drive's own unit.
 double level_of(std::string_view text, sim::DriveKind kind) {
-  const std::string copy(trimmed(text));
-  char* end = nullptr;
-  const double value = std::strtod(copy.c_str(), &end);
-  const std::string unit(trimmed(end));
-  const double per_mm = kind == sim::DriveKind::rotary ? 1.0 : 1e-3;
-  double factor = 0.0;
-  if (unit.empty() || unit == "V" || unit == "rad/s" || unit == "m/s") factor = 1.0;
-  if (unit == "mm" || unit == "mm/s") factor = per_mm;
-  if (unit == "um") factor = 1e-3 * per_mm;
-  if (unit == "m") factor = 1e3 * per_mm;
-  if (end == copy.c_str() || factor == 0.0 || !std::isfinite(value))
+  const std::optional<Quantity> written = parse_quantity(trim_blanks(text));
+  const std::string_view unit = written ? trim_blanks(written->unit) : "";
+  const bool is_own = unit.empty() || unit == "V" || unit == "rad/s" || unit == "m/s";
+  const double factor = is_own ? 1.0 : length_factor(unit == "mm/s" ? "mm" : unit, kind);
+  if (!written || factor == 0.0 || !std::isfinite(written->value))
     throw Failure(ExitCode::usage,
                   fmt::format("{}: not a level; write a number with um, mm, m, mm/s, m/s, rad/s or V", text));
-  return value * factor;
+  return written->value * factor;
 }
 
 /// The level as a word of its channel.
@@ -180,7 +170,7 @@ Capture capture_of(BoardClient& board, const firmware::TriggerStatePayload& stat
 
 bool is_board_trigger(std::string_view text) {
   const std::size_t dot = text.find('.');
-  const std::string_view axis = trimmed(text.substr(0, dot));
+  const std::string_view axis = trim_blanks(text.substr(0, dot));
   return dot != std::string_view::npos &&
          (axis == "any" || std::ranges::find(firmware::kAxisNames, axis) != firmware::kAxisNames.end());
 }
@@ -188,13 +178,13 @@ bool is_board_trigger(std::string_view text) {
 BoardTrigger parse_board_trigger(std::string_view text, sim::DriveKind kind) {
   BoardTrigger trigger;
   const std::size_t dot = text.find('.');
-  const std::string_view axis = trimmed(text.substr(0, dot));
+  const std::string_view axis = trim_blanks(text.substr(0, dot));
   const auto found = std::ranges::find(firmware::kAxisNames, axis);
   trigger.axis = found == firmware::kAxisNames.end() ? firmware::kAnyAxis
                                                      : static_cast<std::uint8_t>(found - firmware::kAxisNames.begin());
   const std::string_view event = text.substr(dot + 1);
   const std::size_t sign = event.find_first_of("<>");
-  const std::string_view name = trimmed(event.substr(0, sign));
+  const std::string_view name = trim_blanks(event.substr(0, sign));
   if (sign != std::string_view::npos) {
     trigger.kind = TriggerKind::edge;
     trigger.channel = channel_called(name, kind);

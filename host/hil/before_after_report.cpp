@@ -2,27 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "host/hil/circle_plot.hpp"
 #include "host/report/text_format.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
 namespace {
-
-double largest(const std::vector<double>& values) {
-  double most = 0.0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
-
-double rms(const std::vector<double>& values) {
-  double squares = 0.0;
-  for (const double value : values) squares += value * value;
-  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
-}
 
 struct Measured {
   std::string what;
@@ -33,10 +19,10 @@ struct Measured {
 std::vector<Measured> largest_errors(const ScenarioRun& before, const ScenarioRun& after) {
   std::vector<Measured> all;
   if (!before.contour_um.empty() && !after.contour_um.empty())
-    all.push_back({"contour error", largest(before.contour_um), largest(after.contour_um)});
+    all.push_back({"contour error", largest_magnitude(before.contour_um), largest_magnitude(after.contour_um)});
   for (std::size_t i = 0; i < hal::kAxisCount; ++i)
-    all.push_back({fmt::format("tracking error of {}", kAxisNames[i]), largest(before.tracking_um[i]),
-                   largest(after.tracking_um[i])});
+    all.push_back({fmt::format("tracking error of {}", kAxisNames[i]), largest_magnitude(before.tracking_um[i]),
+                   largest_magnitude(after.tracking_um[i])});
   return all;
 }
 
@@ -66,8 +52,8 @@ Table table_of(const ScenarioRun& before, const ScenarioRun& after) {
     add(one);
   }
   for (std::size_t i = 0; i < hal::kAxisCount; ++i)
-    add({fmt::format("RMS tracking error of {}", kAxisNames[i]), rms(before.tracking_um[i]),
-         rms(after.tracking_um[i])});
+    add({fmt::format("RMS tracking error of {}", kAxisNames[i]), root_mean_square(before.tracking_um[i]),
+         root_mean_square(after.tracking_um[i])});
   return table;
 }
 
@@ -99,8 +85,7 @@ Report before_after_report(const Scenario& scenario, const ScenarioRun& before, 
   Verdict verdict;
   verdict.label = first.after < first.before ? "better" : "no better";
   verdict.tone = !after.holds() ? Tone::bad : first.after < first.before ? Tone::good : Tone::attention;
-  verdict.headline = change(first);
-  verdict.headline.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(verdict.headline.front())));
+  verdict.headline = capitalised(change(first));
   if (!after.holds()) verdict.sentences.push_back("Afterwards something that must hold does not.");
   if (after.misses_aim()) verdict.sentences.push_back("Afterwards an aim of the scenario is still missed.");
   if (!scenario.about.empty()) verdict.sentences.push_back(scenario.about);

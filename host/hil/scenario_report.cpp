@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include "host/hil/identification_figures.hpp"
 #include "host/identify/friction_law.hpp"
 #include "host/report/text_format.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -44,12 +44,6 @@ Table stop_table(const ScenarioRun& run) {
                           info.cause});
   }
   return table;
-}
-
-double largest(const std::vector<double>& values) {
-  double most = 0.0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
 }
 
 /// As the paper's Fig. 11: tracking errors of both axes, contour error.
@@ -156,10 +150,10 @@ Facts figures(const Scenario& scenario, const ScenarioRun& run) {
   facts.items = {
       {"simulated", fmt::format("{:g} s", run.simulated_s)},
       {"seed", fmt::format("{}", scenario.seed)},
-      {"largest tracking error", fmt::format("x {} µm, y {} µm", format_value(largest(run.tracking_um[0]), 3),
-                                             format_value(largest(run.tracking_um[1]), 3))}};
+      {"largest tracking error", fmt::format("x {} µm, y {} µm", format_value(largest_magnitude(run.tracking_um[0]), 3),
+                                             format_value(largest_magnitude(run.tracking_um[1]), 3))}};
   if (!run.contour_um.empty())
-    facts.items.emplace_back("largest contour error", format_value(largest(run.contour_um), 3) + " µm");
+    facts.items.emplace_back("largest contour error", format_value(largest_magnitude(run.contour_um), 3) + " µm");
   return facts;
 }
 
@@ -174,16 +168,15 @@ ScenarioOutcome outcome_of(const ScenarioRun& run) {
 std::string summary_of(const ScenarioRun& run) {
   std::string text;
   if (!run.contour_um.empty())
-    text = fmt::format("contour error up to {} µm", format_value(largest(run.contour_um)));
+    text = fmt::format("contour error up to {} µm", format_value(largest_magnitude(run.contour_um)));
   else
-    text = fmt::format("tracking error up to {} µm",
-                       format_value(std::max(largest(run.tracking_um[0]), largest(run.tracking_um[1]))));
+    text = fmt::format("tracking error up to {} µm", format_value(std::max(largest_magnitude(run.tracking_um[0]),
+                                                                           largest_magnitude(run.tracking_um[1]))));
   for (const StopEvent& stop : run.stops)
     text += fmt::format(", axis {} stopped by {}", kAxisNames[stop.axis], firmware::fault_info(stop.fault).name);
   const auto held = std::ranges::count_if(run.expectations, &CheckedExpectation::holds);
   if (!run.expectations.empty()) text += fmt::format("; {} of {} expectations hold", held, run.expectations.size());
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text;
+  return capitalised(text);
 }
 
 Report scenario_report(const Scenario& scenario, const ScenarioRun& run) {
@@ -212,9 +205,9 @@ nlohmann::json scenario_json(const Scenario& scenario, const ScenarioRun& run) {
       {"seed", scenario.seed},  {"simulated_s", run.simulated_s}, {"times_real_time", run.times_real_time()},
       {"holds", run.holds()}};
   for (std::size_t i = 0; i < hal::kAxisCount; ++i)
-    document["axes"][std::string(kAxisNames[i])] = {{"tracking_um", largest(run.tracking_um[i])},
+    document["axes"][std::string(kAxisNames[i])] = {{"tracking_um", largest_magnitude(run.tracking_um[i])},
                                                     {"following_high_water_um", run.high_water_um[i]}};
-  if (!run.contour_um.empty()) document["contour_um"] = largest(run.contour_um);
+  if (!run.contour_um.empty()) document["contour_um"] = largest_magnitude(run.contour_um);
   document["expectations"] = nlohmann::json::array();
   for (const CheckedExpectation& checked : run.expectations)
     document["expectations"].push_back(

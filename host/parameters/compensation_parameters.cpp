@@ -13,6 +13,7 @@
 #include "host/identify/friction_law.hpp"
 #include "host/parameters/parameter_names.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/second_mass.hpp"
 
 namespace host {
 
@@ -78,7 +79,7 @@ void append_backlash(const sim::DriveDescription& model, Parameters& list) {
   const double rate = 2.0 * std::numbers::pi * backlash->at("resonance");
   const double stiffness = inertia != nullptr ? inertia->at("J") * load * (1.0 - load) * rate * rate : 0.0;
   const FrictionLaw friction = friction_law(model);
-  const double share = backlash->has("load_friction") ? backlash->at("load_friction") : 1.0;
+  const double share = sim::second_mass_of(*backlash).load_friction;
   const double level = 0.5 * share * (friction.positive.coulomb + friction.negative.coulomb);
   list.push_back({"backlash.wind_up", stiffness > 0.0 ? model.data.lead * level / stiffness : 0.0});
 }

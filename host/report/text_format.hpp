@@ -14,6 +14,9 @@ std::string escape_html(std::string_view text);
 /// Text that is not UTF-8 is shown with replacement characters.
 std::string script_safe_json(const nlohmann::json& value);
 
+/// With a capital letter at its beginning.
+std::string capitalised(std::string text);
+
 /// One word of a command line that a reader may paste into a shell: quoted where it holds anything unusual.
 std::string shell_word(std::string_view text);
 

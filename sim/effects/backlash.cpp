@@ -1,15 +1,13 @@
 // Backlash.
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
+#include "sim/second_mass.hpp"
 
 namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  drive.second_mass = SecondMass{entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"),
-                                 entry.at("gap"), entry.has("load_friction") ? entry.at("load_friction") : 1.0};
-}
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.second_mass = second_mass_of(entry); }
 
 }  // namespace
 
@@ -48,14 +46,7 @@ const EffectInfo backlash{
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}},
-                   {.id = "load_friction",
-                    .rotary_key = "load_friction",
-                    .linear_key = "load_friction",
-                    .doc = "p: part of the friction that acts on the load's side; 1 unless given",
-                    .lower = 0.0,
-                    .upper = 1.0,
-                    .starts = {0.5},
-                    .optional = true}},
+                   load_friction_parameter()},
     .shows =
         "After a reversal the motor runs free for a fixed travel, then hits the load: torque falls short, then peaks. "
         "The travel is the same at any speed",

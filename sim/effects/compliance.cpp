@@ -1,15 +1,13 @@
 // A second mass on a spring.
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
+#include "sim/second_mass.hpp"
 
 namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  drive.second_mass = SecondMass{entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"),
-                                 /*gap=*/0.0, entry.has("load_friction") ? entry.at("load_friction") : 1.0};
-}
+void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.second_mass = second_mass_of(entry); }
 
 }  // namespace
 
@@ -45,14 +43,7 @@ const EffectInfo compliance{
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}},
-                   {.id = "load_friction",
-                    .rotary_key = "load_friction",
-                    .linear_key = "load_friction",
-                    .doc = "p: part of the friction that acts on the load's side; 1 unless given",
-                    .lower = 0.0,
-                    .upper = 1.0,
-                    .starts = {0.5},
-                    .optional = true}},
+                   load_friction_parameter()},
     .shows =
         "Residual rings at one frequency after each change of torque, the same at any speed. Below the resonance both "
         "inertias act, above it the motor's alone",

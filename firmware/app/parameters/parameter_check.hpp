@@ -3,7 +3,7 @@
 
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/axis_check.hpp"
-#include "firmware/core/pole_check.hpp"
+#include "firmware/core/supervision/supervised_check.hpp"
 
 namespace firmware {
 
@@ -116,11 +116,7 @@ constexpr SetProblem check_axis(const ParameterValues& values, std::size_t axis)
   if (periods < 1.0F - kPeriodTolerance || periods > 1.0F + kPeriodTolerance)
     return {SetProblemKind::rate_disagrees, ParameterKey::of_axis(axis, id_of<"drive.sample_period">())};
   const AxisParameters<Scalar> parameters = axis_parameters<Scalar>(v);
-  ParameterError error = check(parameters);
-  if (error == ParameterError::none) error = check_homing(parameters.homing);
-  if (error == ParameterError::none) error = check_sequence(parameters.sequence);
-  if (error == ParameterError::none) error = check_monitors(parameters);
-  if (error == ParameterError::none) error = check_poles(parameters);
+  const ParameterError error = check_supervised(parameters);
   if (error == ParameterError::none) return {};
   return {SetProblemKind::refused_by_core, ParameterKey::of_axis(axis, id_behind(error)), error};
 }

@@ -42,6 +42,9 @@ inline constexpr std::size_t kExcitationEntries = 14;
 /// Sums of a few such ways have 32 bits.
 inline constexpr std::int32_t kMostBoxCounts = std::int32_t{1} << 28;
 
+/// Fastest box, counts a sample.
+inline constexpr float kMostSpeedCounts = 16384.0f;
+
 /// The board's own word on what an excited axis may do, whatever excites it.
 template <typename Scalar>
 struct ExcitationBox {

@@ -8,12 +8,12 @@
 
 #include "firmware/core/axis.hpp"
 #include "firmware/core/homing.hpp"
-#include "firmware/core/pole_check.hpp"
 #include "firmware/core/supervision/axis_monitors.hpp"
 #include "firmware/core/supervision/capture_ring.hpp"
 #include "firmware/core/supervision/drive_sequence.hpp"
 #include "firmware/core/supervision/fault_table.hpp"
 #include "firmware/core/supervision/index_monitor.hpp"
+#include "firmware/core/supervision/supervised_check.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 
 namespace firmware {
@@ -39,11 +39,7 @@ class SupervisedAxis {
   /// off.
   constexpr ParameterError configure(const AxisParameters<Scalar>& parameters) {
     if (outputs_are_on(state_)) return ParameterError::controller_is_enabled;
-    ParameterError error = check(parameters);
-    if (error == ParameterError::none) error = check_monitors(parameters);
-    if (error == ParameterError::none) error = check_poles(parameters);
-    if (error == ParameterError::none) error = check_homing(parameters.homing);
-    if (error == ParameterError::none) error = check_sequence(parameters.sequence);
+    const ParameterError error = check_supervised(parameters);
     return error == ParameterError::none ? take(parameters) : error;
   }
 

@@ -1,0 +1,20 @@
+// All that parameters must satisfy before a supervised axis takes them.
+#pragma once
+
+#include "firmware/core/axis_check.hpp"
+#include "firmware/core/pole_check.hpp"
+
+namespace firmware {
+
+/// The first check that fails.
+template <typename Scalar>
+constexpr ParameterError check_supervised(const AxisParameters<Scalar>& parameters) {
+  ParameterError error = check(parameters);
+  if (error == ParameterError::none) error = check_homing(parameters.homing);
+  if (error == ParameterError::none) error = check_sequence(parameters.sequence);
+  if (error == ParameterError::none) error = check_monitors(parameters);
+  if (error == ParameterError::none) error = check_poles(parameters);
+  return error;
+}
+
+}  // namespace firmware

@@ -1,0 +1,27 @@
+// What the effects of a second mass have in common.
+#pragma once
+
+#include "sim/coupling.hpp"
+#include "sim/drive_description.hpp"
+#include "sim/effect.hpp"
+
+namespace sim {
+
+/// Of an entry of compliance or backlash; all friction acts on the load's side unless the entry says otherwise.
+inline SecondMass second_mass_of(const EffectEntry& entry) {
+  return {entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"),
+          entry.has("gap") ? entry.at("gap") : 0.0, entry.has("load_friction") ? entry.at("load_friction") : 1.0};
+}
+
+inline ParameterInfo load_friction_parameter() {
+  return {.id = "load_friction",
+          .rotary_key = "load_friction",
+          .linear_key = "load_friction",
+          .doc = "p: part of the friction that acts on the load's side; 1 unless given",
+          .lower = 0.0,
+          .upper = 1.0,
+          .starts = {0.5},
+          .optional = true};
+}
+
+}  // namespace sim
