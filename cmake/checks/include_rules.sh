@@ -20,10 +20,13 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/identify/"] = "host/identify/ host/record/ sim/"
     may["host/evidence/"] = "host/evidence/ " may["host/identify/"]
     may["host/compare/"] = "host/compare/ host/report/ " may["host/evidence/"]
-    may["host/diagnose/"] = "host/diagnose/ " may["host/compare/"]
+    may["host/effort/"] = "host/effort/ " may["host/compare/"]
+    may["host/diagnose/"] = "host/diagnose/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
-    may["host/device/"] = "host/device/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
+    may["host/link/"] = "host/link/ hal/"
+    may["host/simulated_board/"] = "host/simulated_board/ host/link/ sim/ hal/ firmware/core/ firmware/app/"
+    may["host/device/"] = "host/device/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/axistool/"] = "host/ host/axistool/ sim/ hal/ firmware/core/ firmware/app/"
     may["tests/"] = "tests/ host/ host/axistool/ sim/ hal/ firmware/"
 

@@ -7,7 +7,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/device_bench.hpp"
-#include "host/device/open_device.hpp"
+#include "host/link/open_device.hpp"
 #include "host/report/progress.hpp"
 
 namespace axistool {

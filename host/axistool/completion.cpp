@@ -8,9 +8,9 @@
 #include <set>
 
 #include "host/axistool/commands.hpp"
-#include "host/device/socket_link.hpp"
-#include "host/device/usb_boards.hpp"
 #include "host/exit_codes.hpp"
+#include "host/link/socket_link.hpp"
+#include "host/link/usb_boards.hpp"
 #include "host/parameters/parameter_names.hpp"
 #include "host/shipped_files.hpp"
 #include "sim/catalogue.hpp"

@@ -8,10 +8,10 @@
 #include <iostream>
 
 #include "host/axistool/json_output.hpp"
-#include "host/device/open_device.hpp"
-#include "host/device/simulated_link.hpp"
 #include "host/exit_codes.hpp"
+#include "host/link/open_device.hpp"
 #include "host/model/model_file.hpp"
+#include "host/simulated_board/simulated_link.hpp"
 
 namespace axistool {
 

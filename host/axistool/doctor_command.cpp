@@ -8,7 +8,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/device_check.hpp"
-#include "host/device/hid_library.hpp"
+#include "host/link/hid_library.hpp"
 #include "host/report/terminal.hpp"
 
 namespace axistool {

@@ -12,9 +12,10 @@
 #include "hal/linux/gpio_line.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
+#include "host/device/flash_sequence.hpp"
 #include "host/device/image_file.hpp"
-#include "host/device/run_command.hpp"
 #include "host/read_file.hpp"
+#include "host/run_command.hpp"
 
 namespace axistool {
 

@@ -6,8 +6,8 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/device/socket_link.hpp"
-#include "host/device/usb_boards.hpp"
+#include "host/link/socket_link.hpp"
+#include "host/link/usb_boards.hpp"
 
 namespace axistool {
 

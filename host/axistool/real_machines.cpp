@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "host/axistool/insight_arguments.hpp"
-#include "host/diagnose/effort_screen.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/effort/effort_screen.hpp"
 #include "host/exit_codes.hpp"
 #include "host/read_file.hpp"
 #include "sim/harmonic.hpp"

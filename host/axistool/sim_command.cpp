@@ -12,10 +12,10 @@
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
-#include "host/device/socket_board.hpp"
-#include "host/device/usb_board.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
+#include "host/simulated_board/socket_board.hpp"
+#include "host/simulated_board/usb_board.hpp"
 
 namespace axistool {
 

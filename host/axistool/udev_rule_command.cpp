@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "host/axistool/commands.hpp"
-#include "host/device/udev_rule.hpp"
-#include "host/device/usb_polling.hpp"
+#include "host/link/udev_rule.hpp"
+#include "host/link/usb_polling.hpp"
 
 namespace axistool {
 

@@ -9,8 +9,8 @@
 
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
-#include "host/device/device_users.hpp"
 #include "host/exit_codes.hpp"
+#include "host/link/device_users.hpp"
 #include "host/parameters/parameter_names.hpp"
 
 namespace host {

@@ -14,7 +14,7 @@
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
 #include "firmware/app/store/stored_set.hpp"
-#include "host/device/report_link.hpp"
+#include "host/link/report_link.hpp"
 
 namespace host {
 

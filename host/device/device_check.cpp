@@ -7,7 +7,7 @@
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "host/device/board_report.hpp"
-#include "host/device/usb_polling.hpp"
+#include "host/link/usb_polling.hpp"
 
 namespace host {
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "host/run_command.hpp"
+
 namespace host {
 
 struct GpioWiring {
@@ -46,11 +48,6 @@ std::vector<FlashStep> recovery_steps(const FlashRequest& request);
 
 /// One line for people: what a dry run prints.
 std::string describe(const FlashStep& step, const FlashRequest& request);
-
-struct CommandResult {
-  int status = 0;  ///< exit status; 127 if the program does not exist
-  std::string output;
-};
 
 /// What a sequence acts on. Tests hand in recorders.
 struct FlashActions {

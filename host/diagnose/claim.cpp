@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "host/diagnose/chance.hpp"
+#include "host/compare/chance.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {

@@ -10,10 +10,10 @@
 
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
-#include "host/diagnose/effort_screen.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/effort/effort_screen.hpp"
 #include "host/identify/inverse_model.hpp"
 
 namespace host {

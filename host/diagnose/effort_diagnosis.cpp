@@ -7,10 +7,10 @@
 #include <cmath>
 #include <utility>
 
-#include "host/diagnose/effort_terms.hpp"
-#include "host/diagnose/free_curve_fit.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/effort/effort_terms.hpp"
+#include "host/effort/free_curve_fit.hpp"
 #include "host/record/columns.hpp"
 #include "sim/catalogue.hpp"
 

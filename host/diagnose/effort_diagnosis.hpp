@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "host/diagnose/diagnosis.hpp"
-#include "host/diagnose/effort_screen.hpp"
+#include "host/effort/effort_screen.hpp"
 
 namespace host {
 

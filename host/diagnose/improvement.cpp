@@ -8,9 +8,9 @@
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
-#include "host/diagnose/effort_terms.hpp"
-#include "host/diagnose/free_curve_fit.hpp"
 #include "host/diagnose/judgement.hpp"
+#include "host/effort/effort_terms.hpp"
+#include "host/effort/free_curve_fit.hpp"
 #include "host/exit_codes.hpp"
 #include "host/statistics.hpp"
 #include "sim/catalogue.hpp"

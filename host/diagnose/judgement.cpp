@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/diagnose/chance.hpp"
+#include "host/compare/chance.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"

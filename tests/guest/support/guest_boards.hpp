@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "host/device/usb_boards.hpp"
+#include "host/link/usb_boards.hpp"
 
 namespace guest_test {
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <thread>
 
-#include "host/device/udev_rule.hpp"
-#include "host/device/usb_boards.hpp"
 #include "host/exit_codes.hpp"
+#include "host/link/udev_rule.hpp"
+#include "host/link/usb_boards.hpp"
 #include "tests/guest/echo_board/echo_report.hpp"
 #include "tests/guest/support/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"

@@ -3,8 +3,8 @@
 
 #include "host/device/flash_sequence.hpp"
 #include "host/device/image_file.hpp"
-#include "host/device/run_command.hpp"
 #include "host/exit_codes.hpp"
+#include "host/run_command.hpp"
 #include "tests/host/device/sample_image.hpp"
 #include "tests/host/temporary_folder.hpp"
 

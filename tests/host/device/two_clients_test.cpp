@@ -6,10 +6,10 @@
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "host/device/motion.hpp"
-#include "host/device/socket_board.hpp"
-#include "host/device/socket_link.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/paper_drives.hpp"
+#include "host/link/socket_link.hpp"
+#include "host/simulated_board/socket_board.hpp"
 #include "tests/firmware/app/paper_values.hpp"
 #include "tests/host/temporary_folder.hpp"
 

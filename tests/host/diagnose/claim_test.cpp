@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "host/diagnose/chance.hpp"
+#include "host/compare/chance.hpp"
 #include "host/diagnose/probability.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 

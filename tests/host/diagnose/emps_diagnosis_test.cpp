@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "host/diagnose/effort_screen.hpp"
 #include "host/diagnose/improvement.hpp"
+#include "host/effort/effort_screen.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"

@@ -1,0 +1,65 @@
+#include "host/compare/chance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace host {
+
+namespace {
+
+constexpr int kDraws = 2000;
+
+/// What `after` gains on `before`, block by block of consecutive windows.
+std::vector<double> gains_of(const SetError& before, const SetError& after, std::size_t block, double common_square) {
+  const std::size_t count = std::min(before.windows.size(), after.windows.size());
+  std::vector<double> gains;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    double gain = 0.0;
+    for (std::size_t k = begin; k < std::min(count, begin + block); ++k)
+      gain += before.windows[k].weighed(common_square) - after.windows[k].weighed(common_square);
+    gains.push_back(gain);
+  }
+  return gains;
+}
+
+}  // namespace
+
+double confidence_of_improvement(const SetError& before, const SetError& after, std::size_t block,
+                                 double common_square) {
+  const std::vector<double> gains = gains_of(before, after, block, common_square);
+  if (gains.empty()) return 0.0;
+  std::mt19937 random(1);  // a fixed seed: the same records give the same answer
+  std::uniform_int_distribution<std::size_t> pick(0, gains.size() - 1);
+  int better = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < gains.size(); ++k) sum += gains[pick(random)];
+    if (sum > 0.0) ++better;
+  }
+  return static_cast<double>(better) / kDraws;
+}
+
+double probability_of_luck(const SetError& before, const SetError& after, std::size_t tried, std::size_t block,
+                           double common_square) {
+  constexpr int kSigns = 10000;
+  const std::vector<double> gains = gains_of(before, after, block, common_square);
+  double observed = 0.0;
+  for (const double gain : gains) observed += gain;
+  if (!(observed > 0.0)) return 1.0;
+  std::mt19937 random(1);
+  int as_good = 1;  // what was observed is one of the possible signs
+  for (int draw = 0; draw < kSigns; ++draw) {
+    double sum = 0.0;
+    std::uint_fast32_t bits = 0;
+    for (std::size_t k = 0; k < gains.size(); ++k) {
+      if (k % 32 == 0) bits = random();
+      sum += (bits >> (k % 32)) & 1U ? gains[k] : -gains[k];
+    }
+    if (sum >= observed) ++as_good;
+  }
+  return std::min(1.0, static_cast<double>(tried) * as_good / (kSigns + 1));
+}
+
+}  // namespace host

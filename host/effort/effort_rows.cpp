@@ -1,0 +1,258 @@
+#include "host/effort/effort_rows.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/effort/effort_terms.hpp"
+#include "host/exit_codes.hpp"
+#include "host/identify/encoder_step.hpp"
+#include "host/identify/motion.hpp"
+#include "host/identify/zero_phase_filter.hpp"
+#include "host/statistics.hpp"
+
+namespace host {
+
+namespace {
+
+/// Rows beyond this many say nothing new and cost time.
+constexpr std::size_t kMostRows = 12000;
+/// Below this part of a record's high speeds (95 %) an axis may stand: no force balance holds there. Below the second
+/// one it may stick and slip.
+constexpr double kSlidingShare = 0.01, kFastShare = 0.05;
+/// A speed that changes by less than this part of itself within a record is steady.
+constexpr double kSteadyShare = 0.3;
+/// So does an acceleration that needs less than this part of the effort.
+constexpr double kIdleShare = 0.3;
+constexpr double kBlock_s = 0.5;
+/// What slides for less than this in all proves nothing, s.
+constexpr double kLeastSliding_s = 0.2;
+
+/// Whether a record moves at one speed a direction, starts and reversals included, so that inertia hardly shows.
+bool is_steady(const std::vector<double>& speed, double slow, double inertia, const std::vector<double>& acceleration,
+               const std::vector<double>& effort) {
+  double mean[2] = {0.0, 0.0};
+  std::size_t count[2] = {0, 0};
+  double squares = 0.0, inertial = 0.0, efforts = 0.0;
+  for (std::size_t k = 0; k < speed.size(); ++k) {
+    if (std::abs(speed[k]) <= slow) continue;
+    mean[speed[k] > 0.0 ? 0 : 1] += speed[k];
+    ++count[speed[k] > 0.0 ? 0 : 1];
+    squares += speed[k] * speed[k];
+    inertial += std::pow(inertia * acceleration[k], 2);
+    efforts += effort[k] * effort[k];
+  }
+  double spread = squares;
+  for (const int side : {0, 1})
+    if (count[side] > 0) spread -= mean[side] * mean[side] / static_cast<double>(count[side]);
+  return spread <= kSteadyShare * kSteadyShare * squares && inertial <= kIdleShare * kIdleShare * efforts;
+}
+
+double quantile(std::vector<double> values, double part) {
+  const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+/// Deviation of the acceleration that the channel's noise leaves below a cut-off.
+double acceleration_deviation(const Record& record, const sim::DataSheet& data, bool by_speed, double cutoff_Hz) {
+  if (!by_speed) return std::sqrt(acceleration_noise(record, data, cutoff_Hz));
+  const double circle = 2.0 * std::numbers::pi;
+  return std::sqrt(data.tach_noise_variance.value_or(0.0) * 2.0 * record.sample_period_s * circle * circle *
+                   std::pow(cutoff_Hz, 3) / 3.0);
+}
+
+/// As high as the sampling allows, lowered until the sensor's noise is a hundredth of the effort.
+double cutoff_of(const Record& record, const sim::DataSheet& data, bool by_speed, double inertia, double effort) {
+  constexpr double kHighest_Hz = 120.0, kRateShare = 0.125, kNoiseShare = 0.01, kStep = 0.85, kLowest_Hz = 10.0;
+  const double rate_Hz = 1.0 / record.sample_period_s;
+  double cutoff_Hz = std::min(kHighest_Hz, kRateShare * rate_Hz);
+  while (cutoff_Hz * kStep >= std::min(kLowest_Hz, rate_Hz / 50.0) &&
+         inertia * acceleration_deviation(record, data, by_speed, cutoff_Hz) > kNoiseShare * effort)
+    cutoff_Hz *= kStep;
+  return cutoff_Hz;
+}
+
+/// Samples by which the speed channel lags behind the position: a driver computes it from positions that have been.
+std::size_t lag_of(const std::vector<double>& speed, const std::vector<double>& by_position, double period_s) {
+  constexpr double kMost_s = 0.02;
+  const auto most = std::min(static_cast<std::size_t>(kMost_s / period_s), speed.size() / 4);
+  std::size_t best = 0;
+  double least = HUGE_VAL;
+  for (std::size_t lag = 0; lag <= most; ++lag) {
+    double square = 0.0;
+    for (std::size_t k = most; k + 2 * most < speed.size(); ++k) square += std::pow(speed[k + lag] - by_position[k], 2);
+    if (square < least) {
+      least = square;
+      best = lag;
+    }
+  }
+  return best;
+}
+
+struct Builder {
+  const sim::DriveDescription& model;
+  const sim::Drive* path;  ///< command path of the effects that the model has
+  bool by_speed;
+  double inertia;
+  std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(5);
+  EffortRows rows{};
+  double noise = 0.0;
+  std::size_t blocks = 0;
+
+  void add(const RecordSet& set, bool judges, std::size_t stride) {
+    for (const ComparedRecord& compared : set.records)
+      if (!compared.prepared.windows.empty()) add(compared.prepared, judges, stride);
+  }
+
+  void add(const PreparedRecord& prepared, bool judges, std::size_t extra_stride) {
+    const Record& record = *prepared.record;
+    const double rate_Hz = 1.0 / record.sample_period_s;
+    const double size = root_mean_square(motor_effort(record, model.data));
+    EffortSignals signals{
+        record.sample_period_s, cutoff_of(record, model.data, by_speed, inertia, size), {}, {}, {}, {},
+        columns[0].size()};
+    const auto low_pass = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, rate_Hz);
+    std::vector<double> speed = low_pass(record.w);
+    if (record.has_position()) {
+      const std::vector<double> by_position = smooth_speed(record, model.data, signals.cutoff_Hz);
+      if (by_speed) {
+        const std::size_t lag = lag_of(speed, by_position, record.sample_period_s);
+        std::rotate(speed.begin(), speed.begin() + static_cast<std::ptrdiff_t>(lag), speed.end());
+      } else {
+        speed = by_position;
+      }
+    }
+    const std::vector<double> travel =
+        record.has_position() ? low_pass(record.x) : std::vector<double>(record.size(), 0.0);
+    const std::vector<double> effort = delivered_effort(record, model.data, signals.cutoff_Hz, true, path).effort;
+    signals.motion = record.has_position() ? travel : speed;
+    signals.speed = speed;
+    signals.acceleration = central_difference(speed, record.sample_period_s);
+
+    std::vector<double> sizes(speed.size());
+    std::ranges::transform(speed, sizes.begin(), [](double w) { return std::abs(w); });
+    const double step = by_speed ? 0.0 : encoder_step(record, model.data) * signals.cutoff_Hz / model.data.lead;
+    const double high = quantile(sizes, 0.95), slow = std::max(kSlidingShare * high, step);
+    const auto reach = static_cast<std::size_t>(std::ceil(0.5 * rate_Hz / signals.cutoff_Hz)) + 2;
+    const auto stride =
+        extra_stride * std::max<std::size_t>(1, static_cast<std::size_t>(rate_Hz / (4.0 * signals.cutoff_Hz)));
+    std::vector<std::size_t> run(speed.size(), 0);
+    for (std::size_t k = 1; k < speed.size(); ++k)
+      run[k] = sizes[k] > slow ? (speed[k] * speed[k - 1] > 0.0 ? run[k - 1] : 0) + 1 : 0;
+    std::size_t in_block = 0;
+    const auto rows_a_block =
+        std::max<std::size_t>(4, static_cast<std::size_t>(kBlock_s * rate_Hz / static_cast<double>(stride)));
+    for (const Window& window : prepared.windows) {
+      for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k) {
+        if (k % stride != 0 || k < reach || k + reach >= speed.size() || run[k + reach] <= 2 * reach) continue;
+        signals.kept.push_back(k);
+        const double values[] = {record.t_s[k], travel[k], speed[k], signals.acceleration[k], effort[k]};
+        for (std::size_t c = 0; c < 5; ++c) columns[c].push_back(values[c]);
+        rows.judges.push_back(judges);
+        rows.fast.push_back(sizes[k] > kFastShare * high);
+        rows.record.push_back(rows.signals.size());
+        if (in_block++ % rows_a_block == 0) ++blocks;
+        rows.block.push_back(blocks);
+      }
+    }
+    ++blocks;
+    if (!judges && !is_steady(speed, slow, inertia, signals.acceleration, effort)) rows.steady = false;
+    noise += std::pow(inertia * acceleration_deviation(record, model.data, by_speed, signals.cutoff_Hz), 2) *
+             static_cast<double>(signals.kept.size());
+    const double cutoff_Hz = signals.cutoff_Hz;
+    rows.lowest_cutoff_Hz = rows.signals.empty() ? cutoff_Hz : std::min(rows.lowest_cutoff_Hz, cutoff_Hz);
+    rows.signals.push_back(std::move(signals));
+  }
+
+  EffortRows finish() {
+    Eigen::VectorXd* const targets[] = {&rows.t_s, &rows.x, &rows.w, &rows.acceleration, &rows.effort};
+    for (std::size_t c = 0; c < 5; ++c)
+      *targets[c] = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), static_cast<Eigen::Index>(columns[c].size()));
+    rows.by_speed = by_speed;
+    if (!columns[0].empty()) rows.noise = std::sqrt(noise / static_cast<double>(columns[0].size()));
+    return std::move(rows);
+  }
+};
+
+/// What inertia and friction leave of the effort of the training rows, relative.
+double left_by_base(const EffortRows& rows) {
+  const auto n = static_cast<Eigen::Index>(std::ranges::count(rows.judges, false));
+  Eigen::MatrixXd phi(n, 4);
+  Eigen::VectorXd y(n);
+  for (Eigen::Index k = 0, at = 0; k < rows.w.size(); ++k) {
+    if (rows.judges[static_cast<std::size_t>(k)]) continue;
+    phi.row(at) << rows.acceleration(k), rows.w(k), rows.w(k) > 0.0 ? 1.0 : 0.0, rows.w(k) > 0.0 ? 0.0 : 1.0;
+    y(at++) = rows.effort(k);
+  }
+  const Eigen::VectorXd theta = phi.completeOrthogonalDecomposition().solve(y);
+  return (y - phi * theta).norm() / std::max(y.norm(), 1e-300);
+}
+
+EffortRows built(const sim::DriveDescription& model, bool by_speed, const RecordSet& training,
+                 const RecordSet& validation) {
+  const sim::EffectEntry* inertia = model.find("inertia");
+  const sim::Drive path(standing_part(model));
+  std::size_t stride = 1;
+  while (true) {
+    Builder builder{model, &path, by_speed, inertia == nullptr ? 0.0 : inertia->at("J")};
+    builder.add(training, false, stride);
+    builder.add(validation, true, stride);
+    if (builder.columns[0].size() <= kMostRows) return builder.finish();
+    stride *= 1 + builder.columns[0].size() / kMostRows;
+  }
+}
+
+bool enough(const EffortRows& rows, bool judges) {
+  double seconds = 0.0;
+  for (std::size_t r = 0; r < rows.signals.size(); ++r) {
+    const auto& kept = rows.signals[r].kept;
+    if (kept.size() < 2 || rows.judges[rows.signals[r].first_row] != judges) continue;
+    const std::size_t stride = kept[1] - kept[0];
+    seconds += static_cast<double>(kept.size() * stride) * rows.signals[r].period_s;
+  }
+  constexpr std::ptrdiff_t kFewest = 20;
+  return seconds >= kLeastSliding_s && std::ranges::count(rows.judges, judges) >= kFewest;
+}
+
+}  // namespace
+
+double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges, bool fast_alone) {
+  double sum = 0.0, count = 0.0;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (rows.judges[row] != judges || (fast_alone && !rows.fast[row])) continue;
+    sum += values(k) * values(k);
+    count += 1.0;
+  }
+  return std::sqrt(sum / std::max(count, 1.0));
+}
+
+EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation) {
+  bool position = true, speed = true;
+  for (const RecordSet* set : {&training, &validation})
+    for (const ComparedRecord& compared : set->records) {
+      position = position && compared.prepared.record->has_position();
+      speed = speed && compared.prepared.record->has_speed();
+    }
+  EffortRows rows;
+  if (!position && !speed) return {};
+  try {
+    rows = built(model, !position, training, validation);
+    if (position && speed && enough(rows, false)) {
+      // A position whose time stamps jitter, or of coarse steps, differentiates badly; a tachometer has errors of its
+      // own: it must be clearly better.
+      constexpr double kClearlyBetter = 0.8;
+      EffortRows other = built(model, true, training, validation);
+      if (enough(other, false) && left_by_base(other) < kClearlyBetter * left_by_base(rows)) rows = std::move(other);
+    }
+  } catch (const Failure&) {  // no effort can be had, or too short for the filter
+    return {};
+  }
+  rows.has_position = position;
+  if (!enough(rows, false) || !enough(rows, true)) return {};
+  return rows;
+}
+
+}  // namespace host

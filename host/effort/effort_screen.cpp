@@ -1,0 +1,390 @@
+#include "host/effort/effort_screen.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "host/compare/chance.hpp"
+#include "host/effort/effort_terms.hpp"
+#include "host/identify/inverse_model.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A data sheet that gives no deviation is believed to half its value.
+constexpr double kBelief = 0.5;
+/// An effect earns its place when it takes this part of the error, on training rows, and on the rows that judge.
+constexpr double kLeastTrainGain = 0.05, kLeastGain = 0.1;
+/// A further one must take half of the squared error that a model could take, which is what comes back when a motion is
+/// repeated, and all of it where none was: a machine's residual has many small causes.
+constexpr double kLeastFurtherPart = 0.5;
+/// And this part of the effort: below lies what no model of a machine is worth.
+constexpr double kLeastPart = 0.005;
+constexpr double kLeastConfidence = 0.99;
+/// What is left must stand so far above the sensors' noise: terms that smooth the motion take noise alone.
+constexpr double kAboveNoise = 2.0;
+/// Effects whose errors are so close are not told apart; the simpler one goes before.
+constexpr double kTie = 0.04;
+
+/// What is known of a factor before the fit.
+struct Prior {
+  double value = 0.0;
+  double deviation = 0.0;  ///< 0: nothing is known
+  bool held = false;
+};
+
+/// Regression of the effort of the training rows.
+class Regressor {
+ public:
+  Regressor(const sim::DriveDescription& model, const EffortRows& rows) : model_(model), rows_(rows) {
+    train_.resize(rows.effort.size());
+    for (Index k = 0; k < train_.size(); ++k) train_(k) = rows.judges[static_cast<std::size_t>(k)] ? 0.0 : 1.0;
+    effort_train_ = root_mean_square(rows, rows.effort, false);
+    effort_validate_ = root_mean_square(rows, rows.effort, true);
+  }
+
+  /// Fits the base and the further terms; false where a further term's factor has no room within physics.
+  bool fit(const std::vector<EffortTerm>& base, const std::vector<const EffortTerm*>& further, ScreenedModel& out,
+           std::vector<std::string>* held = nullptr) const {
+    std::vector<const EffortTerm*> terms;
+    for (const EffortTerm& term : base) terms.push_back(&term);
+    terms.insert(terms.end(), further.begin(), further.end());
+    std::vector<Prior> beliefs;
+    std::vector<int> sign;
+    Index width = 0;
+    for (const EffortTerm* term : terms) width += term->columns.cols();
+    MatrixXd phi(rows_.effort.size(), width);
+    Index at = 0;
+    const bool second_mass =
+        std::ranges::any_of(further, [](const EffortTerm* term) { return term->kind == "compliance"; });
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      phi.middleCols(at, terms[t]->columns.cols()) = terms[t]->columns;
+      at += terms[t]->columns.cols();
+      for (const int s : terms[t]->sign) {
+        beliefs.push_back(t < base.size() ? belief_of(t, base) : Prior{});
+        // Of two masses nobody knows which one the data sheet means.
+        if (second_mass && t == 0) beliefs.back().deviation = 0.0;
+        sign.push_back(s);
+      }
+    }
+    const MatrixXd seen = train_.asDiagonal() * phi;
+    const MatrixXd moments = seen.transpose() * seen;
+    const VectorXd projection = seen.transpose() * rows_.effort;
+    std::vector<bool> fixed(static_cast<std::size_t>(width));
+    for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = beliefs[c].held;
+    VectorXd theta = solve(moments, projection, beliefs, fixed, 0.0);
+    double variance = effective_variance(phi, theta);
+    for (int round = 0; round < static_cast<int>(width) + 1; ++round) {
+      theta = solve(moments, projection, beliefs, fixed, variance);
+      Index worst = -1;
+      double most = 0.0;
+      for (Index c = 0; c < width; ++c) {
+        const double scale = std::sqrt(std::max(moments(c, c), 1e-300));
+        if (sign[static_cast<std::size_t>(c)] > 0 && !fixed[static_cast<std::size_t>(c)] && -theta(c) * scale > most) {
+          most = -theta(c) * scale;
+          worst = c;
+        }
+      }
+      if (worst < 0) break;
+      fixed[static_cast<std::size_t>(worst)] = true;
+      if (held != nullptr && static_cast<std::size_t>(worst) < base.size())
+        held->push_back(fmt::format("{} would come out negative", base[static_cast<std::size_t>(worst)].kind));
+    }
+    if (!theta.allFinite()) return false;
+    out.residual = rows_.effort - phi * theta;
+    out.model = model_;
+    out.factors = static_cast<std::size_t>(width);
+    at = 0;
+    for (const EffortTerm* term : terms) {
+      if (!term->write(theta.segment(at, term->columns.cols()), out.model)) return false;
+      at += term->columns.cols();
+    }
+    measure(out);
+    return true;
+  }
+
+  /// That the judging rows' error falls, by a bootstrap over their blocks.
+  double confidence(const ScreenedModel& before, const ScreenedModel& after) const {
+    constexpr double kLinear = 1e12;  // squares as they are
+    return confidence_of_improvement(by_block(before.residual), by_block(after.residual), 1, kLinear);
+  }
+
+ private:
+  Prior belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
+    const std::string& kind = base[index].kind;
+    const sim::EffectEntry* entry = model_.find(kind);
+    const char* id = kind == "inertia" ? "J" : kind == "viscous" ? "B" : nullptr;
+    double sign = 1.0;
+    if (kind == "coulomb") {
+      const bool backward = index > 0 && base[index - 1].kind == "coulomb";
+      id = entry->has("level") ? "level" : backward ? "negative" : "positive";
+      sign = backward ? -1.0 : 1.0;
+    }
+    if (id == nullptr) return {};
+    double value = sign * entry->at(id), deviation = kBelief * std::abs(value);
+    if (const auto known = entry->believed.find(id); known != entry->believed.end()) {
+      value = sign * known->second.value;
+      deviation = known->second.deviation;
+    }
+    return {value, deviation, entry->held.contains(id) || (kind == "inertia" && rows_.steady)};
+  }
+
+  VectorXd solve(const MatrixXd& moments, const VectorXd& projection, const std::vector<Prior>& beliefs,
+                 const std::vector<bool>& fixed, double variance) const {
+    MatrixXd a = moments;
+    VectorXd b = projection;
+    for (Index c = 0; c < b.size(); ++c) {
+      const Prior& belief = beliefs[static_cast<std::size_t>(c)];
+      if (fixed[static_cast<std::size_t>(c)]) continue;
+      // A column that is another one's multiple shares its factor with it.
+      constexpr double kTiny = 1e-9;
+      a(c, c) *= 1.0 + kTiny;
+      if (belief.deviation > 0.0) {
+        a(c, c) += variance / (belief.deviation * belief.deviation);
+        b(c) += variance * belief.value / (belief.deviation * belief.deviation);
+      }
+    }
+    for (Index c = 0; c < b.size(); ++c) {
+      if (!fixed[static_cast<std::size_t>(c)]) continue;
+      const double value = beliefs[static_cast<std::size_t>(c)].value;
+      b -= a.col(c) * value;
+      a.row(c).setZero();
+      a.col(c).setZero();
+      a(c, c) = 1.0;
+      b(c) = value;
+    }
+    const VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    return scale.asDiagonal() * (scale.asDiagonal() * a * scale.asDiagonal()).ldlt().solve(scale.asDiagonal() * b);
+  }
+
+  /// Variance of a row's residual as if rows were independent: rows of a block are alike, and count for fewer.
+  double effective_variance(const MatrixXd& phi, const VectorXd& theta) const {
+    const VectorXd residual = train_.asDiagonal() * (rows_.effort - phi * theta);
+    double squares = 0.0, sums = 0.0, sum = 0.0;
+    for (Index k = 0; k < residual.size(); ++k) {
+      const auto row = static_cast<std::size_t>(k);
+      if (k > 0 && rows_.block[row] != rows_.block[row - 1]) {
+        sums += sum * sum;
+        sum = 0.0;
+      }
+      sum += residual(k);
+      squares += residual(k) * residual(k);
+    }
+    sums += sum * sum;
+    return std::max(squares, sums) / std::max(train_.sum(), 1.0);
+  }
+
+  void measure(ScreenedModel& model) const {
+    model.train = root_mean_square(rows_, model.residual, false) / effort_train_;
+    model.validate = root_mean_square(rows_, model.residual, true) / effort_validate_;
+    model.fast_train = root_mean_square(rows_, model.residual, false, true) / effort_train_;
+    model.fast_validate = root_mean_square(rows_, model.residual, true, true) / effort_validate_;
+  }
+
+  SetError by_block(const VectorXd& residual) const {
+    SetError error;
+    for (Index k = 0; k < residual.size(); ++k) {
+      const auto row = static_cast<std::size_t>(k);
+      if (!rows_.judges[row]) continue;
+      if (error.windows.empty() || error.windows.back().window != rows_.block[row])
+        error.windows.push_back({rows_.record[row], rows_.block[row]});
+      error.windows.back().effort += std::pow(residual(k) / std::max(rows_.noise, 1e-12), 2);
+    }
+    return error;
+  }
+
+  const sim::DriveDescription& model_;
+  const EffortRows& rows_;
+  VectorXd train_;
+  double effort_train_, effort_validate_;  ///< RMS of all that the motor gave
+};
+
+double product(const ScreenedModel& model) { return model.train * model.validate; }
+
+/// What stands beside a search: the columns that are fitted anyway.
+MatrixXd columns_of(const EffortScreen& screen, const std::vector<EffortTerm>& base,
+                    const std::vector<EffortTerm>& chosen) {
+  MatrixXd columns(screen.rows.effort.size(), 0);
+  for (const auto* list : {&base, &chosen})
+    for (const EffortTerm& term : *list) {
+      if (list == &base && screen.rows.steady && term.kind == "inertia") continue;  // it is held
+      const Index width = columns.cols();
+      columns.conservativeResize(Eigen::NoChange, width + term.columns.cols());
+      columns.rightCols(term.columns.cols()) = term.columns;
+    }
+  return columns;
+}
+
+/// Everything that could come next on top of what was chosen.
+std::vector<EffortTerm> next_terms(const EffortScreen& screen, const sim::DriveDescription& given,
+                                   const std::vector<EffortTerm>& base, const std::vector<EffortTerm>& chosen) {
+  sim::DriveDescription held = given;
+  for (const EffortTerm& term : chosen)
+    if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
+  const ScreenedModel& now = screen.best();
+  std::vector<EffortTerm> terms = further_terms(held, screen.rows, columns_of(screen, base, chosen),
+                                                screen.rows.effort - now.residual, now.residual);
+  std::erase_if(terms,
+                [&](const EffortTerm& term) { return std::ranges::find(now.kinds, term.kind) != now.kinds.end(); });
+  return terms;
+}
+
+struct Tried {
+  ScreenedModel model;
+  std::vector<const EffortTerm*> terms;  ///< on top of what was chosen
+};
+
+/// Keeps the best form of each combination of kinds, by its error on the training rows.
+void keep(std::vector<Tried>& found, Tried tried) {
+  const auto same =
+      std::ranges::find_if(found, [&](const Tried& other) { return other.model.kinds == tried.model.kinds; });
+  if (same == found.end()) {
+    found.push_back(std::move(tried));
+  } else if (tried.model.train < same->model.train) {
+    *same = std::move(tried);
+  }
+}
+
+std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& screen, const std::vector<EffortTerm>& base,
+                           const std::vector<EffortTerm>& chosen,
+                           const std::vector<std::vector<const EffortTerm*>>& combinations) {
+  const ScreenedModel& now = screen.best();
+  std::vector<Tried> found;
+  for (const std::vector<const EffortTerm*>& terms : combinations) {
+    std::vector<const EffortTerm*> further;
+    for (const EffortTerm& before : chosen) further.push_back(&before);
+    further.insert(further.end(), terms.begin(), terms.end());
+    Tried tried{{}, terms};
+    if (!regressor.fit(base, further, tried.model)) continue;
+    tried.model.kinds = now.kinds;
+    for (const EffortTerm* term : terms) tried.model.kinds.push_back(term->kind);
+    tried.model.words = terms.back()->words;
+    keep(found, std::move(tried));
+  }
+  // What differs in the last digits alone keeps the catalogue's order.
+  std::ranges::stable_sort(found, {}, [](const Tried& tried) { return std::round(1e6 * product(tried.model)); });
+  for (Tried& tried : found) tried.model.confidence = regressor.confidence(now, tried.model);
+  return found;
+}
+
+std::vector<std::vector<const EffortTerm*>> one_by_one(const std::vector<EffortTerm>& terms) {
+  std::vector<std::vector<const EffortTerm*>> combinations;
+  for (const EffortTerm& term : terms) combinations.push_back({&term});
+  return combinations;
+}
+
+/// Two effects that hide each other when judged one at a time: a low-speed shape of friction and a delay, say.
+std::vector<std::vector<const EffortTerm*>> by_two(const std::vector<EffortTerm>& terms) {
+  const auto cheap = [](const EffortTerm& term) { return term.kind != "compliance" && term.columns.cols() <= 2; };
+  std::vector<std::vector<const EffortTerm*>> combinations;
+  for (auto first = terms.begin(); first != terms.end(); ++first)
+    for (auto second = std::next(first); second != terms.end(); ++second)
+      if (first->kind != second->kind && cheap(*first) && cheap(*second)) combinations.push_back({&*first, &*second});
+  return combinations;
+}
+
+bool earns_its_place(const ScreenedModel& after, const ScreenedModel& before, double least_gain) {
+  return after.validate < (1.0 - least_gain) * before.validate &&
+         after.train < (1.0 - kLeastTrainGain) * before.train &&
+         after.fast_validate < (1.0 - least_gain) * before.fast_validate &&
+         after.fast_train < (1.0 - kLeastTrainGain) * before.fast_train &&
+         before.validate - after.validate > kLeastPart && after.confidence >= kLeastConfidence;
+}
+
+/// What a further effect must take of the error, by what of its square comes back.
+double least_further_gain(const EffortScreen& screen) {
+  const std::optional<Repeatability> found = repeatability(screen.rows, screen.best().residual);
+  const double share = found ? found->share : 1.0;
+  return std::max(kLeastGain, 1.0 - std::sqrt(1.0 - kLeastFurtherPart * share));
+}
+
+bool near(const ScreenedModel& a, const ScreenedModel& best) {
+  return a.train <= (1.0 + kTie) * best.train && a.validate <= (1.0 + kTie) * best.validate;
+}
+
+/// An effect that was chosen first may have stood for two that came later: each is tried without.
+void drop_what_others_explain(const Regressor& regressor, const std::vector<EffortTerm>& base,
+                              std::vector<EffortTerm>& chosen, EffortScreen& screen) {
+  for (std::size_t k = 0; chosen.size() > 1 && k + 1 < chosen.size();) {
+    std::vector<const EffortTerm*> others;
+    for (std::size_t n = 0; n < chosen.size(); ++n)
+      if (n != k) others.push_back(&chosen[n]);
+    ScreenedModel without;
+    if (!regressor.fit(base, others, without) || earns_its_place(screen.best(), without, kLeastGain)) {
+      ++k;
+      continue;
+    }
+    for (const EffortTerm* term : others) without.kinds.push_back(term->kind);
+    without.words = others.back()->words;
+    without.confidence = regressor.confidence(screen.base, without);
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(k));
+    screen.chosen.back() = std::move(without);
+    // Steps that held it are none any more.
+    screen.chosen.erase(screen.chosen.begin(), screen.chosen.end() - 1);
+    screen.tied.erase(screen.tied.begin(), screen.tied.end() - 1);
+  }
+}
+
+}  // namespace
+
+EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
+                           std::size_t most_steps) {
+  EffortScreen screen;
+  if (model.find("inertia") == nullptr || !has_inverse(sim::Drive(model))) return screen;
+  screen.rows = effort_rows(model, training, validation);
+  if (screen.empty()) return screen;
+  const Regressor regressor(model, screen.rows);
+  screen.effort_train = root_mean_square(screen.rows, screen.rows.effort, false);
+  screen.effort_validate = root_mean_square(screen.rows, screen.rows.effort, true);
+  screen.rows.effort -= standing_effort(model, screen.rows);
+  const std::vector<EffortTerm> base = base_terms(model, screen.rows);
+  if (!(screen.effort_train > 0.0) || !(screen.effort_validate > 0.0) ||
+      !regressor.fit(base, {}, screen.base, &screen.held))
+    return {};
+  if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
+
+  std::vector<EffortTerm> chosen;
+  while (screen.chosen.size() < most_steps) {
+    if (screen.best().validate * screen.effort_validate < kAboveNoise * screen.rows.noise) break;
+    const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen);
+    std::vector<Tried> found = try_all(regressor, screen, base, chosen, one_by_one(terms));
+    screen.steps.emplace_back();
+    for (const Tried& tried : found) screen.steps.back().push_back(tried.model);
+    if (found.empty()) break;
+    const ScreenedModel before = screen.best();
+    const double further_gain = least_further_gain(screen);
+    const double least_gain = chosen.empty() ? kLeastGain : further_gain;
+    // Of those that are as good as the best one, the simplest.
+    const Tried* best = &found.front();
+    for (const Tried& tried : found)
+      if (near(tried.model, found.front().model) && tried.model.factors < best->model.factors) best = &tried;
+    std::vector<Tried> pairs;
+    if (!earns_its_place(best->model, before, least_gain)) {
+      // Two at once must take as much as a further one.
+      pairs = try_all(regressor, screen, base, chosen, by_two(terms));
+      if (pairs.empty() || !earns_its_place(pairs.front().model, before, further_gain)) break;
+      best = &pairs.front();
+      screen.steps.back().push_back(best->model);
+    }
+    std::vector<std::string> tied;
+    if (pairs.empty())
+      for (const Tried& other : found)
+        if (&other != best && near(other.model, best->model) && other.model.factors <= best->model.factors)
+          tied.push_back(other.model.kinds.back());
+    screen.tied.push_back(std::move(tied));
+    screen.chosen.push_back(best->model);
+    for (const EffortTerm* term : best->terms) chosen.push_back(*term);
+  }
+  drop_what_others_explain(regressor, base, chosen, screen);
+  screen.repeatable = repeatability(screen.rows, screen.best().residual);
+  return screen;
+}
+
+}  // namespace host

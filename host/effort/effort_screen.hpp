@@ -1,0 +1,44 @@
+// Effort first, motion second: plain least squares of the effort on what the axis did, with every effect of the
+// catalogue that leaves a trace in it. An engineer's first page about a machine; the search must never know less.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/effort/effort_rows.hpp"
+#include "host/effort/repeatability.hpp"
+
+namespace host {
+
+/// A model whose parameters came from the regression.
+struct ScreenedModel {
+  std::vector<std::string> kinds;  ///< beyond the base, in the order in which they were chosen
+  sim::DriveDescription model;
+  std::string words;                   ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
+  double train = 1.0, validate = 1.0;  ///< RMS residual over RMS effort of the rows; 1 is no better than no model
+  double fast_train = 1.0, fast_validate = 1.0;  ///< the same of the rows away from sticking and slipping
+  double confidence = 0.0;                       ///< against the model that it extends
+  std::size_t factors = 0;
+  Eigen::VectorXd residual;  ///< of every row, Nm or N
+};
+
+struct EffortScreen {
+  EffortRows rows;
+  double effort_train = 0.0, effort_validate = 0.0;  ///< RMS, Nm or N
+  ScreenedModel base;
+  std::vector<std::vector<ScreenedModel>> steps;  ///< every kind tried on top of what was chosen so far, best first
+  std::vector<ScreenedModel> chosen;              ///< one a step that earned its place
+  std::vector<std::vector<std::string>> tied;     ///< of each chosen: kinds that these rows do not tell from it
+  std::optional<Repeatability> repeatable;        ///< of the best model's residual, where a motion was repeated
+  std::vector<std::string> held;                  ///< base parameters that stayed as given, and why, in words
+
+  bool empty() const { return rows.size() == 0; }
+  const ScreenedModel& best() const { return chosen.empty() ? base : chosen.back(); }
+};
+
+/// Chooses up to `most_steps` times. Empty where the records hold no effort, or hardly slide.
+EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
+                           std::size_t most_steps = 3);
+
+}  // namespace host

@@ -1,0 +1,326 @@
+#include "host/effort/effort_terms.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/effort/effort_compliance.hpp"
+#include "host/effort/effort_orders.hpp"
+#include "host/identify/inverse_model.hpp"
+#include "host/identify/motion.hpp"
+#include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
+#include "sim/harmonic.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd sign_of(const VectorXd& values) {
+  return values.unaryExpr([](double value) { return value > 0.0 ? 1.0 : -1.0; });
+}
+
+bool in_bounds(const sim::EffectEntry& entry) {
+  const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+  return std::ranges::all_of(entry.parameters, [&](const auto& parameter) {
+    const sim::ParameterInfo& known = *info.parameter(parameter.first);
+    return std::isfinite(parameter.second) && parameter.second >= known.lower && parameter.second <= known.upper;
+  });
+}
+
+bool append(sim::DriveDescription& model, std::string_view kind, const std::map<std::string, double>& parameters) {
+  sim::EffectEntry entry;
+  entry.kind = kind;
+  entry.parameters = parameters;
+  return append_within_bounds(model, std::move(entry));
+}
+
+double coulomb_level(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
+}
+
+/// A term of one column whose entry follows from its factor and the model with its fitted base.
+EffortTerm simple(std::string kind, const VectorXd& column, int sign,
+                  std::function<bool(double factor, sim::DriveDescription&)> write) {
+  return {std::move(kind),
+          column,
+          {sign},
+          [write](const VectorXd& factors, sim::DriveDescription& model) { return write(factors(0), model); },
+          {}};
+}
+
+/// Friction curve falling with speed: the part beyond the Coulomb level, by directions where the model has two levels.
+EffortTerm stribeck_term(const sim::DriveDescription& model, const EffortRows& rows, double fading) {
+  const VectorXd shape = (-rows.w.array().abs() / fading).exp();
+  const sim::EffectEntry* coulomb = model.find("coulomb");
+  EffortTerm term{"stribeck", {}, {}, {}, {}};
+  if (coulomb != nullptr && coulomb->has("positive")) {
+    term.columns.resize(rows.w.size(), 2);
+    term.columns.col(0) = (rows.w.array() > 0.0).select(shape, 0.0);
+    term.columns.col(1) = (rows.w.array() > 0.0).select(VectorXd::Zero(rows.w.size()), -shape);
+    term.sign = {1, 1};
+    term.write = [fading](const VectorXd& factors, sim::DriveDescription& fitted) {
+      const sim::EffectEntry& base = *fitted.find("coulomb");
+      return append(fitted, "stribeck",
+                    {{"static_positive", base.at("positive") + factors(0)},
+                     {"static_negative", base.at("negative") - factors(1)},
+                     {"omega1", fading},
+                     {"omega2", fading}});
+    };
+    return term;
+  }
+  term.columns = sign_of(rows.w).cwiseProduct(shape);
+  term.sign = {1};
+  term.write = [fading](const VectorXd& factors, sim::DriveDescription& fitted) {
+    const double level = fitted.find("coulomb") == nullptr ? 0.0 : fitted.find("coulomb")->at("level");
+    return append(fitted, "stribeck", {{"static", level + factors(0)}, {"omega1", fading}, {"omega2", fading}});
+  };
+  return term;
+}
+
+/// Harmonics of one period in an entry, from two factors an order; `scale` turns the factors into its parameters.
+bool write_harmonics(std::string_view kind, const OrderChoice& choice, double scale, const VectorXd& factors,
+                     sim::DriveDescription& model) {
+  std::vector<sim::HarmonicTerm> terms;
+  for (std::size_t n = 0; n < choice.orders.size(); ++n)
+    terms.push_back(
+        {choice.orders[n], scale * factors(2 * static_cast<Index>(n)), scale * factors(2 * static_cast<Index>(n) + 1)});
+  sim::EffectEntry entry;
+  entry.kind = kind;
+  entry.parameters["period"] = choice.period;
+  sim::set_harmonics(entry, terms);
+  return append_within_bounds(model, std::move(entry));
+}
+
+void append_periodic(const sim::DriveDescription& model, const EffortRows& rows, std::string kind, const MatrixXd& base,
+                     const VectorXd& weight, const VectorXd& left, std::vector<EffortTerm>& terms) {
+  const OrderChoice choice = choose_orders(model.data, rows, base, weight, left);
+  if (choice.orders.empty()) return;
+  EffortTerm term{kind, order_columns(rows, weight, choice.period, choice.orders), {}, {}, {}};
+  term.sign.assign(2 * choice.orders.size(), 0);
+  term.write = [kind, choice](const VectorXd& factors, sim::DriveDescription& fitted) {
+    const double level = kind == "position_dependent_friction" ? coulomb_level(fitted) : -1.0;
+    return level != 0.0 && write_harmonics(kind, choice, 1.0 / level, factors, fitted);
+  };
+  term.words = fmt::format("{} {:g} of {:.5g} {}", choice.orders.size() == 1 ? "order" : "orders",
+                           fmt::join(choice.orders, ", "), choice.period,
+                           model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
+  terms.push_back(std::move(term));
+}
+
+}  // namespace
+
+bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry) {
+  if (!in_bounds(entry)) return false;
+  model.effects.push_back(std::move(entry));
+  return true;
+}
+
+std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const EffortRows& rows) {
+  std::vector<EffortTerm> terms;
+  const VectorXd direction = sign_of(rows.w);
+  const auto set = [](std::string kind, std::string id, double sign) {
+    return [=](const VectorXd& factors, sim::DriveDescription& fitted) {
+      fitted.find(kind)->parameters[id] = sign * factors(0);
+      return true;
+    };
+  };
+  terms.push_back({"inertia", rows.acceleration, {1}, set("inertia", "J", 1.0), {}});
+  if (model.find("viscous") != nullptr) terms.push_back({"viscous", rows.w, {1}, set("viscous", "B", 1.0), {}});
+  if (const sim::EffectEntry* coulomb = model.find("coulomb")) {
+    if (coulomb->has("level")) {
+      terms.push_back({"coulomb", direction, {1}, set("coulomb", "level", 1.0), {}});
+    } else {
+      const VectorXd forward = 0.5 * (1.0 + direction.array()), backward = 0.5 * (direction.array() - 1.0);
+      terms.push_back({"coulomb", forward, {1}, set("coulomb", "positive", 1.0), {}});
+      terms.push_back({"coulomb", backward, {1}, set("coulomb", "negative", -1.0), {}});
+    }
+  }
+  for (const sim::EffectEntry& entry : model.effects) {
+    const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+    if (entry.kind == "constant_torque" || entry.kind == "dac_offset") {
+      const bool volts = entry.kind == "dac_offset";
+      const double per_unit = volts ? -model.data.effort_per_volt() : -1.0;
+      const std::string id = volts ? "offset" : "torque";
+      terms.push_back({entry.kind, VectorXd::Constant(rows.w.size(), per_unit), {0}, set(entry.kind, id, 1.0), {}});
+    } else if (entry.kind == "cogging" && info.periodic && rows.has_position) {
+      const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
+      std::vector<double> orders;
+      for (const sim::HarmonicTerm& term : harmonics) orders.push_back(term.order);
+      const auto index = static_cast<std::size_t>(&entry - model.effects.data());
+      EffortTerm term{
+          entry.kind,
+          order_columns(rows, VectorXd::Constant(rows.w.size(), -1.0), entry.at("period"), orders),
+          std::vector<int>(2 * orders.size(), 0),
+          [orders, index](const VectorXd& factors, sim::DriveDescription& fitted) {
+            std::vector<sim::HarmonicTerm> found;
+            for (std::size_t n = 0; n < orders.size(); ++n)
+              found.push_back({orders[n], factors(2 * static_cast<Index>(n)), factors(2 * static_cast<Index>(n) + 1)});
+            sim::set_harmonics(fitted.effects[index], found);
+            return true;
+          },
+          {}};
+      terms.push_back(std::move(term));
+    }
+  }
+  return terms;
+}
+
+namespace {
+
+bool is_linear(const sim::EffectEntry& entry) {
+  constexpr std::string_view kLinear[] = {"constant_torque", "dac_offset", "cogging"};
+  return std::ranges::find(kLinear, entry.kind) != std::end(kLinear);
+}
+
+bool is_base(const sim::EffectEntry& entry) { return sim::find_effect(entry.kind)->base; }
+
+}  // namespace
+
+bool has_linear_form(const sim::DriveDescription& model) {
+  return std::ranges::all_of(model.effects,
+                             [](const sim::EffectEntry& entry) { return is_base(entry) || is_linear(entry); });
+}
+
+sim::DriveDescription standing_part(const sim::DriveDescription& model) {
+  sim::DriveDescription standing = model;
+  std::erase_if(standing.effects, is_linear);
+  return standing;
+}
+
+VectorXd standing_effort(const sim::DriveDescription& model, const EffortRows& rows) {
+  if (has_linear_form(model)) return VectorXd::Zero(rows.w.size());
+  const sim::DriveDescription standing = standing_part(model);
+  sim::DriveDescription base = standing;
+  std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !is_base(entry); });
+  const auto list = [](const VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
+  Motion motion;
+  motion.t_s = list(rows.t_s);
+  motion.travel = list(rows.x);
+  motion.speed = list(rows.w);
+  motion.acceleration = list(rows.acceleration);
+  motion.effort = list(rows.effort);
+  const std::vector<double> with = inverse_effort(sim::Drive(standing), motion);
+  const std::vector<double> without = inverse_effort(sim::Drive(base), motion);
+  return Eigen::Map<const VectorXd>(with.data(), rows.w.size()) -
+         Eigen::Map<const VectorXd>(without.data(), rows.w.size());
+}
+
+std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const EffortRows& rows, const MatrixXd& base,
+                                      const VectorXd& explained, const VectorXd& left) {
+  std::vector<EffortTerm> terms;
+  const VectorXd direction = sign_of(rows.w), speed = rows.w.cwiseAbs(), one = VectorXd::Ones(rows.w.size());
+  const double top = speed.maxCoeff();
+  const auto may_have = [&](std::string_view kind) { return model.find(kind) == nullptr; };
+  const bool has_offset = !may_have("constant_torque") || !may_have("dac_offset") || !may_have("coulomb_asymmetry");
+  const sim::EffectEntry* coulomb = model.find("coulomb");
+
+  if (!has_offset) {
+    terms.push_back(simple("constant_torque", -one, 0, [](double torque, sim::DriveDescription& fitted) {
+      return append(fitted, "constant_torque", {{"torque", torque}});
+    }));
+    const double per_volt = model.data.effort_per_volt();
+    terms.push_back(simple("dac_offset", -per_volt * one, 0, [](double offset, sim::DriveDescription& fitted) {
+      return append(fitted, "dac_offset", {{"offset", offset}});
+    }));
+    if (coulomb != nullptr && coulomb->has("level"))
+      terms.push_back(simple("coulomb_asymmetry", one, 0, [](double difference, sim::DriveDescription& fitted) {
+        const double level = coulomb_level(fitted);
+        return level > 0.0 && append(fitted, "coulomb_asymmetry", {{"asymmetry", difference / level}});
+      }));
+  }
+  if (may_have("viscous_asymmetry") && model.find("viscous") != nullptr)
+    terms.push_back(simple("viscous_asymmetry", speed, 0, [](double difference, sim::DriveDescription& fitted) {
+      const double viscous = fitted.find("viscous")->at("B");
+      return viscous > 0.0 && append(fitted, "viscous_asymmetry", {{"asymmetry", difference / viscous}});
+    }));
+  if (may_have("nonlinear_viscous")) {
+    const double reference = model.data.kind == sim::DriveKind::rotary ? 10.0 : 0.1;
+    for (const double exponent : {0.33, 0.5, 1.5, 2.0, 3.0})
+      terms.push_back(
+          simple("nonlinear_viscous", direction.array() * (speed.array() / reference).pow(exponent), 0,
+                 [exponent](double coefficient, sim::DriveDescription& fitted) {
+                   return append(fitted, "nonlinear_viscous", {{"coefficient", coefficient}, {"exponent", exponent}});
+                 }));
+  }
+  if (may_have("nonlinear_viscous"))
+    for (const double part : {0.05, 0.08, 0.12, 0.2, 0.4}) {
+      const double saturation = part * top;
+      terms.push_back(simple(
+          "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), 0,
+          [saturation](double coefficient, sim::DriveDescription& fitted) {
+            return append(fitted, "nonlinear_viscous", {{"coefficient", coefficient}, {"saturation", saturation}});
+          }));
+    }
+  if (may_have("stribeck") && coulomb != nullptr)
+    for (const double part : {0.02, 0.05, 0.1, 0.2}) terms.push_back(stribeck_term(model, rows, part * top));
+  if (may_have("load_dependent_friction"))
+    terms.push_back(simple("load_dependent_friction", direction.cwiseProduct(explained.cwiseAbs()), 1,
+                           [](double share, sim::DriveDescription& fitted) {
+                             return append(fitted, "load_dependent_friction", {{"coefficient", share}});
+                           }));
+  if (may_have("dac_dead_zone"))
+    terms.push_back(simple("dac_dead_zone", model.data.effort_per_volt() * sign_of(explained), 1,
+                           [](double width, sim::DriveDescription& fitted) {
+                             return append(fitted, "dac_dead_zone", {{"width", width}});
+                           }));
+  if (may_have("thermal_friction_drift") && coulomb != nullptr) {
+    const double duration_s = rows.t_s.maxCoeff() - rows.t_s.minCoeff();
+    for (const double part : {0.2, 1.0}) {
+      const double tau = part * duration_s;
+      const VectorXd warmth = 1.0 - (-rows.t_s.array() / tau).exp();
+      terms.push_back(
+          simple("thermal_friction_drift", direction.cwiseProduct(warmth), 0,
+                 [tau](double change, sim::DriveDescription& fitted) {
+                   const double level = coulomb_level(fitted);
+                   return level > 0.0 &&
+                          append(fitted, "thermal_friction_drift",
+                                 {{"coulomb_change", change / level}, {"viscous_change", 0.0}, {"time_constant", tau}});
+                 }));
+    }
+  }
+  if (!rows.steady && may_have("input_delay") && may_have("current_loop_lag")) {
+    // T(t - d) = explained: the effort that is asked for leads what acts by d times its slope. The slope is taken of
+    // what inertia and friction explain, which holds no noise of the effort.
+    VectorXd slope = VectorXd::Zero(rows.w.size());
+    for (Index k = 1; k + 1 < rows.w.size(); ++k) {
+      const double step_s = rows.t_s(k + 1) - rows.t_s(k - 1);
+      const bool together =
+          rows.record[static_cast<std::size_t>(k - 1)] == rows.record[static_cast<std::size_t>(k + 1)];
+      constexpr double kGap_s = 0.1;  // rows on both sides of a stop are not neighbours
+      if (together && step_s > 0.0 && step_s < kGap_s) slope(k) = (explained(k + 1) - explained(k - 1)) / step_s;
+    }
+    terms.push_back(simple("input_delay", slope, 1, [](double delay_s, sim::DriveDescription& fitted) {
+      return append(fitted, "input_delay", {{"delay", delay_s}});
+    }));
+    terms.push_back(simple("current_loop_lag", slope, 1, [](double lag_s, sim::DriveDescription& fitted) {
+      return lag_s > 0.0 && append(fitted, "current_loop_lag", {{"bandwidth", 1.0 / (2.0 * std::numbers::pi * lag_s)}});
+    }));
+  }
+  if (may_have("compliance") && may_have("backlash") && may_have("presliding")) append_compliance(model, rows, terms);
+  if (!rows.has_position) return terms;
+  if (may_have("spring_torque")) {
+    EffortTerm term{"spring_torque", MatrixXd(rows.w.size(), 2), {0, 0}, {}, {}};
+    term.columns << rows.x, one;
+    term.write = [](const VectorXd& factors, sim::DriveDescription& fitted) {
+      return factors(0) != 0.0 &&
+             append(fitted, "spring_torque", {{"stiffness", factors(0)}, {"centre", -factors(1) / factors(0)}});
+    };
+    terms.push_back(std::move(term));
+  }
+  append_periodic(model, rows, "cogging", base, one, left, terms);
+  if (may_have("torque_ripple")) append_periodic(model, rows, "torque_ripple", base, explained, left, terms);
+  if (may_have("position_dependent_friction") && coulomb != nullptr)
+    append_periodic(model, rows, "position_dependent_friction", base, direction, left, terms);
+  return terms;
+}
+
+}  // namespace host

@@ -1,0 +1,123 @@
+#include "host/simulated_board/simulated_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "firmware/app/protocol/server.hpp"
+#include "hal/pc/simulated_board.hpp"
+#include "host/atomic_file.hpp"
+#include "host/exit_codes.hpp"
+#include "host/read_file.hpp"
+
+namespace host {
+
+namespace {
+
+/// As boards/image/survival_record.hpp numbers them.
+constexpr std::uint8_t kPowerOn = 1, kSoftwareReset = 3;
+
+void load_flash(hal::pc::SimulatedFlash& flash, const std::string& file) {
+  if (file.empty() || !std::filesystem::exists(file)) return;
+  const std::string bytes = read_file(file);
+  if (bytes.size() != flash.sector_count() * flash.sector_size())
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: {} bytes are no simulated flash (it has {}): remove the file, or name another", file,
+                              bytes.size(), flash.sector_count() * flash.sector_size()));
+  auto next = bytes.begin();
+  for (auto& sector : flash.contents())
+    for (std::byte& cell : sector) cell = static_cast<std::byte>(*next++);
+}
+
+firmware::ImageHeader image_of_simulation() {
+  firmware::ImageHeader image;
+  std::ranges::copy(std::string_view("simulated"), image.board.begin());
+  std::ranges::copy(std::string_view("host"), image.version.begin());
+  return image;
+}
+
+template <std::size_t axes>
+class ProgramOf : public SimulatedProgram {
+ public:
+  ProgramOf(const SimulatedDeviceOptions& options, const firmware::BootFacts& boot)
+      : board_(drives_of(options), options.seed, wiring_of(options)), server_(application_, image_, boot) {
+    load_flash(board_.parameter_flash(), options.flash_file);
+    application_.start();
+  }
+
+  std::uint32_t run_control_period() override {
+    application_.control_period();
+    board_.advance();
+    return board_.control_period_us();
+  }
+  void poll(UsbEnd& usb) override { server_.poll(usb); }
+  bool wants_restart() const override { return board_.wants_restart(); }
+  hal::pc::SimulatedUsb& usb() override { return board_.usb(); }
+  hal::pc::SimulatedFlash& flash() override { return board_.parameter_flash(); }
+
+ private:
+  using Board = hal::pc::SimulatedBoardOf<axes>;
+  using Application = firmware::BoardApplication<float, Board>;
+
+  static typename Board::Drives drives_of(const SimulatedDeviceOptions& options) {
+    typename Board::Drives drives;
+    std::ranges::transform(options.drives, drives.begin(), &SimulatedDrive::drive);
+    return drives;
+  }
+  static typename Board::Wiring wiring_of(const SimulatedDeviceOptions& options) {
+    typename Board::Wiring wiring;
+    std::ranges::transform(options.drives, wiring.begin(), &SimulatedDrive::wiring);
+    return wiring;
+  }
+
+  firmware::ImageHeader image_ = image_of_simulation();
+  Board board_;
+  Application application_{board_};
+  firmware::ProtocolServer<Application> server_;
+};
+
+std::unique_ptr<SimulatedProgram> start_program(const SimulatedDeviceOptions& options,
+                                                const firmware::BootFacts& boot) {
+  switch (options.drives.size()) {
+    case 1:
+      return std::make_unique<ProgramOf<1>>(options, boot);
+    case 2:
+      return std::make_unique<ProgramOf<2>>(options, boot);
+    case 3:
+      return std::make_unique<ProgramOf<3>>(options, boot);
+    case 4:
+      return std::make_unique<ProgramOf<4>>(options, boot);
+    default:
+      throw Failure(ExitCode::usage,
+                    fmt::format("a board has 1 to {} axes, not {}", hal::kMostAxes, options.drives.size()));
+  }
+}
+
+}  // namespace
+
+SimulatedDevice::SimulatedDevice(SimulatedDeviceOptions options) : options_(std::move(options)) { power_up(); }
+
+void SimulatedDevice::power_up() {
+  const bool is_reset = program_ != nullptr;
+  program_.reset();
+  if (is_reset) ++resets_;
+  try {
+    program_ = start_program(options_, {is_reset ? kSoftwareReset : kPowerOn, resets_, true});
+  } catch (const std::invalid_argument& error) {
+    throw Failure(ExitCode::bad_input, fmt::format("the simulated board cannot run this drive: {}", error.what()));
+  }
+  flash_operations_ = program_->flash().operations();
+}
+
+void SimulatedDevice::keep_flash() {
+  flash_operations_ = program_->flash().operations();
+  if (options_.flash_file.empty()) return;
+  std::string bytes;
+  for (const auto& sector : program_->flash().contents())
+    bytes.append(reinterpret_cast<const char*>(sector.data()), sector.size());
+  write_file_atomically(options_.flash_file, bytes);
+}
+
+}  // namespace host

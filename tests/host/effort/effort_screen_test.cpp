@@ -1,0 +1,176 @@
+// Plain least squares of the effort, on motions and efforts written down in closed form: no simulator has made them.
+#include "host/effort/effort_screen.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "host/diagnose/effort_diagnosis.hpp"
+#include "sim/harmonic.hpp"
+
+namespace {
+
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kInertia = 2e-5, kViscous = 5e-4, kCoulomb = 0.02, kPerAmpere = 0.03;
+
+/// One rad is one mm; the motor gives 0.03 Nm/A.
+sim::DriveDescription motor() {
+  sim::DriveDescription model;
+  model.data.amplifier_gain_A_per_V = 1.0;
+  model.data.torque_constant_Nm_per_A = kPerAmpere;
+  model.data.encoder_resolution = kTurn / 20000.0;
+  model.effects.push_back({"inertia", {{"J", 1.1 * kInertia}}, {}, {}});
+  model.effects.push_back({"viscous", {{"B", 0.8 * kViscous}}, {}, {}});
+  model.effects.push_back({"coulomb", {{"level", 1.2 * kCoulomb}}, {}, {}});
+  return model;
+}
+
+/// Travel, speed and acceleration at a time.
+struct Point {
+  double x, w, a;
+};
+
+/// Turns at 3 to 9 rad/s, forward and backward in turn; the speed passes smoothly through zero.
+Point slow_turning(double t_s) {
+  const double slow = kTurn * 0.05, wave = kTurn * 0.31;
+  return {-8.0 / slow * std::cos(slow * t_s) - 1.0 / wave * std::cos(wave * t_s),
+          8.0 * std::sin(slow * t_s) + std::sin(wave * t_s),
+          8.0 * slow * std::cos(slow * t_s) + wave * std::cos(wave * t_s)};
+}
+
+/// A record of a motion and of the effort that it takes beyond inertia and friction. The sampling jitters, the current
+/// comes in steps of 2 mA.
+template <typename Motion, typename Further>
+host::Record record_of(Motion motion, Further further, double from_s, double to_s, unsigned seed) {
+  host::Record record;
+  record.path = "made.csv";
+  record.sample_period_s = 0.001;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> jitter_s(0.0, 2e-5), noise_A(0.0, 0.01);
+  const double step = kTurn / 20000.0;
+  for (double t_s = from_s; t_s < to_s; t_s += record.sample_period_s) {
+    const Point point = motion(t_s + jitter_s(random));
+    const double effort = kInertia * point.a + kViscous * point.w + std::copysign(kCoulomb, point.w) + further(point);
+    record.t_s.push_back(t_s - from_s);
+    record.x.push_back(step * std::round(point.x / step));
+    record.i_A.push_back(0.002 * std::round((effort / kPerAmpere + noise_A(random)) / 0.002));
+  }
+  return record;
+}
+
+double five_orders(const Point& point) {
+  const double amplitudes[][2] = {{6, 0.012}, {18, 0.008}, {24, 0.006}, {36, 0.010}, {72, 0.016}};
+  double sum = 0.0;
+  for (const auto& [order, amplitude] : amplitudes) sum += amplitude * std::cos(order * point.x + order);
+  return sum;
+}
+
+std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record*>& train,
+                                            const std::vector<const host::Record*>& validate,
+                                            std::shared_ptr<const host::EffortScreen>& seen) {
+  const sim::DriveDescription model = motor();
+  return host::diagnose_by_effort(model, host::split_sets(model, train, validate), train, validate, seen);
+}
+
+// A screen that stops at one order, counts orders over a wrong period or mistakes the sign leaves more.
+TEST(EffortScreen, FindsFiveOrdersOfCoggingInASlowRecord) {
+  const host::Record train = record_of(slow_turning, five_orders, 0.0, 20.0, 1);
+  const host::Record validate = record_of(slow_turning, five_orders, 23.0, 36.0, 2);
+  std::shared_ptr<const host::EffortScreen> seen;
+  const auto by_effort = by_effort_of({&train}, {&validate}, seen);
+  ASSERT_TRUE(by_effort.has_value());
+  const host::Diagnosis& diagnosis = *by_effort;
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::missing);
+  ASSERT_THAT(diagnosis.verdict.effects, ElementsAre("cogging"));
+  const sim::EffectEntry& cogging = *diagnosis.best.find("cogging");
+  EXPECT_NEAR(cogging.at("period"), kTurn, 1e-3);
+  std::vector<double> orders;
+  for (const sim::HarmonicTerm& term : sim::harmonics_of(cogging)) orders.push_back(term.order);
+  EXPECT_THAT(orders, ElementsAre(6, 18, 24, 36, 72));
+  EXPECT_NEAR(std::hypot(cogging.at("cosine_6"), cogging.at("sine_6")), 0.012, 0.0005);
+  EXPECT_NEAR(cogging.at("cosine_18"), -0.008 * std::cos(18.0), 0.0006) << "load helps where the motor must give less";
+  ASSERT_NE(diagnosis.screen, nullptr);
+  EXPECT_LT(std::pow(diagnosis.screen->best().validate, 2), 0.05) << "95 % of the variance";
+  EXPECT_NEAR(diagnosis.base.find("coulomb")->at("level"), kCoulomb, 0.1 * kCoulomb);
+}
+
+/// Swings of 40 degrees about the vertical, as of a pendulum.
+Point swinging(double t_s) {
+  const double slow = kTurn * 0.15, wave = kTurn * 0.4;
+  return {0.6 * std::sin(slow * t_s) + 0.25 * std::sin(wave * t_s),
+          0.6 * slow * std::cos(slow * t_s) + 0.25 * wave * std::cos(wave * t_s),
+          -0.6 * slow * slow * std::sin(slow * t_s) - 0.25 * wave * wave * std::sin(wave * t_s)};
+}
+
+// Less than a turn must do: a weight is neither a spring nor friction under load.
+TEST(EffortScreen, SeesAWeightInPartOfATurn) {
+  const auto weight = [](const Point& point) { return 0.08 * std::sin(point.x + 0.3); };
+  const host::Record train = record_of(swinging, weight, 0.0, 20.0, 6);
+  const host::Record validate = record_of(swinging, weight, 23.0, 36.0, 7);
+  std::shared_ptr<const host::EffortScreen> seen;
+  const auto by_effort = by_effort_of({&train}, {&validate}, seen);
+  ASSERT_TRUE(by_effort.has_value());
+  EXPECT_THAT(by_effort->verdict.effects, ElementsAre("cogging"));
+  EXPECT_NEAR(by_effort->best.find("cogging")->at("period"), kTurn, 1e-9);
+  const sim::EffectEntry& cogging = *by_effort->best.find("cogging");
+  EXPECT_NEAR(std::hypot(cogging.at("cosine"), cogging.at("sine")), 0.08, 0.002);
+}
+
+// What a model has already, in a form that is not linear, must not be looked for again.
+TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
+  const auto dragging = [](const Point& point) {
+    return std::copysign(0.02, point.w) * std::exp(-std::abs(point.w) / 2.0);
+  };
+  const host::Record train = record_of(slow_turning, dragging, 0.0, 20.0, 8);
+  const host::Record validate = record_of(slow_turning, dragging, 23.0, 36.0, 9);
+  sim::DriveDescription model = motor();
+  const auto left = [&] {
+    return host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model))
+        .base.validate;
+  };
+  const double without = left();
+  model.find("coulomb")->parameters["level"] = kCoulomb;
+  model.effects.push_back({"stribeck", {{"static", 2.0 * kCoulomb}, {"omega1", 2.0}, {"omega2", 2.0}}, {}, {}});
+  EXPECT_LT(left(), 0.5 * without);
+}
+
+// With an inertia that it makes up, steady speeds would fit anything.
+TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
+  const auto at = [](double w) { return [w](double t_s) { return Point{w * t_s, w, 0.0}; }; };
+  const auto offset = [](const Point&) { return 0.006; };
+  std::vector<host::Record> records;
+  for (const double w : {3.0, 6.0, 9.0, 12.0})
+    for (const double sign : {1.0, -1.0}) records.push_back(record_of(at(sign * w), offset, 0.0, 3.0, 5));
+  std::vector<const host::Record*> train, validate;
+  for (std::size_t k = 0; k < records.size(); ++k) (k % 4 < 2 ? train : validate).push_back(&records[k]);
+  std::shared_ptr<const host::EffortScreen> seen;
+  const auto by_effort = by_effort_of(train, validate, seen);
+  ASSERT_TRUE(by_effort.has_value());
+  const host::Diagnosis& diagnosis = *by_effort;
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::ambiguous);
+  EXPECT_THAT(diagnosis.verdict.effects, UnorderedElementsAre("constant_torque", "dac_offset", "coulomb_asymmetry"));
+  EXPECT_EQ(diagnosis.best.find("inertia")->at("J"), 1.1 * kInertia);
+  EXPECT_NEAR(diagnosis.best.find("constant_torque")->at("torque"), -0.006, 0.0005);
+}
+
+// What the effort is in proportion to must not be explained by the effort itself.
+TEST(EffortScreen, ClaimsNothingWhereNothingIsMissing) {
+  const auto nothing = [](const Point&) { return 0.0; };
+  const host::Record train = record_of(slow_turning, nothing, 0.0, 20.0, 3);
+  const host::Record validate = record_of(slow_turning, nothing, 23.0, 36.0, 4);
+  const host::EffortScreen screen =
+      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()));
+  ASSERT_FALSE(screen.empty());
+  EXPECT_TRUE(screen.chosen.empty());
+  EXPECT_LT(screen.base.validate, 0.05);
+  EXPECT_NEAR(screen.base.model.find("viscous")->at("B"), kViscous, 0.1 * kViscous);
+  EXPECT_NEAR(screen.base.model.find("coulomb")->at("level"), kCoulomb, 0.05 * kCoulomb);
+}
+
+}  // namespace
