@@ -2,12 +2,12 @@
 
 #include "host/exit_codes.hpp"
 #include "host/hil/scenario.hpp"
-#include "host/hil/toml_fields.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
 #include "host/output_target.hpp"
 #include "host/read_file.hpp"
+#include "host/toml_fields.hpp"
 #include "host/toml_text.hpp"
 #include "sim/catalogue.hpp"
 

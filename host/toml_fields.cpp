@@ -1,4 +1,4 @@
-#include "host/hil/toml_fields.hpp"
+#include "host/toml_fields.hpp"
 
 #include <fmt/ranges.h>
 
