@@ -15,9 +15,10 @@ for image in "$@"; do
   "$size" -A "$image" | awk -v image="$image" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
     $1 ~ /^\.(vectors|image_header|text|ARM\.exidx|data|ccm)$/ { flash += $2 }
     $1 ~ /^\.(stack|noinit|data|bss|ccm)$/ { ram += $2 }
+    $1 == ".capture" { capture = $2 }
     END {
       n = split(image, parts, "/")
-      printf "%-28s flash %6d of %d bytes, RAM %6d of %d bytes\n", parts[n], flash, flash_limit, ram, ram_limit
+      printf "%-28s flash %6d of %d bytes, RAM %6d of %d bytes, capture memory %6d bytes\n", parts[n], flash, flash_limit, ram, ram_limit, capture
       if (flash == 0 || flash > flash_limit || ram > ram_limit) { print image ": too large" > "/dev/stderr"; exit 1 }
     }' || status=1
 done

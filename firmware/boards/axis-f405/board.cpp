@@ -5,7 +5,7 @@
 namespace firmware::boards {
 
 namespace {
-[[gnu::section(".noinit")]] TriggeredMemory triggered_memory;
+[[gnu::section(".capture")]] TriggeredMemory triggered_memory;
 }
 
 TriggeredMemory& Board::capture_memory() { return triggered_memory; }

@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint32_t kClock_Hz = 168'000'000;  // QEMU gives the chip its 168 MHz
 
 [[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
-[[gnu::section(".noinit")]] TriggeredMemory triggered_memory;
+[[gnu::section(".capture")]] TriggeredMemory triggered_memory;
 hal::qemu::HostStream stream;
 std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's last start
 
