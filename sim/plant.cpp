@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sim {
 
@@ -15,14 +16,42 @@ Plant::Plant(const DriveDescription& description, std::uint64_t seed)
   if (data_.tach_noise_variance) tach_deviation_ = std::sqrt(*data_.tach_noise_variance);
 }
 
+void Plant::hand_over(std::shared_ptr<ForeignMotion> motion) {
+  foreign_ = std::move(motion);
+  state_.x = state_.load_x = foreign_->reading().x;
+  tell_foreign();
+}
+
+void Plant::tell_foreign() {
+  if (foreign_) foreign_->command(enabled_ ? std::optional(command_V_) : std::nullopt);
+}
+
+void Plant::follow_foreign(double duration_s) {
+  const double before = state_.x;
+  foreign_->advance(duration_s);
+  time_s_ += duration_s;
+  state_.x = state_.load_x = foreign_->reading().x;
+  state_.w = state_.load_w = (state_.x - before) / (data_.lead * duration_s);
+}
+
+void Plant::set_enabled(bool enabled) {
+  enabled_ = enabled;
+  tell_foreign();
+}
+
 void Plant::set_command(double u_V) {
   const double limited = std::clamp(u_V, -data_.dac_limit_V, data_.dac_limit_V);
   const double step = data_.dac_resolution_V;
   command_V_ =
       step > 0.0 ? std::clamp(step * std::round(limited / step), -data_.dac_limit_V, data_.dac_limit_V) : limited;
+  tell_foreign();
 }
 
 void Plant::advance(double duration_s) {
+  if (foreign_) {
+    follow_foreign(duration_s);
+    return;
+  }
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kLongestStep_s - 1e-9)));
   const double step_s = duration_s / steps;
   const Drive& drive = enabled_ ? drive_ : unpowered_;
@@ -31,14 +60,15 @@ void Plant::advance(double duration_s) {
 }
 
 std::int64_t Plant::encoder_counts() const {
-  const double reading = drive_.encoder(state_);
   // Without a resolution the reading passes through a grid far below any real scale.
   const double resolution = data_.encoder_resolution > 0.0 ? data_.encoder_resolution : 1e-9;
-  return static_cast<std::int64_t>(std::floor(reading / resolution));
+  if (foreign_) return std::llround(state_.x / resolution);
+  return static_cast<std::int64_t>(std::floor(drive_.encoder(state_) / resolution));
 }
 
 std::optional<double> Plant::read_tachometer() {
   if (!data_.tach_noise_variance) return std::nullopt;
+  if (foreign_) return foreign_->reading().w;
   return drive_.tachometer(state_) + tach_deviation_ * normal_(noise_);
 }
 

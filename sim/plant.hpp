@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <random>
 
 #include "sim/drive.hpp"
+#include "sim/foreign_motion.hpp"
 
 namespace sim {
 
@@ -15,11 +17,15 @@ class Plant {
   /// Throws std::invalid_argument for a description that the catalogue cannot build.
   Plant(const DriveDescription& description, std::uint64_t seed);
 
+  /// From now on `motion` takes the place of the drive and of the tachometer's noise; data sheet, converter and encoder
+  /// stay. Positions are rounded to counts. The true motion is then what the encoder sees.
+  void hand_over(std::shared_ptr<ForeignMotion> motion);
+
   /// Sets the D/A converter, volts: limited to its range, rounded to its resolution, held until the next call.
   void set_command(double u_V);
 
   /// Opens or closes the amplifier's enable: without it the motor is free of current.
-  void set_enabled(bool enabled) { enabled_ = enabled; }
+  void set_enabled(bool enabled);
 
   /// Lets the machine run. Internal steps are at most 0.25 ms, so that the error of one step stays far below an encoder
   /// count at any acceleration that a drive reaches.
@@ -43,7 +49,11 @@ class Plant {
   double table_travel() const { return drive_.has_second_mass() ? state_.load_x : state_.x; }
 
  private:
+  void tell_foreign();
+  void follow_foreign(double duration_s);
+
   DataSheet data_;
+  std::shared_ptr<ForeignMotion> foreign_;
   Drive drive_;
   Drive unpowered_;  ///< the same without the motor's effort
   DriveState state_;

@@ -9,6 +9,7 @@
 
 #include "host/axistool/json_output.hpp"
 #include "host/exit_codes.hpp"
+#include "host/external_plant/external_plant.hpp"
 #include "host/link/open_device.hpp"
 #include "host/model/model_file.hpp"
 #include "host/simulated_board/simulated_link.hpp"
@@ -19,7 +20,7 @@ void add_device_options(CLI::App& command, DeviceArguments& arguments) {
   command
       .add_option("--device", arguments.device,
                   "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH, model:FILE (simulated within this "
-                  "command); "
+                  "command), plant:DRIVE.toml:COMMAND (the same around a program); "
                   "default: the only one on USB")
       ->envname("AXIS_DEVICE");
   command.add_flag_callback(
@@ -47,15 +48,30 @@ std::unique_ptr<host::ReportLink> simulated_board(const std::string& model) {
       host::SimulatedDeviceOptions{std::vector<host::SimulatedDrive>(hal::kAxisCount, drive), "", 1});
 }
 
+/// A board of one axis around a program: "DRIVE.toml:COMMAND".
+std::unique_ptr<host::ReportLink> board_around_program(const std::string& words, std::chrono::milliseconds patience) {
+  const std::size_t colon = words.find(':');
+  if (colon == std::string::npos)
+    throw host::Failure(host::ExitCode::usage,
+                        "--device plant:" + words + ": write plant:DRIVE.toml:COMMAND, data sheet and program");
+  const sim::DriveDescription drive = host::data_sheet_alone(host::read_drive(words.substr(0, colon)));
+  const auto plant =
+      std::make_shared<host::ExternalPlant>(words.substr(colon + 1), 1, drive.data.sample_period_s, patience);
+  return std::make_unique<host::SimulatedLink>(
+      host::SimulatedDeviceOptions{{{drive, {}, host::ExternalPlant::axis(plant, 0)}}, "", 1});
+}
+
 }  // namespace
 
 host::BoardClient open_board(const DeviceArguments& arguments) {
-  const std::chrono::duration<double> patience(arguments.patience_s);
-  constexpr std::string_view kModel = "model:";
-  const bool is_model = arguments.device.starts_with(kModel);
-  return host::BoardClient(
-      is_model ? simulated_board(arguments.device.substr(kModel.size())) : host::open_device(arguments.device),
-      std::chrono::duration_cast<std::chrono::milliseconds>(patience));
+  const auto patience =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(arguments.patience_s));
+  constexpr std::string_view kModel = "model:", kPlant = "plant:";
+  if (arguments.device.starts_with(kModel))
+    return host::BoardClient(simulated_board(arguments.device.substr(kModel.size())), patience);
+  if (arguments.device.starts_with(kPlant))
+    return host::BoardClient(board_around_program(arguments.device.substr(kPlant.size()), patience), patience);
+  return host::BoardClient(host::open_device(arguments.device), patience);
 }
 
 bool talks(const DeviceArguments& arguments) { return arguments.json != "-"; }

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <memory>
-#include <thread>
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
@@ -86,7 +85,7 @@ void faults(const FaultArguments& arguments) {
 void clear_faults(const FaultArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   if (!arguments.dry_run) board.clear_faults();
-  std::this_thread::sleep_for(std::chrono::milliseconds(arguments.dry_run ? 0 : 300));  // the self-test that follows
+  board.wait(std::chrono::milliseconds(arguments.dry_run ? 0 : 300));  // the self-test that follows
   tell(arguments, board.status());
 }
 

@@ -12,6 +12,7 @@
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
+#include "host/external_plant/external_plant.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
 #include "host/simulated_board/socket_board.hpp"
@@ -22,11 +23,12 @@ namespace axistool {
 namespace {
 
 struct SimArguments {
-  std::string socket, flash;
+  std::string socket, flash, plant;
   std::array<std::string, hal::kMostAxes> models;
   std::size_t axes = hal::kAxisCount;
   std::string serial_number = "SIMULATED";
   std::uint64_t seed = 1;
+  double patience_s = 10.0;
   bool forget = false, usb = false;
 };
 
@@ -63,8 +65,20 @@ hal::pc::AxisWiring wiring(const sim::DriveDescription& drive) {
 /// Where no model is given the paper's two axes take turns.
 host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
   const sim::DriveDescription drive =
-      file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_model(file);
+      file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_drive(file);
   return {drive, wiring(drive)};
+}
+
+/// The program moves in the drives' place; of them the data sheets stay.
+void hand_over(std::vector<host::SimulatedDrive>& drives, const SimArguments& arguments) {
+  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::duration<double>(arguments.patience_s));
+  const auto plant = std::make_shared<host::ExternalPlant>(arguments.plant, drives.size(),
+                                                           drives.front().drive.data.sample_period_s, patience);
+  for (std::size_t axis = 0; axis < drives.size(); ++axis) {
+    drives[axis].drive = host::data_sheet_alone(drives[axis].drive);
+    drives[axis].motion = host::ExternalPlant::axis(plant, axis);
+  }
 }
 
 void tell(const std::string& place, const std::string& flash_file, const std::string& device) {
@@ -79,6 +93,7 @@ void run(SimArguments arguments) {
   options.seed = arguments.seed;
   for (std::size_t axis = 0; axis < arguments.axes; ++axis)
     options.drives.push_back(drive(arguments.models[axis], axis));
+  if (!arguments.plant.empty()) hand_over(options.drives, arguments);
   if (!arguments.forget) {
     options.flash_file = arguments.flash.empty() ? default_flash_file() : arguments.flash;
     make_folder_of(options.flash_file);
@@ -95,7 +110,12 @@ void run(SimArguments arguments) {
   const host::OwnedDescriptor listener = host::listen_at_socket(arguments.socket);
   tell("at " + arguments.socket, options.flash_file,
        arguments.socket == host::default_socket_path() ? "sim" : "socket:" + arguments.socket);
-  host::serve_simulated_device(device, listener, stop);
+  try {
+    host::serve_simulated_device(device, listener, stop);
+  } catch (const host::Failure&) {
+    host::remove_socket(arguments.socket);
+    throw;
+  }
   host::remove_socket(arguments.socket);
 }
 
@@ -119,6 +139,14 @@ void add_sim(CLI::App& app) {
     add_input(*command, fmt::format("--{}", firmware::kAxisNames[axis]), arguments->models[axis],
               axis == 0 ? "model of the drive on axis x (axis-model/1); default: the paper's x axis"
                         : "likewise of the next axis, if there is one");
+  CLI::Option* plant = command->add_option(
+      "--plant", arguments->plant,
+      "program that moves in the drives' place, in lockstep (axis-plant/1); --x, --y … are then data sheets");
+  command
+      ->add_option("--patience", arguments->patience_s, "seconds that its answer may take")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str()
+      ->needs(plant);
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();
@@ -128,7 +156,8 @@ void add_sim(CLI::App& app) {
       "  axistool sim &\n"
       "  axistool info --device sim\n"
       "  sudo axistool sim --usb --serial BENCH-1 &\n"
-      "  axistool sim --x my-model.toml --forget --socket /tmp/board.socket");
+      "  axistool sim --x my-model.toml --forget --socket /tmp/board.socket\n"
+      "  axistool sim --axes 1 --x data-sheet.toml --plant 'python3 05-own-plant.py' --forget");
   command->callback([arguments] { run(*arguments); });
 }
 

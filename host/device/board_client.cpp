@@ -171,7 +171,7 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
   message.sequence = ++sequence_;
   message.client = client_;
   link_->send(firmware::encode(message));
-  const auto deadline = steady_clock::now() + patience;
+  const auto deadline = link_->now() + patience;
   while (const auto reply = receive(deadline)) {
     if (reply->type != MessageType::rejected && reply->client != client_) continue;  // another program's
     if (reply->type == MessageType::samples) {
@@ -190,7 +190,7 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
 }
 
 std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
-  const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
+  const auto left = std::chrono::ceil<milliseconds>(deadline - link_->now());
   if (left.count() < 0) return std::nullopt;
   const auto report = link_->receive(left);
   if (!report) return std::nullopt;
@@ -405,7 +405,7 @@ std::optional<firmware::FaultRowPayload> BoardClient::fault_row(std::uint8_t axi
 }
 
 std::optional<BoardClient::Samples> BoardClient::next_samples(milliseconds patience) {
-  const auto deadline = steady_clock::now() + patience;
+  const auto deadline = link_->now() + patience;
   while (samples_.empty()) {
     const auto message = receive(deadline);
     if (!message) return std::nullopt;

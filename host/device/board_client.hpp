@@ -84,6 +84,10 @@ class BoardClient {
   };
   std::chrono::milliseconds patience() const { return patience_; }
 
+  /// The board's clock (ReportLink::now): what is waited for on it is waited for with these.
+  std::chrono::steady_clock::time_point now() const { return link_->now(); }
+  void wait(std::chrono::milliseconds duration) { link_->wait(duration); }
+
   /// Those that have come, or come within `patience`; empty otherwise.
   std::optional<Samples> next_samples(std::chrono::milliseconds patience);
 

@@ -65,13 +65,13 @@ class CaptureRun {
   }
 
   void fetch(const std::function<void(std::size_t)>& progress) {
-    const auto began = steady_clock::now();
+    const auto began = board_.now();
     auto heard = began;
     next_jog_ = began;
     while (after_ < wanted_) {
       const auto samples = board_.next_samples(milliseconds(10));
       if (samples) take(*samples);
-      const auto now = steady_clock::now();
+      const auto now = board_.now();
       if (samples) last_row_ = now;
       steer(now);
       if (now - heard > kHeartbeat) {

@@ -95,13 +95,13 @@ class Examination {
   void stream() {
     constexpr std::uint16_t kFour = 0xF;
     board_.start_capture({{kFour}, 1, 0});
-    const auto begin = Clock::now();
+    const auto begin = board_.now();
     std::uint32_t next_row = 0, lost = 0;
     const auto take = [&](const BoardClient::Samples& samples) {
       lost += samples.first_row - next_row;
       next_row = samples.first_row + static_cast<std::uint32_t>(samples.words.size() / 4);
     };
-    while (Clock::now() - begin < std::chrono::seconds(1))
+    while (board_.now() - begin < std::chrono::seconds(1))
       if (const auto samples = board_.next_samples(std::chrono::milliseconds(20))) take(*samples);
     const std::uint32_t taken = board_.stop_capture().rows;
     while (const auto samples = board_.next_samples(std::chrono::milliseconds(50))) take(*samples);

@@ -112,9 +112,8 @@ ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Ex
     for (auto heard = steady_clock::time_point{}; !is_over(outcome.state);) {
       const bool came = rows.fetch(milliseconds(10));
       if (progress) progress(outcome.capture.number.size());
-      const auto now = steady_clock::now();
-      // A simulated board in this process has its own time: rows tell it.
-      if (came && now - heard < kHeartbeat && outcome.capture.number.size() % 16 != 0) continue;
+      const auto now = board.now();
+      if (came && now - heard < kHeartbeat) continue;
       heard = now;
       outcome.state = board.excitation_state();
       if (stop() && !is_asked) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <thread>
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
@@ -26,11 +25,11 @@ SupervisorState state_of(const BoardState& status, std::size_t axis) {
 /// Asks until `done`, the board's heartbeat on the way.
 template <typename Done>
 bool ask_until(BoardClient& board, std::chrono::duration<double> patience, Done done) {
-  const auto deadline = steady_clock::now() + patience;
+  const auto deadline = board.now() + patience;
   for (;;) {
     if (done(board.status())) return true;
-    if (steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(kRound);
+    if (board.now() > deadline) return false;
+    board.wait(kRound);
   }
 }
 
@@ -62,7 +61,7 @@ void stop_and_wait(BoardClient& board, std::uint8_t axis) {
 /// Of a motion that ends by itself.
 void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
   bool interrupted = false;
-  std::this_thread::sleep_for(kRound);  // it begins with the next control period
+  board.wait(kRound);  // it begins with the next control period
   ask_until(board, std::chrono::hours(24), [&](const auto& status) {
     interrupted = stop();
     return interrupted || rests(status, axis);

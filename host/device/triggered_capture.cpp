@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <thread>
 
 #include "firmware/app/channel_words.hpp"
 #include "firmware/app/parameters/axis_values.hpp"
@@ -239,18 +238,18 @@ Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& setti
   request.before = static_cast<std::uint32_t>(before);
   request.after = static_cast<std::uint32_t>(after);
   board.arm_trigger(request);
-  const auto began = std::chrono::steady_clock::now();
+  const auto began = board.now();
   for (;;) {
     const firmware::TriggerStatePayload state = board.trigger_state();
     if (state.phase == static_cast<std::uint8_t>(TriggerPhase::complete)) return capture_of(board, state, wanted);
     const bool is_waiting = state.phase == static_cast<std::uint8_t>(TriggerPhase::waiting);
-    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - began;
+    const std::chrono::duration<double> waited = board.now() - began;
     if (stop() || (is_waiting && waited.count() > wanted.patience_s)) {
       board.arm_trigger({});
       throw Failure(stop() ? ExitCode::refused : ExitCode::time_out,
                     stop() ? "interrupted" : fmt::format("the trigger did not come within {:g} s", wanted.patience_s));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    board.wait(std::chrono::milliseconds(20));
   }
 }
 

@@ -12,7 +12,9 @@ namespace host {
 namespace {
 
 std::unique_ptr<sim::Plant> make_plant(const MachineAxis& axis, std::uint64_t seed) {
-  return std::make_unique<sim::Plant>(axis.drive, seed);
+  auto plant = std::make_unique<sim::Plant>(axis.drive, seed);
+  if (axis.motion) plant->hand_over(axis.motion);
+  return plant;
 }
 
 template <typename Make>

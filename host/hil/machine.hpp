@@ -24,6 +24,7 @@ struct MachineAxis {
   sim::DriveDescription drive;
   firmware::AxisParameters<float> parameters;
   hal::pc::AxisWiring wiring{};
+  std::shared_ptr<sim::ForeignMotion> motion{};  ///< moves in place of the drive's effects, where there is one
 };
 
 /// What can go wrong with the board itself.

@@ -23,6 +23,7 @@ enum class Knowledge {
 
 struct ScenarioAxis {
   sim::DriveDescription drive;
+  std::string program;  ///< moves in place of the drive's effects, of which then nothing is known; empty: none
   Knowledge knowledge = Knowledge::truth;
   sim::DriveDescription believed;  ///< for Knowledge::model
   bool zero_phase = true;

@@ -76,12 +76,21 @@ class ScenarioReader {
       top.fail(name, fmt::format("the axis is missing; add [{}] with drive = \"paper {}\"", name, name));
     TomlFields from = fields(*table, "[" + name + "]");
     ScenarioAxis& axis = scenario_.axes[index];
-    axis.drive = model_beside(from, "drive", from.text("drive"));
+    constexpr std::string_view kProgram = "program:";
+    const std::string drive = from.text("drive");
+    if (drive.starts_with(kProgram)) {
+      axis.program = drive.substr(kProgram.size());
+      axis.drive = model_beside(from, "data_sheet", from.text("data_sheet"));
+    } else {
+      axis.drive = model_beside(from, "drive", drive);
+    }
     axis.drive.name = name;
     if (axis.drive.data.kind != sim::DriveKind::rotary) from.fail("drive", "scenarios run rotary drives only");
     for (const toml::table* effect : from.tables("effect")) read_effect(*effect, axis.drive);
     const std::string knowledge = from.optional_text("knowledge").value_or("truth");
     if (knowledge == "identified") {
+      if (!axis.program.empty())
+        from.fail("knowledge", "a program is identified by `axistool commission --plant`; name the model it makes");
       axis.knowledge = Knowledge::identified;
     } else if (knowledge != "truth") {
       axis.knowledge = Knowledge::model;
@@ -175,6 +184,8 @@ class ScenarioReader {
     for (const InjectionInfo& info : injections()) kinds.push_back(info.kind);
     fault.injection = &injections()[from.choice("kind", kinds)];
     if (!fault.injection->of_board) fault.axis = from.choice("axis", kAxes);
+    if (fault.injection->kind == "blocked" && !scenario_.axes[fault.axis].program.empty())
+      from.fail("kind", "nobody can block a machine that is another program: let the program do it");
     if (!fault.injection->unit.empty()) fault.value = from.number("value", fault.injection->usual);
     if (std::abs(fault.value) > 1e5) from.fail("value", "it must be within 1e5");
     if (from.has("until_s")) fault.until_s = time(from, "until_s");

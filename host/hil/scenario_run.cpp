@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 #include "host/exit_codes.hpp"
+#include "host/external_plant/external_plant.hpp"
 #include "host/hil/commissioning.hpp"
 #include "host/hil/expectation_check.hpp"
 #include "host/hil/recorder.hpp"
@@ -35,6 +37,19 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
                                           axis.limits);
   parameters.zero_phase_feedforward_on = axis.zero_phase;
   return {axis.drive, parameters, axis.wiring};
+}
+
+/// Programs in place of drives: axes that name the same one share it.
+void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxisCount>& axes) {
+  constexpr std::chrono::seconds kPatience{10};
+  std::map<std::string, std::vector<std::size_t>> served;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (!scenario.axes[i].program.empty()) served[scenario.axes[i].program].push_back(i);
+  for (const auto& [command, places] : served) {
+    const double period_s = axes[places.front()].drive.data.sample_period_s;
+    const auto plant = std::make_shared<ExternalPlant>(command, places.size(), period_s, kPatience);
+    for (std::size_t k = 0; k < places.size(); ++k) axes[places[k]].motion = ExternalPlant::axis(plant, k);
+  }
 }
 
 class ScenarioDriver {
@@ -239,6 +254,7 @@ ScenarioRun run_scenario(const Scenario& scenario) {
     believed[i] = believed_of(scenario.axes[i], commissioning_seed(scenario, i));
     axes[i] = machine_axis(scenario.axes[i], believed[i]);
   }
+  start_programs(scenario, axes);
   ScenarioDriver driver(scenario, axes);
   const auto start = std::chrono::steady_clock::now();
   driver.run();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "hal/usb_hid.hpp"
 
@@ -24,6 +25,10 @@ class ReportLink {
   /// Waits at most `limit`; empty when nothing came. Throws Failure (no_such_device) when the board is gone and all
   /// that it had sent has been fetched.
   virtual std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) = 0;
+
+  /// The clock that the board's time goes by: the computer's, unless the board is simulated within this process.
+  virtual std::chrono::steady_clock::time_point now() const { return std::chrono::steady_clock::now(); }
+  virtual void wait(std::chrono::milliseconds duration) { std::this_thread::sleep_for(duration); }
 
   /// As --device names it: usb:SERIAL, socket:PATH.
   virtual std::string name() const = 0;

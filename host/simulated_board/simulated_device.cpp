@@ -43,6 +43,8 @@ class ProgramOf : public SimulatedProgram {
  public:
   ProgramOf(const SimulatedDeviceOptions& options, const firmware::BootFacts& boot)
       : board_(drives_of(options), options.seed, wiring_of(options)), server_(application_, image_, boot) {
+    for (std::size_t i = 0; i < axes; ++i)
+      if (options.drives[i].motion) board_.plant(i).hand_over(options.drives[i].motion);
     load_flash(board_.parameter_flash(), options.flash_file);
     application_.start();
   }

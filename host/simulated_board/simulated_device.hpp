@@ -17,6 +17,7 @@ namespace host {
 struct SimulatedDrive {
   sim::DriveDescription drive;
   hal::pc::AxisWiring wiring{};
+  std::shared_ptr<sim::ForeignMotion> motion{};  ///< moves in place of the drive's effects, where there is one
 };
 
 struct SimulatedDeviceOptions {

@@ -1,5 +1,4 @@
-// A simulated board within this process. Its time passes while somebody waits for its reports, as fast as the computer
-// can, and between calls as the computer's own does.
+// A simulated board within this process. Its time passes only while somebody waits for it, as fast as the computer can.
 #pragma once
 
 #include "host/link/report_link.hpp"
@@ -14,14 +13,17 @@ class SimulatedLink : public ReportLink {
   void send(const hal::HidReport& report) override;
   /// `limit` is the board's time: as fast as this computer simulates it.
   std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) override;
+  std::chrono::steady_clock::time_point now() const override {
+    return std::chrono::steady_clock::time_point(std::chrono::microseconds(passed_us_));
+  }
+  void wait(std::chrono::milliseconds duration) override;
   std::string name() const override { return "model"; }
 
  private:
-  std::int64_t run_control_period();
-  void catch_up();
+  void run_control_period();
 
   SimulatedDevice device_;
-  std::chrono::steady_clock::time_point left_ = std::chrono::steady_clock::now();  ///< when the last call returned
+  std::int64_t passed_us_ = 0;
 };
 
 }  // namespace host
