@@ -71,8 +71,8 @@ host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
 
 /// The program moves in the drives' place; of them the data sheets stay.
 void hand_over(std::vector<host::SimulatedDrive>& drives, const SimArguments& arguments) {
-  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
-      std::chrono::duration<double>(arguments.patience_s));
+  const auto patience =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(arguments.patience_s));
   const auto plant = std::make_shared<host::ExternalPlant>(arguments.plant, drives.size(),
                                                            drives.front().drive.data.sample_period_s, patience);
   for (std::size_t axis = 0; axis < drives.size(); ++axis) {
@@ -142,8 +142,7 @@ void add_sim(CLI::App& app) {
   CLI::Option* plant = command->add_option(
       "--plant", arguments->plant,
       "program that moves in the drives' place, in lockstep (axis-plant/1); --x, --y … are then data sheets");
-  command
-      ->add_option("--patience", arguments->patience_s, "seconds that its answer may take")
+  command->add_option("--patience", arguments->patience_s, "seconds that its answer may take")
       ->check(CLI::Range(0.01, 600.0))
       ->capture_default_str()
       ->needs(plant);

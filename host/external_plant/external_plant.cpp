@@ -39,12 +39,14 @@ ExternalPlant::ExternalPlant(const std::string& command, std::size_t axes, doubl
                              std::chrono::milliseconds patience)
     : program_(command), period_s_(period_s), patience_(patience), commands_V_(axes), readings_(axes, {0.0, 0.0}) {
   constexpr std::chrono::seconds kStart{30};  // interpreters and their libraries
-  const std::string answer = program_.ask(plant_greeting(axes, period_s), std::max<std::chrono::milliseconds>(patience, kStart));
+  const std::string answer =
+      program_.ask(plant_greeting(axes, period_s), std::max<std::chrono::milliseconds>(patience, kStart));
   if (answer != "ready" && answer != "ready\r")
     throw Failure(ExitCode::protocol, program_.complaint("does not answer axis-plant/1 with ready"));
 }
 
-std::shared_ptr<sim::ForeignMotion> ExternalPlant::axis(const std::shared_ptr<ExternalPlant>& plant, std::size_t index) {
+std::shared_ptr<sim::ForeignMotion> ExternalPlant::axis(const std::shared_ptr<ExternalPlant>& plant,
+                                                        std::size_t index) {
   return std::make_shared<ExternalAxis>(plant, index);
 }
 

@@ -41,7 +41,9 @@ std::optional<double> number(std::string_view text) {
 
 }  // namespace
 
-std::string plant_greeting(std::size_t axes, double period_s) { return fmt::format("axis-plant/1 {} {}\n", axes, period_s); }
+std::string plant_greeting(std::size_t axes, double period_s) {
+  return fmt::format("axis-plant/1 {} {}\n", axes, period_s);
+}
 
 std::string plant_line(std::uint64_t k, std::span<const std::optional<double>> commands_V) {
   std::string line = fmt::format("{}", k);

@@ -10,8 +10,8 @@
 namespace host {
 
 /// Runs in a process group of its own, so that a Ctrl-C meant for this program leaves it running. Its errors go where
-/// this program's go. Its input ends when the object dies; if it does not end by itself within half a second then, it is
-/// killed.
+/// this program's go. Its input ends when the object dies; if it does not end by itself within half a second then, it
+/// is killed.
 class PlantProgram {
  public:
   /// `command`: for /bin/sh. Throws Failure(no_such_device) where nothing can be started.

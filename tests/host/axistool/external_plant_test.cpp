@@ -30,7 +30,8 @@ TEST(AnotherProgramsMachine, IsExcitedAndIdentified) {
 }
 
 TEST(AnotherProgramsMachine, EndsTheCommandWhenItEnds) {
-  const ProgramRun run = run_axistool("info --device " + plant("read hello; echo ready; read line; echo 0 0.5 -"));
+  const ProgramRun run =
+      run_axistool("clear-faults --device " + plant("read hello; echo ready; read line; echo 0 0.5 -"));
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_THAT(run.output, HasSubstr("last said '0 0.5 -'"));
 }

@@ -47,7 +47,8 @@ TEST(AnExternalPlant, IsAskedOnceAPeriodWithTheVoltsOfAllAxes) {
 }
 
 TEST(AnExternalPlant, IsToldThatTheDriveIsDisabled) {
-  const auto plant = start("read hello; echo ready; while read k u; do [ $u = off ] && echo $k 7 - || echo $k 8 -; done");
+  const auto plant =
+      start("read hello; echo ready; while read k u; do [ $u = off ] && echo $k 7 - || echo $k 8 -; done");
   const auto x = ExternalPlant::axis(plant, 0);
   x->advance(0.001);
   EXPECT_EQ(x->reading().x, 7.0);
