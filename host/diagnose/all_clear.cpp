@@ -8,6 +8,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/verdict.hpp"
 #include "host/diagnose/visibility.hpp"
 #include "sim/catalogue.hpp"
 
@@ -47,6 +49,41 @@ bool is_small(const sim::DriveDescription& model, const RecordSet& set) {
   const SetError error = error_of(sim::Drive(model), set);
   if (error.combined <= kSmall) return true;
   return error.robust <= 1.0 && error_while_sliding(model, set) <= 1.0;
+}
+
+/// The base fitted to both sets, where it suits both: then what a base of the training data alone leaves on validation
+/// data is its own uncertainty (a viscous coefficient, say, from motions slower than those that judge).
+std::optional<sim::DriveDescription> base_of_both(const Diagnosis& diagnosis) {
+  sim::DriveDescription base = fit_base(diagnosis.base, together(diagnosis.training, diagnosis.validation));
+  if (!is_small(base, diagnosis.training) || !is_small(base, diagnosis.validation)) return {};
+  return base;
+}
+
+Objection base_is_open(const Diagnosis& diagnosis, const sim::DriveDescription& base) {
+  const std::vector<std::string> moved = moved_parameters(diagnosis.base, base);
+  return {
+      Status::insufficient_data,
+      fmt::format("The error on validation data is {:.2f} times the floor, but fitted to both sets together the base "
+                  "leaves {:.2f}: the training data leave {} too open to say what these motions should have been",
+                  diagnosis.before_validate, error_of(sim::Drive(base), diagnosis.validation).combined,
+                  moved.empty() ? "it" : fmt::format("{}", fmt::join(moved, ", "))),
+      diagnosis.held_back ? "Record the same motions for longer."
+                          : "Train on motions as fast, as slow and as lively as those that validate."};
+}
+
+/// What is left as something that depends on a coordinate; null where it depends on none.
+const ResidualDependence* dependence_in(const ResidualTests& tests) {
+  const auto depends = std::ranges::find_if(tests.dependences, [](const ResidualDependence& dependence) {
+    return dependence.share > (dependence.coordinate == "acceleration" ? kMostOnAcceleration : kMostDependence);
+  });
+  return depends == tests.dependences.end() ? nullptr : &*depends;
+}
+
+/// Whether that goes with the base of both sets, as a residual in proportion to the acceleration does where the
+/// training data hold few accelerations.
+bool depends_on_base_alone(const Diagnosis& diagnosis) {
+  const std::optional<sim::DriveDescription> base = base_of_both(diagnosis);
+  return base && dependence_in(test_residuals(*base, diagnosis.training, diagnosis.validation)) == nullptr;
 }
 
 /// Effects whose trace no motion sets apart from this base: a constant from a Coulomb level by direction, an offset of
@@ -102,16 +139,15 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, cons
                                    "but {:.0f} windows are too few to be sure of it",
                                    name, error, windows),
                        "Record the same motions for longer."};
+    if (const auto base = base_of_both(diagnosis)) return base_is_open(diagnosis, *base);
     return Objection{Status::unexplained,
                      fmt::format("The error on {} data is {:.2f} times the floor, and no effect of the catalogue "
                                  "accounts for it",
                                  name, error),
                      "Look where the error lives, and record that motion alone, slowly and fast, both ways."};
   }
-  const auto depends = std::ranges::find_if(tests.dependences, [](const ResidualDependence& dependence) {
-    return dependence.share > (dependence.coordinate == "acceleration" ? kMostOnAcceleration : kMostDependence);
-  });
-  if (depends != tests.dependences.end())
+  const ResidualDependence* depends = dependence_in(tests);
+  if (depends != nullptr && !depends_on_base_alone(diagnosis))
     return Objection{Status::unexplained,
                      fmt::format("The error is small ({:.2f} times the floor), but what is left is no noise: {:.0f} % "
                                  "of it depends on {}",

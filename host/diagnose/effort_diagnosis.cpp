@@ -24,18 +24,23 @@ constexpr double kFarAboveNoise = 6.0;
 /// An effort is explained when this part of the error remains: nine tenths of its square are gone.
 constexpr double kExplainedPart = 0.316;
 
-std::string described(const ScreenedModel& model) {
-  const std::string title(sim::find_effect(model.kinds.back())->title);
-  return model.words.empty() ? title : fmt::format("{} ({})", title, model.words);
+/// The kinds of a step beyond the first `known`.
+std::string described(const ScreenedModel& model, std::size_t known) {
+  std::vector<std::string_view> titles;
+  for (std::size_t k = known; k < model.kinds.size(); ++k) titles.push_back(sim::find_effect(model.kinds[k])->title);
+  const std::string words = fmt::format("{}", fmt::join(titles, " and "));
+  return model.words.empty() ? words : fmt::format("{} ({})", words, model.words);
 }
 
 std::string steps_in_words(const EffortScreen& screen) {
   std::string words;
   double before = screen.base.validate;
+  std::size_t known = 0;
   for (const ScreenedModel& step : screen.chosen) {
-    words +=
-        fmt::format(" {} brings that from {:.1f} to {:.1f} %.", described(step), 100.0 * before, 100.0 * step.validate);
+    words += fmt::format(" {} bring{} that from {:.1f} to {:.1f} %.", described(step, known),
+                         step.kinds.size() - known == 1 ? "s" : "", 100.0 * before, 100.0 * step.validate);
     before = step.validate;
+    known = step.kinds.size();
   }
   return words;
 }
@@ -53,7 +58,7 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
     if (!screen.steps.empty() && !screen.steps.front().empty()) {
       const ScreenedModel& closest = screen.steps.front().front();
       verdict.explanation +=
-          fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest), 100.0 * closest.validate);
+          fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest, 0), 100.0 * closest.validate);
     }
     if (const std::optional<FreeCurveFit> curve = fit_free_curve(screen))
       verdict.explanation += fmt::format(

@@ -37,13 +37,6 @@ struct FourErrors {
   }
 };
 
-/// Of all records: what recurs along the travel stands out more from several, what happened once stands out less.
-RecordSet together(const RecordSet& training, const RecordSet& validation) {
-  RecordSet all = training;
-  all.records.insert(all.records.end(), validation.records.begin(), validation.records.end());
-  return all;
-}
-
 }  // namespace
 
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,

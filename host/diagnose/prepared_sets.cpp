@@ -120,6 +120,12 @@ KeptBack hold_back(RecordSet& training, RecordSet& validation) {
   return kept;
 }
 
+RecordSet together(const RecordSet& training, const RecordSet& validation) {
+  RecordSet all = training;
+  all.records.insert(all.records.end(), validation.records.begin(), validation.records.end());
+  return all;
+}
+
 PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                         const std::vector<const Record*>& validation, double window_s, Measure measure) {
   PreparedSets sets;

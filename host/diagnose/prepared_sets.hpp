@@ -43,6 +43,9 @@ double missing_motion_s(const PreparedSets& sets);
 /// far as the smoothing of a restart reaches.
 KeptBack hold_back(RecordSet& training, RecordSet& validation);
 
+/// Of all records: what recurs along the travel stands out more from several, what happened once stands out less.
+RecordSet together(const RecordSet& training, const RecordSet& validation);
+
 /// The sets with the floors of the model as it was given, which stays the base. Throws as prepare_sets() does.
 PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                         const std::vector<const Record*>& validation, double window_s = kWindow_s,

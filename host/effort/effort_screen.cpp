@@ -4,10 +4,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host/compare/chance.hpp"
 #include "host/effort/effort_terms.hpp"
+#include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
 
 namespace host {
@@ -298,6 +300,32 @@ bool earns_its_place(const ScreenedModel& after, const ScreenedModel& before, do
          before.validate - after.validate > kLeastPart && after.confidence >= kLeastConfidence;
 }
 
+/// The force balance over whole records, reversals included, which the rows leave out: RMS over the records of what the
+/// inverse model leaves. Empty where it has none.
+std::optional<double> balance_error(const sim::DriveDescription& model, const RecordSet& set) {
+  double square = 0.0;
+  try {
+    for (const ComparedRecord& compared : set.records)
+      square += std::pow(relative_error(model, *compared.prepared.record), 2);
+  } catch (const Failure&) {
+    return {};
+  }
+  return std::sqrt(square / static_cast<double>(set.records.size()));
+}
+
+/// Whether an effect takes its part at the reversals, where a delay and the shape of friction at low speed show most.
+/// Only of records of their own: blocks of one record share its balance.
+bool takes_its_part_at_reversals(const ScreenedModel& after, const ScreenedModel& before, double least_gain,
+                                 const RecordSet& training, const RecordSet& validation) {
+  const auto record_of = [](const ComparedRecord& compared) { return compared.prepared.record; };
+  if (std::ranges::find(validation.records, record_of(training.records.front()), record_of) != validation.records.end())
+    return false;
+  return std::ranges::all_of(std::array{&training, &validation}, [&](const RecordSet* set) {
+    const std::optional<double> from = balance_error(before.model, *set), to = balance_error(after.model, *set);
+    return from && to && *to < (1.0 - least_gain) * *from;
+  });
+}
+
 /// What a further effect must take of the error, by what of its square comes back.
 double least_further_gain(const EffortScreen& screen) {
   const std::optional<Repeatability> found = repeatability(screen.rows, screen.best().residual);
@@ -311,13 +339,15 @@ bool near(const ScreenedModel& a, const ScreenedModel& best) {
 
 /// An effect that was chosen first may have stood for two that came later: each is tried without.
 void drop_what_others_explain(const Regressor& regressor, const std::vector<EffortTerm>& base,
-                              std::vector<EffortTerm>& chosen, EffortScreen& screen) {
+                              const RecordSet& training, const RecordSet& validation, std::vector<EffortTerm>& chosen,
+                              EffortScreen& screen) {
   for (std::size_t k = 0; chosen.size() > 1 && k + 1 < chosen.size();) {
     std::vector<const EffortTerm*> others;
     for (std::size_t n = 0; n < chosen.size(); ++n)
       if (n != k) others.push_back(&chosen[n]);
     ScreenedModel without;
-    if (!regressor.fit(base, others, without) || earns_its_place(screen.best(), without, kLeastGain)) {
+    if (!regressor.fit(base, others, without) || earns_its_place(screen.best(), without, kLeastGain) ||
+        takes_its_part_at_reversals(screen.best(), without, kLeastGain, training, validation)) {
       ++k;
       continue;
     }
@@ -369,7 +399,11 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     if (!earns_its_place(best->model, before, least_gain)) {
       // Two at once must take as much as a further one.
       pairs = try_all(regressor, screen, base, chosen, by_two(terms));
-      if (pairs.empty() || !earns_its_place(pairs.front().model, before, further_gain)) break;
+      if (pairs.empty()) break;
+      const ScreenedModel& pair = pairs.front().model;
+      const bool at_reversals = !chosen.empty() && earns_its_place(pair, before, kLeastGain) &&
+                                takes_its_part_at_reversals(pair, before, further_gain, training, validation);
+      if (!earns_its_place(pair, before, further_gain) && !at_reversals) break;
       best = &pairs.front();
       screen.steps.back().push_back(best->model);
     }
@@ -382,7 +416,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     screen.chosen.push_back(best->model);
     for (const EffortTerm* term : best->terms) chosen.push_back(*term);
   }
-  drop_what_others_explain(regressor, base, chosen, screen);
+  drop_what_others_explain(regressor, base, training, validation, chosen, screen);
   screen.repeatable = repeatability(screen.rows, screen.best().residual);
   return screen;
 }

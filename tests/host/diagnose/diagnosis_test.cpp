@@ -8,6 +8,7 @@
 
 #include "host/compare/residual_tests.hpp"
 #include "host/diagnose/prepared_sets.hpp"
+#include "host/scoreboard/simulated_null.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
@@ -43,6 +44,17 @@ TEST(Diagnosis, AnAxisThatStandsTellsNothing) {
   EXPECT_THAT(diagnosis.verdict.effects, IsEmpty());
   EXPECT_THAT(diagnosis.candidates, IsEmpty());
   EXPECT_THAT(diagnosis.verdict.next_experiment, testing::HasSubstr("V"));
+}
+
+TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  // One slow record trains, one that is thrice as fast judges: the viscous coefficient of the first is far off there.
+  const host::SimulatedNull null = host::simulated_null(2'002'000'006);
+  const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
+  const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
+  EXPECT_GT(diagnosis.before_validate, 5.0) << "nothing is left open here";
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::insufficient_data) << diagnosis.verdict.explanation;
+  EXPECT_THAT(diagnosis.verdict.explanation, testing::HasSubstr("viscous"));
 }
 
 TEST(Diagnosis, WhatACompleteModelLeavesDependsOnNothing) {

@@ -29,7 +29,7 @@ host::Record read(const char* file, const sim::DataSheet& data) {
   return record;
 }
 
-TEST(EmpsDiagnosis, FindsTheViscousAsymmetryAndWhatOfTheRestRepeats) {
+TEST(EmpsDiagnosis, FindsTheViscousAsymmetryAndTheTwoThatHideEachOther) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kEmps)) GTEST_SKIP() << kEmps << " is absent";
   sim::DriveDescription drive;
@@ -49,19 +49,21 @@ TEST(EmpsDiagnosis, FindsTheViscousAsymmetryAndWhatOfTheRestRepeats) {
   EXPECT_EQ(first.measure, host::Measure::effort);
   EXPECT_EQ(first.verdict.status, host::Status::missing);
   // Recomputed from the published data: 166.71 and 240.42 N s/m, so -36.9 on 203.6; and the offset of -3.16 N vanishes.
-  EXPECT_THAT(first.verdict.effects, ElementsAre("viscous_asymmetry"));
+  EXPECT_THAT(first.verdict.effects, ElementsAre("viscous_asymmetry", "nonlinear_viscous", "input_delay"));
   const sim::EffectEntry* asymmetry = first.best.find("viscous_asymmetry");
   ASSERT_NE(asymmetry, nullptr);
-  EXPECT_NEAR(asymmetry->at("asymmetry"), -36.9 / 203.6, 0.01);
+  EXPECT_NEAR(asymmetry->at("asymmetry"), -36.9 / 203.6, 0.02);
   const sim::EffectEntry* coulomb = first.best.find("coulomb");
   EXPECT_LT(std::abs(0.5 * (coulomb->at("positive") + coulomb->at("negative"))), 0.5);
-  // Two thirds of what is left come back with the motion, but no effect takes half of that: a delay and a shape of
-  // friction at low speed together take two fifths.
-  EXPECT_EQ(improvement.ladder.size(), 2u) << "base, asymmetry: no greedy terms";
+  for (const char* id : {"positive", "negative"}) EXPECT_NEAR(std::abs(coulomb->at(id)), 20.4, 3.0);
+  // Half a sample of the converter's hold counts apart from it: regressions of the published data give 0.86 ms with it.
+  EXPECT_NEAR(first.best.find("input_delay")->at("delay"), 0.36e-3, 0.15e-3);
+  EXPECT_EQ(improvement.ladder.size(), 3u) << "base, asymmetry, the two that hide each other: no greedy terms";
   ASSERT_TRUE(first.screen != nullptr && first.screen->repeatable.has_value());
   EXPECT_NEAR(first.screen->repeatable->share, 0.64, 0.1);
-  EXPECT_LE(host::relative_error(improvement.model, train), 0.032);
-  EXPECT_LE(host::relative_error(improvement.model, validate), 0.053);
+  // What a regression with these three reaches on the published data: 2.138 % and 2.798 %.
+  EXPECT_LE(host::relative_error(improvement.model, train), 0.0215);
+  EXPECT_LE(host::relative_error(improvement.model, validate), 0.0285);
 }
 
 }  // namespace
