@@ -1,0 +1,39 @@
+#include "host/response/axis_controller.hpp"
+
+#include <numbers>
+
+namespace host {
+
+AxisController::AxisController(const firmware::AxisParameters<float>& p)
+    : period_s_(static_cast<double>(p.sample_period_s)), uses_speed_(p.tachometer_fitted) {
+  const auto real = [](float value) { return static_cast<double>(value); };
+  A_ << 1.0, real(p.drive.Ad12), -real(p.drive.Bd1), 0.0, real(p.drive.Ad22), -real(p.drive.Bd2), 0.0, 0.0, 1.0;
+  B_ << real(p.drive.Bd1), real(p.drive.Bd2), 0.0;
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = 0; column < 2; ++column)
+      Kobs_(row, column) = column == 1 && !uses_speed_
+                               ? 0.0
+                               : real(p.Kobs[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
+  rest_.setIdentity();
+  rest_.leftCols<2>() -= Kobs_;
+  gain_ << real(p.Kc[0]), real(p.Kc[1]), p.disturbance_cancellation_on ? -1.0 : 0.0;
+}
+
+AxisController::Parts AxisController::parts(double f_Hz) const {
+  using Complex = std::complex<double>;
+  const Complex delay = std::polar(1.0, -2.0 * std::numbers::pi * f_Hz * period_s_);
+  // z_hat(k) = (I - Kobs C)(A z_hat(k-1) + B u(k-1)) + Kobs y(k), eq. (43).
+  const Eigen::Matrix3cd memory = Eigen::Matrix3cd::Identity() - delay * (rest_ * A_).cast<Complex>();
+  const Eigen::PartialPivLU<Eigen::Matrix3cd> solved(memory);
+  return {delay * (gain_.cast<Complex>() * solved.solve((rest_ * B_).cast<Complex>()))(0),
+          gain_.cast<Complex>() * solved.solve(Kobs_.cast<Complex>())};
+}
+
+Eigen::RowVector2cd AxisController::at(double f_Hz) const {
+  const Parts found = parts(f_Hz);
+  return found.of_answer / (1.0 + found.of_command);
+}
+
+std::complex<double> AxisController::own_response(double f_Hz) const { return 1.0 / (1.0 + parts(f_Hz).of_command); }
+
+}  // namespace host

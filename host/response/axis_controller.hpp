@@ -1,0 +1,41 @@
+// The controller that ships, as a frequency response: estimator, feedback, filters (firmware/core/axis.hpp).
+#pragma once
+
+#include <Eigen/Dense>
+#include <complex>
+
+#include "firmware/core/axis_parameters.hpp"
+
+namespace host {
+
+/// With the loop cut at the drive's input, u = -C y for y = [position, speed]. The estimator knows the command that it
+/// helped to make, which is part of C.
+class AxisController {
+ public:
+  explicit AxisController(const firmware::AxisParameters<float>& parameters);
+
+  /// C at a frequency below half the sample rate: V per mm (m), V per rad/s (m/s).
+  Eigen::RowVector2cd at(double f_Hz) const;
+
+  /// What of a command added at its output reaches the drive, while the drive does not answer.
+  std::complex<double> own_response(double f_Hz) const;
+
+  double sample_period_s() const { return period_s_; }
+  bool uses_speed() const { return uses_speed_; }
+
+ private:
+  struct Parts {
+    std::complex<double> of_command;  ///< from the command to the controller's output, negative
+    Eigen::RowVector2cd of_answer;
+  };
+  Parts parts(double f_Hz) const;
+
+  double period_s_;
+  bool uses_speed_;
+  Eigen::Matrix3d A_, rest_;  ///< rest_: I - Kobs C
+  Eigen::Vector3d B_;
+  Eigen::Matrix<double, 3, 2> Kobs_;
+  Eigen::RowVector3d gain_;  ///< of the estimated state
+};
+
+}  // namespace host

@@ -1,0 +1,127 @@
+#include "host/response/frequency_response.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/least_squares.hpp"
+#include "host/response/periodic_run.hpp"
+#include "host/response/robust_method.hpp"
+#include "host/response/welch_method.hpp"
+
+namespace host {
+
+namespace {
+
+void require_comparable(const std::vector<Record>& records) {
+  if (records.empty()) throw Failure(ExitCode::usage, "a frequency response needs a record");
+  const Record& first = records.front();
+  for (const Record& record : records) {
+    if (record.u_V.empty() || (!record.has_position() && !record.has_speed()))
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format("{}: a frequency response needs the command u_V and a position or a speed", record.path));
+    if (record.kind != first.kind || record.has_position() != first.has_position() ||
+        record.has_speed() != first.has_speed() ||
+        std::abs(record.sample_period_s - first.sample_period_s) > 1e-6 * first.sample_period_s)
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{} and {} are of different drives, channels or sample periods: take records of one "
+                                "axis, made alike",
+                                first.path, record.path));
+  }
+}
+
+/// Runs by what they excite.
+std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicRun>> runs_by_lines(
+    const std::vector<Record>& records) {
+  std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicRun>> runs;
+  for (const Record& record : records) {
+    const std::optional<MultisineHeader> excitation = multisine_of(record);
+    if (!excitation)
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{} is not of a multisine, but others are: analyse them apart", record.path));
+    runs[{excitation->period, excitation->lines}].push_back(periodic_run(record, *excitation));
+  }
+  return runs;
+}
+
+/// Bands may overlap: what two of them say of one frequency, by their certainty.
+void merge_equal_lines(std::vector<ResponseLine>& lines) {
+  std::ranges::stable_sort(lines, {}, &ResponseLine::f_Hz);
+  std::vector<ResponseLine> merged;
+  for (const ResponseLine& line : lines) {
+    if (merged.empty() || line.f_Hz > merged.back().f_Hz * (1.0 + 1e-9)) {
+      merged.push_back(line);
+      continue;
+    }
+    ResponseLine& before = merged.back();
+    const double a = 1.0 / before.covariance.trace().real(), b = 1.0 / line.covariance.trace().real();
+    const double share = a / (a + b), rest = 1.0 - share;
+    before.plant = share * before.plant + rest * line.plant;
+    before.covariance = share * share * before.covariance + rest * rest * line.covariance;
+    before.noise = std::hypot(share * before.noise, rest * line.noise);
+    before.nonlinearity = share * before.nonlinearity + rest * line.nonlinearity;
+    before.degrees = std::max(before.degrees, line.degrees);
+  }
+  lines = std::move(merged);
+}
+
+void analyse_periodic(const std::vector<Record>& records, FrequencyResponse& response) {
+  response.realisations = response.periods = std::numeric_limits<std::size_t>::max();
+  for (const auto& [key, runs] : runs_by_lines(records)) {
+    response.is_indirect = response.is_indirect || runs.front().excitation.is_closed_loop;
+    response.realisations = std::min(response.realisations, runs.size());
+    for (const PeriodicRun& run : runs) response.periods = std::min(response.periods, run.period.size());
+    for (const ResponseLine& line : robust_response(runs)) response.lines.push_back(line);
+  }
+  if (response.realisations < 2)
+    response.warnings.push_back(
+        "one realisation of the phases: bands tell noise, but not what a nonlinear drive leaves; repeat with other "
+        "--seed");
+  merge_equal_lines(response.lines);
+}
+
+void analyse_arbitrary(const std::vector<Record>& records, FrequencyResponse& response) {
+  response.method = FrequencyResponse::Method::welch;
+  const WelchResponse found = welch_response(records);
+  response.is_indirect = found.is_indirect;
+  response.realisations = 1;
+  response.periods = found.stretches;
+  response.lines = found.lines;
+  if (response.lines.empty())
+    throw Failure(ExitCode::refused,
+                  fmt::format("{}: command and answer have nothing in common beyond chance at any frequency: make a "
+                              "record with `axistool excite … multisine`, or `axistool bode AXIS`",
+                              records.front().path));
+  const auto has_reference = std::ranges::any_of(records, [](const Record& record) { return !record.w_ref.empty(); });
+  if (!found.is_indirect && has_reference)
+    response.warnings.push_back(
+        "the loop was closed and its reference stood still: what noise the controller answers is part of the estimate");
+}
+
+}  // namespace
+
+double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights) {
+  const std::complex<double> power = weights.transpose() * line.covariance * weights.conjugate();
+  return student_t_95(std::max(1.0, line.degrees)) * std::sqrt(0.5 * std::max(0.0, power.real()));
+}
+
+FrequencyResponse frequency_response(const std::vector<Record>& records) {
+  require_comparable(records);
+  FrequencyResponse response;
+  response.kind = records.front().kind;
+  response.sample_period_s = records.front().sample_period_s;
+  response.has_position = records.front().has_position();
+  response.has_speed = records.front().has_speed();
+  if (std::ranges::any_of(records, [](const Record& record) { return multisine_of(record).has_value(); }))
+    analyse_periodic(records, response);
+  else
+    analyse_arbitrary(records, response);
+  return response;
+}
+
+}  // namespace host

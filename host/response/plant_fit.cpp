@@ -1,0 +1,284 @@
+#include "host/response/plant_fit.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/least_squares.hpp"
+
+namespace host {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr int kAliases = 4;            ///< images of the spectrum to either side that are counted
+constexpr double kLeastSpread = 2e-3;  ///< relative: lines that are known better still are not fitted better
+constexpr int kIterations = 100, kTrial = 20;
+constexpr std::size_t kMostModes = 3;
+constexpr double kMostDamping = 0.3;  ///< more is a slope, not a resonance
+constexpr double kStartDamping = 0.03;
+constexpr double kEarns = 14.0;      ///< fall of chi^2 by a mode of four values: chance gives 9.5 one time in twenty
+constexpr double kEarnsShare = 0.1;  ///< and at least so much of what was left
+constexpr double kLeastShare = 0.1;  ///< of the rigid part, at the resonance: less is no mode
+
+// Values of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
+constexpr std::size_t kRigid = 5, kPerMode = 4;
+
+PlantFit unpack(const double* value, std::size_t modes, double sample_period_s) {
+  PlantFit fit;
+  fit.sample_period_s = sample_period_s;
+  fit.position_gain = std::exp(value[0]);
+  fit.speed_gain = std::exp(value[1]);
+  fit.pole = value[2];
+  fit.delay_s.value = value[3] * sample_period_s;
+  fit.speed_delay_s = value[4] * sample_period_s;
+  for (std::size_t i = 0; i < modes; ++i) {
+    const double* mode = value + kRigid + i * kPerMode;
+    Resonance resonance;
+    resonance.f_Hz.value = std::exp(mode[0]);
+    resonance.damping.value = std::exp(mode[1]);
+    resonance.position_share = mode[2];
+    resonance.speed_share = mode[3];
+    fit.resonances.push_back(resonance);
+  }
+  return fit;
+}
+
+/// Deviations of a response from a fit, each part in standard deviations of its own.
+class Deviations {
+ public:
+  explicit Deviations(const FrequencyResponse& response) : response_(response) {
+    for (const ResponseLine& line : response.lines)
+      for (Eigen::Index channel = 0; channel < 2; ++channel) {
+        const double size = std::abs(line.plant(channel));
+        if (!(size > 0.0)) continue;
+        const double spread = std::sqrt(0.5 * line.covariance(channel, channel).real()) / size;
+        if (spread > 0.3) continue;  // noise
+        points_.push_back({line.f_Hz, channel, line.plant(channel), std::hypot(spread, kLeastSpread)});
+      }
+  }
+
+  std::size_t count() const { return 2 * points_.size(); }
+
+  void operator()(const PlantFit& fit, double* out) const {
+    double last_f = -1.0;
+    Eigen::Vector2cd plant;
+    for (const Point& point : points_) {
+      if (point.f_Hz != last_f) plant = fit.at(last_f = point.f_Hz);
+      const Complex off = std::log(point.measured / plant(point.channel));
+      *out++ = off.real() / point.spread;
+      *out++ = off.imag() / point.spread;
+    }
+  }
+
+  double sum_of_squares(const PlantFit& fit) const {
+    std::vector<double> off(count());
+    (*this)(fit, off.data());
+    double sum = 0.0;
+    for (const double one : off) sum += one * one;
+    return sum;
+  }
+
+  double lowest() const { return response_.lines.front().f_Hz; }
+  double highest() const { return response_.lines.back().f_Hz; }
+  double sample_period_s() const { return response_.sample_period_s; }
+
+  /// Gain of a double integrator, from lines in the middle.
+  double start_gain(Eigen::Index channel) const {
+    std::vector<double> gains;
+    for (const Point& point : points_)
+      if (point.channel == channel)
+        gains.push_back(std::abs(point.measured) * std::pow(kTwoPi * point.f_Hz, channel == 0 ? 2 : 1));
+    if (gains.empty()) return 1.0;
+    std::ranges::nth_element(gains, gains.begin() + static_cast<std::ptrdiff_t>(gains.size() / 3));
+    return gains[gains.size() / 3];
+  }
+
+ private:
+  struct Point {
+    double f_Hz;
+    Eigen::Index channel;
+    Complex measured;
+    double spread;
+  };
+  const FrequencyResponse& response_;
+  std::vector<Point> points_;
+};
+
+struct Functor {
+  const Deviations& deviations;
+  std::size_t modes;
+  bool operator()(double const* const* value, double* out) const {
+    deviations(unpack(value[0], modes, deviations.sample_period_s()), out);
+    return true;
+  }
+};
+
+struct Fitted {
+  std::vector<double> value;
+  double chi2 = 0.0;
+  Eigen::MatrixXd covariance;
+};
+
+/// `iterations`: few are enough to compare starts.
+Fitted solve(const Deviations& deviations, std::vector<double> value, int iterations) {
+  const std::size_t modes = (value.size() - kRigid) / kPerMode;
+  auto* cost = new ceres::DynamicNumericDiffCostFunction<Functor, ceres::FORWARD>(new Functor{deviations, modes});
+  cost->AddParameterBlock(static_cast<int>(value.size()));
+  cost->SetNumResiduals(static_cast<int>(deviations.count()));
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost, nullptr, value.data());
+  problem.SetParameterLowerBound(value.data(), 3, -0.5);
+  problem.SetParameterUpperBound(value.data(), 3, 20.0);
+  for (std::size_t i = 0; i < modes; ++i) {
+    const int at = static_cast<int>(kRigid + i * kPerMode);
+    problem.SetParameterLowerBound(value.data(), at, std::log(0.8 * deviations.lowest()));
+    problem.SetParameterUpperBound(value.data(), at, std::log(1.25 * deviations.highest()));
+    problem.SetParameterLowerBound(value.data(), at + 1, std::log(1e-3));
+    problem.SetParameterUpperBound(value.data(), at + 1, std::log(0.7));
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = iterations;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  Fitted found{std::move(value), 2.0 * summary.final_cost, {}};
+  if (iterations < kIterations) return found;
+  ceres::CRSMatrix sparse;
+  problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
+  for (int row = 0; row < sparse.num_rows; ++row)
+    for (int at = sparse.rows[static_cast<std::size_t>(row)]; at < sparse.rows[static_cast<std::size_t>(row) + 1]; ++at)
+      jacobian(row, sparse.cols[static_cast<std::size_t>(at)]) = sparse.values[static_cast<std::size_t>(at)];
+  found.covariance = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  return found;
+}
+
+/// The mode that lowers chi^2 most: a grid over frequency, seen at the load, at the motor, or one each, from the best
+/// places of which the solver starts. `plain`: values without any mode; what a fit without one has bent to imitate a
+/// mode (a delay, mostly) misleads the grid.
+Fitted with_one_more(const Deviations& deviations, const Fitted& before, const std::vector<double>& plain) {
+  constexpr int kGrid = 120, kStarts = 4;
+  constexpr std::array<std::array<double, 2>, 3> kShares{{{-0.95, -0.95}, {-0.95, 0.4}, {0.4, 0.4}}};
+  std::vector<std::pair<double, std::vector<double>>> starts;
+  const bool is_first = before.value.size() == plain.size();
+  for (int i = 0; i < (is_first ? 2 : 1) * kGrid; ++i)
+    for (const auto& [position_share, speed_share] : kShares) {
+      std::vector<double> value = i < kGrid ? before.value : plain;
+      const double part = (i % kGrid + 0.5) / kGrid;
+      value.insert(value.end(), {std::log(deviations.lowest()) * (1.0 - part) + std::log(deviations.highest()) * part,
+                                 std::log(kStartDamping), position_share, speed_share});
+      const std::size_t modes = (value.size() - kRigid) / kPerMode;
+      const PlantFit fit = unpack(value.data(), modes, deviations.sample_period_s());
+      starts.emplace_back(deviations.sum_of_squares(fit), std::move(value));
+    }
+  std::ranges::sort(starts, {}, [](const auto& start) { return start.first; });
+  Fitted best = before;
+  std::vector<double> tried;
+  for (const auto& [chi2, value] : starts) {
+    const double log_f = value[value.size() - kPerMode];
+    if (std::ranges::any_of(tried, [&](double other) { return std::abs(other - log_f) < 0.05; })) continue;
+    tried.push_back(log_f);
+    if (Fitted one = solve(deviations, value, kTrial); one.chi2 < best.chi2) best = std::move(one);
+    if (tried.size() == kStarts) break;
+  }
+  return best.value.size() > before.value.size() ? solve(deviations, best.value, kIterations) : best;
+}
+
+bool is_mode(const double* mode, const Deviations& deviations) {
+  const double f = std::exp(mode[0]), damping = std::exp(mode[1]);
+  const double at_resonance = std::max(std::abs(mode[2]), std::abs(mode[3])) / (2.0 * damping);
+  return f > deviations.lowest() && f < deviations.highest() && at_resonance > kLeastShare && damping < kMostDamping;
+}
+
+/// An earlier mode within the width of this one: the two share out one resonance.
+bool has_twin(const std::vector<double>& value, std::size_t at) {
+  for (std::size_t other = kRigid; other < at; other += kPerMode)
+    if (std::abs(value[other] - value[at]) < std::exp(value[other + 1]) + std::exp(value[at + 1])) return true;
+  return false;
+}
+
+/// A mode may have taken over what another explained before.
+void drop_what_is_no_mode(std::vector<double>& value, const Deviations& deviations) {
+  for (std::size_t at = kRigid; at < value.size();)
+    if (is_mode(value.data() + at, deviations) && !has_twin(value, at))
+      at += kPerMode;
+    else
+      value.erase(value.begin() + static_cast<std::ptrdiff_t>(at),
+                  value.begin() + static_cast<std::ptrdiff_t>(at + kPerMode));
+}
+
+}  // namespace
+
+Eigen::Vector2cd PlantFit::at(double f_Hz) const {
+  const double rate = 1.0 / sample_period_s;
+  Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
+  for (int image = -kAliases; image <= kAliases; ++image) {
+    const Complex s(0.0, kTwoPi * (f_Hz + image * rate));
+    Complex x = 1.0 / (s * (s + pole)), w = 1.0 / (s + pole);
+    for (const Resonance& mode : resonances) {
+      const double omega = kTwoPi * mode.f_Hz.value;
+      const Complex one = 1.0 / (s * s + 2.0 * mode.damping.value * omega * s + omega * omega);
+      x += mode.position_share * one;
+      w += mode.speed_share * one * s;
+    }
+    const Complex held = (1.0 - std::exp(-s * sample_period_s)) / (s * sample_period_s) * std::exp(-s * delay_s.value);
+    sum += Eigen::Vector2cd(position_gain * x * held, speed_gain * w * held * std::exp(-s * speed_delay_s));
+  }
+  return sum;
+}
+
+PlantFit fit_plant(const FrequencyResponse& response) {
+  const Deviations deviations(response);
+  if (response.lines.size() < 6 || deviations.count() < 12)
+    throw Failure(ExitCode::refused,
+                  fmt::format("{} lines of the response stand out of the noise: too few to fit a drive to",
+                              deviations.count() / 2));
+  const std::vector<double> plain = {std::log(deviations.start_gain(0)), std::log(deviations.start_gain(1)), 1.0, 0.1,
+                                     0.0};
+  Fitted fitted = solve(deviations, plain, kTrial);
+  for (std::size_t modes = 0; modes < kMostModes; ++modes) {
+    if (deviations.count() < fitted.value.size() + kPerMode + 2) break;
+    Fitted next = with_one_more(deviations, fitted, plain);
+    const double count = static_cast<double>(deviations.count());
+    // Where the fit is not as good as the noise, what is left stands for the noise.
+    const double unit = std::max(1.0, next.chi2 / (count - static_cast<double>(next.value.size())));
+    const double fall = fitted.chi2 - next.chi2;
+    if (fall < kEarns * unit || fall < kEarnsShare * fitted.chi2 || next.value.size() == fitted.value.size() ||
+        !is_mode(next.value.data() + next.value.size() - kPerMode, deviations))
+      break;
+    fitted = std::move(next);
+  }
+  drop_what_is_no_mode(fitted.value, deviations);
+  fitted = solve(deviations, fitted.value, kIterations);
+  const std::size_t modes = (fitted.value.size() - kRigid) / kPerMode;
+  PlantFit fit = unpack(fitted.value.data(), modes, response.sample_period_s);
+  const double free = std::max(1.0, static_cast<double>(deviations.count() - fitted.value.size()));
+  fit.misfit = std::sqrt(fitted.chi2 / free);
+  const double factor = student_t_95(free) * std::max(1.0, fit.misfit);
+  const auto reach = [&](std::size_t i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    return factor * std::sqrt(std::max(0.0, fitted.covariance(at, at)));
+  };
+  const double delay = reach(3) * response.sample_period_s;
+  fit.delay_s.ci95 = {fit.delay_s.value - delay, fit.delay_s.value + delay};
+  for (std::size_t i = 0; i < modes; ++i) {
+    Resonance& mode = fit.resonances[i];
+    const auto scaled = [&](Interval95& value, std::size_t at) {
+      value.ci95 = {value.value * std::exp(-reach(at)), value.value * std::exp(reach(at))};
+    };
+    scaled(mode.f_Hz, kRigid + i * kPerMode);
+    scaled(mode.damping, kRigid + i * kPerMode + 1);
+  }
+  std::ranges::sort(fit.resonances, {}, [](const Resonance& mode) { return mode.f_Hz.value; });
+  return fit;
+}
+
+}  // namespace host

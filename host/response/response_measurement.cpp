@@ -1,0 +1,242 @@
+#include "host/response/response_measurement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware/app/parameters/axis_values.hpp"
+#include "firmware/core/excitation/excitation_run.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/device/motion.hpp"
+#include "host/exit_codes.hpp"
+#include "host/response/axis_controller.hpp"
+#include "host/response/plant_fit.hpp"
+
+namespace host {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kMostTo_Hz = 250.0;
+constexpr double kPeriods = 2.0;  ///< of a run: short runs ride fast, and what friction does is another each time
+constexpr double kRun = kPeriods + 1.4;     ///< periods in which it rides: it grows and settles before
+constexpr double kRunAndStop = kRun + 1.1;  ///< it goes away within one
+constexpr double kShareOfBands = 0.6;       ///< of the time; the rest looks closer at resonances
+constexpr double kMostRealisations = 12.0;
+constexpr double kRideOfBox = 0.45;      ///< the excitation adds as much, and noise its share
+constexpr double kAnswerOfRide = 0.5;    ///< peak speed of the answer, so that the axis never turns back
+constexpr double kWindow = 0.85;         ///< of half the travel that the board turns round in
+constexpr double kLinesPerOctave = 6.0;  ///< wanted
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+class Planner {
+ public:
+  Planner(const ResponsePlan& plan, const ExcitationScale& scale, const firmware::AxisParameters<float>& parameters)
+      : plan_(plan), scale_(scale), parameters_(parameters), controller_(parameters) {
+    period_ = std::exp2(std::round(std::log2(scale.rate_Hz)));
+    period_s_ = period_ / scale.rate_Hz;
+    run_s_ = kRunAndStop * period_s_;
+    top_Hz_ = plan.to_Hz > 0.0 ? plan.to_Hz : std::min(kMostTo_Hz, scale.rate_Hz / 4.0);
+    if (!(plan.from_Hz > 0.0) || !(top_Hz_ > plan.from_Hz) || top_Hz_ >= 0.45 * scale.rate_Hz)
+      throw Failure(ExitCode::usage, fmt::format("from {:g} Hz to {:g} Hz is no range below 0.45 of the control rate",
+                                                 plan.from_Hz, top_Hz_));
+    if (plan.realisations < 2) throw Failure(ExitCode::usage, "two realisations of the phases are the least");
+    if (!(parameters.drive.Bd2 > 0.0F) || !(scale.lead > 0.0))
+      throw Failure(ExitCode::refused, "the axis has no controller yet: `axistool design`, then `set-params`");
+  }
+
+  std::vector<Excitation> bands() {
+    const double octaves = std::log2(top_Hz_ / plan_.from_Hz);
+    const double wanted = std::max(2.0, std::ceil(octaves * kLinesPerOctave / firmware::kExcitationEntries));
+    const double bands = std::min(wanted, std::floor(plan_.box.time_s / least_s()));
+    if (bands < 1.0) refuse_time();
+    const double ratio = std::pow(top_Hz_ / plan_.from_Hz, 1.0 / bands);
+    std::vector<std::pair<double, double>> ranges;
+    for (double band = 0.0; band < bands; ++band)
+      ranges.emplace_back(plan_.from_Hz * std::pow(ratio, band), plan_.from_Hz * std::pow(ratio, band + 1.0));
+    return runs(ranges);
+  }
+
+  std::vector<Excitation> about(double f_Hz) {
+    const double half = static_cast<double>(firmware::kExcitationEntries) / period_s_;  // odd lines are two apart
+    if (plan_.box.time_s < least_s()) refuse_time();
+    return runs({{std::max(0.5 * f_Hz, f_Hz - half), std::min(0.44 * scale_.rate_Hz, f_Hz + half)}});
+  }
+
+  double run_s() const { return run_s_; }
+  /// Of one band.
+  double least_s() const { return run_s_ * fewest(); }
+
+ private:
+  double fewest() const { return static_cast<double>(plan_.realisations); }
+
+  [[noreturn]] void refuse_time() const {
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("{:g} s of motion are too little for {} realisations of periods of {:g} s: {:g} s are the "
+                    "least for one band",
+                    plan_.box.time_s, plan_.realisations, period_s_, std::ceil(least_s())));
+  }
+
+  std::vector<Excitation> runs(const std::vector<std::pair<double, double>>& ranges) {
+    const double affordable = std::floor(plan_.box.time_s / (static_cast<double>(ranges.size()) * run_s_));
+    const double realisations = std::max(fewest(), std::min(kMostRealisations, affordable));
+    const double ride = choose_ride(kRun * period_s_);
+    std::vector<Excitation> made;
+    for (const auto& [from, to] : ranges)
+      for (double m = 0.0; m < realisations; ++m) {
+        ExcitationLimits box = plan_.box;
+        box.time_s = kRun * period_s_;
+        const bool is_forward = made.size() % 2 == 0;
+        ExcitationNumbers numbers;
+        numbers.named = {{"from", from}, {"to", to}, {"period", period_}, {"ride", is_forward ? ride : -ride}};
+        numbers.named["amplitude"] = amplitude(from, to, ride);
+        made.push_back(design_excitation("multisine", numbers, box, scale_, "output",
+                                         plan_.seed + static_cast<unsigned>(made.size())));
+      }
+    return made;
+  }
+
+  double stop(double speed) const {
+    return speed * speed / (2.0 * scale_.acceleration) + speed * scale_.acceleration / (2.0 * scale_.jerk) +
+           10.0 * speed / scale_.rate_Hz;
+  }
+
+  /// As fast as box and way allow.
+  double choose_ride(double run_s) const {
+    const double room = kWindow * plan_.box.travel / 2.0;
+    double ride = kRideOfBox * plan_.box.speed;
+    ride = std::min({ride, room / run_s, static_cast<double>(parameters_.velocity_limit)});
+    for (int i = 0; i < 20 && ride * run_s + stop(ride) > room; ++i) ride *= 0.95;
+    if (ride * scale_.lead > 0.0 && ride * run_s >= 50.0 * scale_.encoder_resolution) return ride;
+    throw Failure(ExitCode::refused, fmt::format("travel = {:g} is too narrow to ride on for {:g} s: a wider box",
+                                                 plan_.box.travel, run_s));
+  }
+
+  /// Peak, V.
+  double amplitude(double from, double to, double ride) const {
+    constexpr int kPoints = 24;
+    double power = 0.0;
+    for (int i = 0; i < kPoints; ++i) {
+      const double f = from * std::pow(to / from, (i + 0.5) / kPoints);
+      power += std::norm(speed_per_volt(f)) / kPoints;
+    }
+    const double most = kAnswerOfRide * ride / scale_.lead / std::sqrt(power);  // RMS as of one line, times its peak
+    return std::min(plan_.box.volts, most);
+  }
+
+  /// Of the rigid axis in its loop, from the controller's output.
+  Complex speed_per_volt(double f_Hz) const {
+    const Complex z = std::polar(1.0, kTwoPi * f_Hz * static_cast<double>(parameters_.sample_period_s));
+    const auto& drive = parameters_.drive;
+    const Complex speed = static_cast<double>(drive.Bd2) / (z - static_cast<double>(drive.Ad22));
+    const Complex position = (static_cast<double>(drive.Ad12) * speed + static_cast<double>(drive.Bd1)) / (z - 1.0);
+    return speed * controller_.own_response(f_Hz) /
+           (1.0 + (controller_.at(f_Hz) * Eigen::Vector2cd(position, speed))(0));
+  }
+
+  const ResponsePlan& plan_;
+  const ExcitationScale& scale_;
+  const firmware::AxisParameters<float>& parameters_;
+  AxisController controller_;
+  double period_ = 0.0, period_s_ = 0.0, run_s_ = 0.0, top_Hz_ = 0.0;
+};
+
+/// A loop that was open is open again afterwards, unless the link is gone.
+class ClosedMeanwhile {
+ public:
+  ClosedMeanwhile(BoardClient& board, std::uint8_t axis) : board_(board), mask_(static_cast<std::uint8_t>(1u << axis)) {
+    was_open_ = board.status().axis.at(axis).state != static_cast<std::uint8_t>(firmware::SupervisorState::enabled);
+    if (was_open_) enable_and_wait(board, mask_);
+  }
+  ~ClosedMeanwhile() {
+    if (!was_open_) return;
+    try {
+      disable_and_wait(board_, mask_);
+    } catch (const Failure&) {  // what went wrong before says more
+    }
+  }
+  ClosedMeanwhile(const ClosedMeanwhile&) = delete;
+  ClosedMeanwhile& operator=(const ClosedMeanwhile&) = delete;
+
+ private:
+  BoardClient& board_;
+  std::uint8_t mask_;
+  bool was_open_ = false;
+};
+
+}  // namespace
+
+std::vector<Excitation> plan_response(const ResponsePlan& plan, const ExcitationScale& scale,
+                                      const firmware::AxisParameters<float>& parameters) {
+  return Planner(plan, scale, parameters).bands();
+}
+
+std::vector<Excitation> plan_resonance(const ResponsePlan& plan, double f_Hz, const ExcitationScale& scale,
+                                       const firmware::AxisParameters<float>& parameters) {
+  return Planner(plan, scale, parameters).about(f_Hz);
+}
+
+ExcitationScale excitation_scale(const firmware::ParameterValues& values, std::uint8_t axis, sim::DriveKind kind) {
+  const firmware::AxisValues v = values.axis(axis);
+  return {kind,
+          static_cast<double>(v.get<"drive.encoder_resolution">()),
+          static_cast<double>(v.get<"drive.dac_resolution">()),
+          static_cast<double>(v.get<"drive.lead">()),
+          static_cast<double>(values.get<"control.rate">()),
+          v.get<"tachometer.fitted">(),
+          static_cast<double>(v.get<"limits.acceleration">()),
+          static_cast<double>(v.get<"limits.jerk">())};
+}
+
+void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector<Excitation>& runs,
+                        const firmware::ParameterValues& values, const ExcitationScale& scale,
+                        const std::function<bool()>& stop, std::vector<Record>& records,
+                        const std::function<void(std::size_t, std::size_t)>& progress) {
+  const ClosedMeanwhile closed(board, axis);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ExcitationOutcome outcome = run_excitation(board, axis, runs[i], values, scale, stop);
+    Record record = capture_record(outcome.capture, outcome.settings, std::string(firmware::kAxisNames.at(axis)));
+    record.path = fmt::format("run {}", records.size() + 1);
+    record.header["source"] = "axistool bode";
+    record.header.insert(runs[i].header.begin(), runs[i].header.end());
+    record.header["excitation_ended"] = std::string(end_name(outcome.state));
+    if (outcome.state.end != static_cast<std::uint8_t>(firmware::ExcitationEnd::completed)) {
+      require_no_fault(board.status(), axis);
+      throw Failure(ExitCode::refused, fmt::format("run {} of {} ended early: {}; less volts, or a wider box", i + 1,
+                                                   runs.size(), end_name(outcome.state)));
+    }
+    if (outcome.capture.lost > 0)
+      throw Failure(ExitCode::protocol, fmt::format("{} rows of run {} were lost", outcome.capture.lost, i + 1));
+    records.push_back(std::move(record));
+    if (progress) progress(i + 1, runs.size());
+  }
+}
+
+void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& plan,
+                  const firmware::ParameterValues& values, const ExcitationScale& scale,
+                  const std::function<bool()>& stop, std::vector<Record>& records,
+                  const std::function<void(std::size_t, std::size_t)>& progress) {
+  const firmware::AxisParameters<float> parameters = firmware::axis_parameters<float>(values.axis(axis));
+  ResponsePlan part = plan;
+  part.box.time_s = plan.box.time_s * kShareOfBands;
+  const Planner bands(part, scale, parameters);
+  if (bands.least_s() > part.box.time_s) part.box.time_s = plan.box.time_s;
+  const std::vector<Excitation> runs = plan_response(part, scale, parameters);
+  make_response_runs(board, axis, runs, values, scale, stop, records, progress);
+  double left_s = plan.box.time_s - bands.run_s() * static_cast<double>(runs.size());
+  const PlantFit fit = fit_plant(frequency_response(records));
+  for (const Resonance& mode : fit.resonances) {
+    if (left_s < bands.least_s()) break;
+    part.box.time_s = std::min(left_s, 0.5 * plan.box.time_s * kShareOfBands);
+    part.seed += 1000;
+    const std::vector<Excitation> closer = plan_resonance(part, mode.f_Hz.value, scale, parameters);
+    make_response_runs(board, axis, closer, values, scale, stop, records, progress);
+    left_s -= bands.run_s() * static_cast<double>(closer.size());
+  }
+}
+
+}  // namespace host

@@ -1,0 +1,16 @@
+// The robust method: response, noise and nonlinearity from realisations and periods of multisines.
+#pragma once
+
+#include <vector>
+
+#include "host/response/frequency_response.hpp"
+#include "host/response/periodic_run.hpp"
+
+namespace host {
+
+/// Lines of runs that excite the same ones: best linear approximation against the excitation,
+/// G = mean(Y/R) / mean(U/R) (Pintelon & Schoukens, 2nd ed., eqs. (4-49) ff.). A single realisation cannot tell
+/// nonlinearity: its covariance is that of noise. `runs` is not empty and all have the same period and lines.
+std::vector<ResponseLine> robust_response(const std::vector<PeriodicRun>& runs);
+
+}  // namespace host
