@@ -226,6 +226,7 @@ void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& pla
   const Planner bands(part, scale, parameters);
   if (bands.least_s() > part.box.time_s) part.box.time_s = plan.box.time_s;
   const std::vector<Excitation> runs = plan_response(part, scale, parameters);
+  const ClosedMeanwhile closed(board, axis);  // also while the first runs are looked at: opened, it would still ring
   make_response_runs(board, axis, runs, values, scale, stop, records, progress);
   double left_s = plan.box.time_s - bands.run_s() * static_cast<double>(runs.size());
   const PlantFit fit = fit_plant(frequency_response(records));
