@@ -9,6 +9,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/model/effect_forms.hpp"
 
 namespace axistool {
 
@@ -50,11 +51,12 @@ void print(const host::Diagnosis& diagnosis) {
 }
 
 void run(const InsightArguments& arguments) {
+  for (const std::string& kind : arguments.absent) host::known_effect(kind);
   const InsightRecords records(arguments);
   host::Diagnosis diagnosis;
   {
     SearchProgress progress("diagnose");
-    diagnosis = host::diagnose(records.model, records.measurements, progress.callback());
+    diagnosis = host::diagnose(records.model, records.measurements, progress.callback(), nullptr, arguments.absent);
   }
   if (!arguments.report.empty()) host::write_diagnosis_report(diagnosis, arguments.model, arguments.report);
   if (!arguments.json.empty()) write_json(host::to_json(diagnosis), arguments.json);

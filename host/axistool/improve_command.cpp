@@ -31,11 +31,12 @@ void print(const host::Improvement& improvement, const host::ImprovementFiles& f
 }
 
 void run_improve(const InsightArguments& arguments) {
+  for (const std::string& kind : arguments.absent) host::known_effect(kind);
   const InsightRecords records(arguments);
   host::Improvement improvement;
   {
     SearchProgress progress("improve");
-    improvement = host::improve(records.model, records.measurements, progress.callback());
+    improvement = host::improve(records.model, records.measurements, progress.callback(), arguments.absent);
   }
   host::write_model(improvement.model, arguments.output);
   const host::ImprovementFiles files{arguments.model, arguments.output};

@@ -16,7 +16,7 @@ namespace axistool {
 
 struct InsightArguments {
   std::string model, output, json, report;
-  std::vector<std::string> train, validate, accepted, held, believed;
+  std::vector<std::string> train, validate, accepted, held, believed, absent;
 
   void add_to(CLI::App& command) {
     add_input(command, "model", model, "model file (axis-model/1)")->required();
@@ -26,6 +26,8 @@ struct InsightArguments {
     command.add_option("--hold", held, "parameters that stay as they stand in the model, e.g. J_kg_m2")
         ->expected(1, -1);
     command.add_option("--prior", believed, "standard deviations of what the model says, e.g. J_kg_m2=1e-4")
+        ->expected(1, -1);
+    command.add_option("--absent", absent, "effects that this machine is known not to have, e.g. backlash")
         ->expected(1, -1);
     add_accept_option(command, accepted);
     add_json_option(command, json);

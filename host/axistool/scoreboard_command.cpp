@@ -28,7 +28,7 @@ constexpr double kSomethingToFind = 2.0;
 
 struct Arguments {
   std::string folder, real, json;
-  bool cuts = false, rewritten = false;
+  bool cuts = false, rewritten = false, left_out = false;
   std::size_t nulls = 0, sample = 0;
   std::uint64_t seed = 1;
 };
@@ -236,6 +236,38 @@ std::vector<host::Trial> trials_of(const Arguments& arguments, std::map<std::str
   return wholes;
 }
 
+/// Whole cases, each without its own effect in the catalogue.
+void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, bool talks, const std::string& json) {
+  nlohmann::json lines = nlohmann::json::array();
+  std::map<Outcome, std::size_t> outcomes;
+  for (const host::Trial& trial : trials) {
+    SearchProgress progress(trial.name);
+    const host::LeftOut result = host::leave_out(trial, progress.callback());
+    ++outcomes[result.answer.outcome];
+    lines.push_back({{"case", trial.name},
+                     {"truth", result.answer.truth.effects},
+                     {"outcome", std::string(host::outcome_name(result.answer.outcome))},
+                     {"status", std::string(host::status_name(result.answer.verdict.status))},
+                     {"effects", result.answer.verdict.effects},
+                     {"coordinate", result.answer.verdict.coordinate},
+                     {"before", result.answer.before},
+                     {"curve_over", result.over},
+                     {"curve_takes", result.curve}});
+    if (!talks) continue;
+    print(result.answer, width);
+    if (result.over.empty())
+      fmt::print("{:<{}}  no curve\n", "", width);
+    else
+      fmt::print("{:<{}}  a curve over {} takes {:.0f} % of what there is to explain\n", "", width, result.over,
+                 100.0 * result.curve);
+    std::fflush(stdout);
+  }
+  if (talks)
+    fmt::print("Without their effect in the catalogue: {} cases, {} without a name, {} near relatives, {} wrong\n",
+               lines.size(), outcomes[Outcome::right], outcomes[Outcome::group], outcomes[Outcome::wrong]);
+  if (!json.empty()) write_json({{"format", "axis-left-out/1"}, {"trials", lines}}, json);
+}
+
 /// Whole cases, each written in other ways: one line a way.
 void run_rewritten(const std::vector<host::Trial>& trials, std::size_t width, bool talks, const std::string& json) {
   constexpr double kMostRatio = 1.1;
@@ -276,6 +308,7 @@ void run(const Arguments& arguments) {
   const std::vector<host::Trial> trials = trials_of(arguments, worth);
   std::size_t width = 4;
   for (const host::Trial& trial : trials) width = std::max(width, trial.name.size());
+  if (arguments.left_out) return run_left_out(trials, width, talks, arguments.json);
   if (arguments.rewritten) return run_rewritten(trials, width, talks, arguments.json);
   if (talks) print_head(width);
   std::vector<Answer> answers;
@@ -318,6 +351,9 @@ void add_scoreboard(CLI::App& app) {
   command->add_flag("--rewritten", arguments->rewritten,
                     "instead: each whole case written in other ways that leave the physics alone (another volt, linear "
                     "for rotary, mirrored, cut in two ...), and how far the answers differ");
+  command->add_flag("--left-out", arguments->left_out,
+                    "instead: each whole case with its own effect taken out of the catalogue, and what a free curve "
+                    "takes of it");
   command->add_option("--nulls", arguments->nulls, "also so many simulated drives in which nothing is hidden");
   command->add_option("--sample", arguments->sample, "only so many of the cases and of the cuts, drawn at random");
   command->add_option("--seed", arguments->seed, "of the sample and of the simulated drives")->capture_default_str();

@@ -48,8 +48,10 @@ void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataShee
     const sim::DriveState& start = states[index / stride];
     // The two independent parts of the restart's error: of the speed with the travel that goes with it, and of the
     // travel alone. Each is tried up and down, since friction turns small errors into different motions.
-    const double speed_variance = motion.w_variance[window.begin];
-    const double slant = speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;
+    // An axis that seems to stand may creep, and a command near the breakaway then decides the whole window.
+    const bool stands = motion.standing[window.begin];
+    const double speed_variance = stands ? motion.hidden_creep * motion.hidden_creep : motion.w_variance[window.begin];
+    const double slant = !stands && speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;
     double x_variance = motion.x_variance[window.begin] - slant * slant * speed_variance;
     double w_variance = 0.0;
     if (speed_variance > 0.0) {

@@ -293,7 +293,7 @@ ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet
   tests.dependences.push_back(on_frequency(first, second));
   std::ranges::stable_sort(tests.dependences, std::greater(), &ResidualDependence::share);
 
-  constexpr long kLags = 40;
+  constexpr long kLags = 20;  // of 5 ms: as long as a window
   tests.with_itself = correlation(second.samples, second.value, second.value, 0, kLags);
   tests.with_command = correlation(second.samples, second.value, second.samples.command_V, -kLags, kLags);
   return tests;

@@ -156,6 +156,7 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, cons
   std::vector<std::string> hidden, ways;
   for (const Visibility& effect : visibility_of_effects(diagnosis.base, diagnosis.training, diagnosis.validation)) {
     if (effect.floors >= kVisible || is_taken_up(effect.kind, diagnosis.base)) continue;
+    if (std::ranges::find(diagnosis.absent, effect.kind) != diagnosis.absent.end()) continue;
     hidden.push_back(effect.kind);
     ways.emplace_back(sim::find_effect(effect.kind)->separate_by);
   }

@@ -227,8 +227,12 @@ std::vector<Candidate> search_candidates(const sim::DriveDescription& model, con
                                          const RecordSet& training, const RecordSet& validation,
                                          const ShareDone& progress, const SearchEffort& effort) {
   std::vector<const sim::EffectInfo*> infos;
+  const auto is_among = [](const std::vector<std::string>& list, std::string_view kind) {
+    return std::ranges::find(list, kind) != list.end();
+  };
   for (const sim::EffectInfo* info : sim::catalogue())
-    if (is_applicable(*info, model, training) && std::ranges::find(kinds, info->kind) == kinds.end())
+    if (is_applicable(*info, model, training) && !is_among(kinds, info->kind) &&
+        (effort.absent == nullptr || !is_among(*effort.absent, info->kind)))
       infos.push_back(info);
   return search_kinds(infos, model, kinds, training, validation, progress, effort);
 }

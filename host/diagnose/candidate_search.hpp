@@ -33,8 +33,9 @@ struct SearchEffort {
   /// As many samples for windows of another length.
   SearchEffort over(double window_s) const;
 
-  const sim::DriveDescription* nominal = nullptr;  ///< the model as it was given, another start for its parameters
-  std::vector<std::string>* cut_short = nullptr;   ///< takes the kinds of which a fit ended at its budget
+  const sim::DriveDescription* nominal = nullptr;    ///< the model as it was given, another start for its parameters
+  const std::vector<std::string>* absent = nullptr;  ///< kinds that are no candidates
+  std::vector<std::string>* cut_short = nullptr;     ///< takes the kinds of which a fit ended at its budget
 };
 
 /// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates that

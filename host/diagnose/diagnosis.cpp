@@ -78,6 +78,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   if (progress) progress(0.05);
   SearchEffort effort = SearchEffort{}.over(result.window_s);
   effort.nominal = &model;
+  effort.absent = &result.absent;
   effort.cut_short = &result.not_searched;
   Findings found;
   found.singles =
@@ -107,11 +108,13 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
 }
 
 Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
-                           const Diagnosis* before) {
+                           const Diagnosis* before, const std::vector<std::string>& absent) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const bool by_short_windows = before != nullptr && before->rough;
-  const PreparedSets split = by_short_windows ? PreparedSets{} : split_sets(model, training, validation);
+  PreparedSets split = by_short_windows ? PreparedSets{} : split_sets(model, training, validation);
+  split.absent = absent;
   const auto search = [&](PreparedSets sets) {
+    sets.absent = absent;
     Diagnosis result = diagnose_by_search(std::move(sets), model, progress);
     result.log = measured.log();
     return result;
@@ -156,9 +159,10 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
 }  // namespace
 
 Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
-                   const Diagnosis* before) {
-  Diagnosis diagnosis = diagnose_records(model, measured, progress, before);
+                   const Diagnosis* before, const std::vector<std::string>& absent) {
+  Diagnosis diagnosis = diagnose_records(model, measured, progress, before, absent);
   if (!diagnosis.moves_enough) return diagnosis;
+  diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
   for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
     diagnosis.verdict.data_sheet.push_back(conflict.words);
     diagnosis.verdict.explanation += " " + conflict.words;

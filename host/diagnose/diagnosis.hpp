@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/compare/error_regions.hpp"
+#include "host/compare/residual_tests.hpp"
 #include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/record/measurements.hpp"
@@ -68,6 +69,7 @@ struct Diagnosis : PreparedSets {
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
+  ResidualTests residual;                            ///< of `best`: what depends on what in the effort that it leaves
   std::size_t tried = 0;  ///< candidates that validation data judged; the others fell behind in training
   std::vector<JudgedCandidate> candidates;  ///< best first
   std::vector<std::string> not_searched;    ///< kinds of which a fit ended at its budget, not at its best
@@ -93,8 +95,9 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
 /// By the motion over windows of kWindow_s. Where the machine proves rough, again by the effort, in which what is
 /// missing shows before it adds up to a drift; and where that says nothing, by the motion over short windows. `before`:
 /// an earlier diagnosis of the same records, whose way of judging is taken over, so that their errors can be compared.
+/// `absent`: kinds of effects that the machine is known not to have.
 /// Throws Failure(bad_input) for records that cannot be compared. Keeps references to the records.
 Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
-                   const Diagnosis* before = nullptr);
+                   const Diagnosis* before = nullptr, const std::vector<std::string>& absent = {});
 
 }  // namespace host

@@ -11,6 +11,7 @@
 #include "host/compare/effort_residual.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/report/binned_curve.hpp"
+#include "host/report/text_format.hpp"
 
 namespace host {
 
@@ -94,6 +95,43 @@ void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveD
     add(before_and_after("Tachometer against speed", "Tachometer less the speed from the encoder.",
                          {"speed", units.speed}, {"tachometer error", units.speed}, before.w, before.tach_error,
                          after.w, after.tach_error));
+}
+
+namespace {
+
+ScatterPlot correlation_plot(const std::string& title, const std::string& caption, const Correlation& correlation) {
+  ScatterPlot plot{title, caption, {"lag", "ms"}, {"correlation", ""}, {}};
+  std::vector<double> lag_ms;
+  for (const double lag_s : correlation.lag_s) lag_ms.push_back(1e3 * lag_s);
+  const std::vector<double> zero(lag_ms.size(), 0.0), bound(lag_ms.size(), correlation.bound),
+      below(lag_ms.size(), -correlation.bound);
+  plot.series = {{"99 % of a white residual", SeriesRole::floor, SeriesStyle::line, lag_ms, zero, below, bound},
+                 {"correlation", SeriesRole::residual, SeriesStyle::stems, lag_ms, correlation.value, {}, {}}};
+  return plot;
+}
+
+}  // namespace
+
+void add_whiteness(Report& report, const Diagnosis& diagnosis) {
+  const ResidualTests& tests = diagnosis.residual;
+  if (tests.dependences.empty()) return;
+  report.section(
+      "Is what is left noise?",
+      "The effort that the model leaves on validation data. Within the bounds it is white; a model of a real "
+      "machine may leave them, so the verdict asks how much of it depends on something, and does so again in "
+      "data that the dependence was not learnt on.");
+  report.add(correlation_plot("Correlation with itself",
+                              "The first 20 ms show the smoother that the effort comes from.", tests.with_itself));
+  report.add(correlation_plot("Correlation with the command",
+                              "At positive lags with earlier commands: a delay, a lag or a resonance shows there.",
+                              tests.with_command));
+  Table table;
+  table.title = "What it depends on";
+  table.headings = {"coordinate", "of the squared residual", "most"};
+  for (const ResidualDependence& dependence : tests.dependences)
+    table.rows.push_back(
+        {spaced(dependence.coordinate), fmt::format("{:.1f} %", 100.0 * dependence.share), dependence.where});
+  report.add(table);
 }
 
 void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {

@@ -64,6 +64,21 @@ nlohmann::json candidate_json(const JudgedCandidate& candidate) {
           {"separate_by", std::string(info.separate_by)}};
 }
 
+nlohmann::json correlation_json(const Correlation& correlation) {
+  return {{"lag_s", correlation.lag_s}, {"value", correlation.value}, {"bound", correlation.bound}};
+}
+
+nlohmann::json residual_json(const ResidualTests& tests) {
+  nlohmann::json dependences = nlohmann::json::array();
+  for (const ResidualDependence& dependence : tests.dependences)
+    dependences.push_back(
+        {{"coordinate", dependence.coordinate}, {"share", dependence.share}, {"where", dependence.where}});
+  return {{"rms", tests.rms},
+          {"dependences", std::move(dependences)},
+          {"autocorrelation", correlation_json(tests.with_itself)},
+          {"correlation_with_command", correlation_json(tests.with_command)}};
+}
+
 nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
   nlohmann::json document = {{"status", std::string(status_name(verdict.status))},
                              {"effects", verdict.effects},
@@ -107,6 +122,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
       {"candidates", candidates},
       {"search", {{"not_searched", diagnosis.not_searched}}},
       {"verdict", verdict_json(diagnosis.verdict)}};
+  if (!diagnosis.residual.dependences.empty()) document["residual"] = residual_json(diagnosis.residual);
   if (diagnosis.screen) document["error"]["effort_screen"] = effort_screen_json(*diagnosis.screen);
   if (diagnosis.screen && diagnosis.screen->repeatable)
     document["error"]["repeatable"] = diagnosis.screen->repeatable->share;

@@ -82,6 +82,7 @@ void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model
   add_errors(report, diagnosis);
   if (!diagnosis.candidates.empty()) report.add(candidate_chart(diagnosis));
   add_residuals(report, diagnosis, diagnosis.best);
+  add_whiteness(report, diagnosis);
   add_traces(report, diagnosis, diagnosis.best);
   report.write(path);
 }

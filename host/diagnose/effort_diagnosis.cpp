@@ -168,7 +168,7 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
                                             const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& seen, bool rough) {
   if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
-  auto screen = std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation));
+  auto screen = std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation, 3, sets.absent));
   if (!screen->empty()) seen = screen;
   if (!effort_decides(*screen, sets.validation)) return {};
   Diagnosis diagnosis(sets);

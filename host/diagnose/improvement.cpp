@@ -61,14 +61,15 @@ std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const 
   return estimate_intervals(model, training);
 }
 
-Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress) {
+Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
+                    const std::vector<std::string>& absent) {
   Improvement result;
   sim::DriveDescription current = model;
   for (int step = 0; step < kMostRungs; ++step) {
     const auto part = [&](double share) {
       if (progress) progress((step + share) / (step + 2.0));
     };
-    Diagnosis diagnosis = diagnose(current, measured, part, step == 0 ? nullptr : &result.first);
+    Diagnosis diagnosis = diagnose(current, measured, part, step == 0 ? nullptr : &result.first, absent);
     if (step == 0) result.ladder.push_back(rung_of(diagnosis, false, {}));
     result.verdict = diagnosis.verdict;
     result.model = diagnosis.best;

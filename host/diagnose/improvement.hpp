@@ -24,8 +24,9 @@ struct Improvement {
   Diagnosis first;  ///< the diagnosis that the ladder began with
 };
 
-/// Never adds what does not replicate on validation data. Throws as diagnose() does.
-Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {});
+/// Never adds what does not replicate on validation data, nor of the kinds in `absent`. Throws as diagnose() does.
+Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
+                    const std::vector<std::string>& absent = {});
 
 /// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "host/compare/comparison.hpp"
@@ -30,6 +31,7 @@ struct PreparedSets {
   bool moves_enough = false;                             ///< otherwise the base is the model as it was given
   sim::DriveDescription base;                            ///< the given model, re-fitted
   RecordSet training, validation;
+  std::vector<std::string> absent = {};  ///< kinds that this machine is known not to have: no candidates
 };
 
 /// Independent windows of motion in so many seconds of it.

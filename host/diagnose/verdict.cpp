@@ -10,6 +10,7 @@
 #include "host/diagnose/all_clear.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/evidence/speed_coverage.hpp"
+#include "host/report/text_format.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -117,11 +118,6 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
 
 double validation_s(const Diagnosis& diagnosis) {
   return static_cast<double>(diagnosis.validation.used_windows()) * diagnosis.window_s;
-}
-
-std::string spaced(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
 }
 
 /// Why the closest candidate is not claimed, to follow a statement of the error.

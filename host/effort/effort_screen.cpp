@@ -226,15 +226,18 @@ MatrixXd columns_of(const EffortScreen& screen, const std::vector<EffortTerm>& b
 
 /// Everything that could come next on top of what was chosen.
 std::vector<EffortTerm> next_terms(const EffortScreen& screen, const sim::DriveDescription& given,
-                                   const std::vector<EffortTerm>& base, const std::vector<EffortTerm>& chosen) {
+                                   const std::vector<EffortTerm>& base, const std::vector<EffortTerm>& chosen,
+                                   const std::vector<std::string>& absent) {
   sim::DriveDescription held = given;
   for (const EffortTerm& term : chosen)
     if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
   const ScreenedModel& now = screen.best();
   std::vector<EffortTerm> terms = further_terms(held, screen.rows, columns_of(screen, base, chosen),
                                                 screen.rows.effort - now.residual, now.residual);
-  std::erase_if(terms,
-                [&](const EffortTerm& term) { return std::ranges::find(now.kinds, term.kind) != now.kinds.end(); });
+  std::erase_if(terms, [&](const EffortTerm& term) {
+    return std::ranges::find(now.kinds, term.kind) != now.kinds.end() ||
+           std::ranges::find(absent, term.kind) != absent.end();
+  });
   return terms;
 }
 
@@ -365,7 +368,7 @@ void drop_what_others_explain(const Regressor& regressor, const std::vector<Effo
 }  // namespace
 
 EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
-                           std::size_t most_steps) {
+                           std::size_t most_steps, const std::vector<std::string>& absent) {
   EffortScreen screen;
   if (model.find("inertia") == nullptr || !has_inverse(sim::Drive(model))) return screen;
   screen.rows = effort_rows(model, training, validation);
@@ -383,7 +386,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
   std::vector<EffortTerm> chosen;
   while (screen.chosen.size() < most_steps) {
     if (screen.best().validate * screen.effort_validate < kAboveNoise * screen.rows.noise) break;
-    const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen);
+    const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen, absent);
     std::vector<Tried> found = try_all(regressor, screen, base, chosen, one_by_one(terms));
     screen.steps.emplace_back();
     for (const Tried& tried : found) screen.steps.back().push_back(tried.model);

@@ -37,8 +37,9 @@ struct EffortScreen {
   const ScreenedModel& best() const { return chosen.empty() ? base : chosen.back(); }
 };
 
-/// Chooses up to `most_steps` times. Empty where the records hold no effort, or hardly slide.
+/// Chooses up to `most_steps` times, never of the kinds in `absent`. Empty where the records hold no effort, or hardly
+/// slide.
 EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
-                           std::size_t most_steps = 3);
+                           std::size_t most_steps = 3, const std::vector<std::string>& absent = {});
 
 }  // namespace host

@@ -157,7 +157,8 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   const double quiet_V =
       std::max({kQuietPartOfFriction * level_V, kQuietPartOfCommand * rms_V, std::numeric_limits<double>::min()}) *
       std::sqrt(period_s / 1e-3);
-  const double creep = kCreepCounts * resolution / data.lead / kStanding_s;
+  motion_.hidden_creep = resolution / data.lead / kStanding_s;
+  const double creep = kCreepCounts * motion_.hidden_creep;
 
   std::vector<Observation> observed(record.size());
   for (std::size_t k = 0; k < record.size(); ++k) observed[k] = {measured[k], noise, quiet_V, false};

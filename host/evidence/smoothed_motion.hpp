@@ -19,6 +19,7 @@ struct SmoothedMotion {
   std::vector<double> w_variance;
   std::vector<double> xw_covariance;
   std::vector<bool> standing;  ///< the encoder shows no motion at all
+  double hidden_creep = 0.0;   ///< speed at which it would not show any either, rad/s or m/s
 };
 
 /// Commands in volts as the drive's amplifier gets them: u_V, or the logged current over the amplifier's gain.

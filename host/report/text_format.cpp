@@ -81,4 +81,9 @@ double rounded_to_digits(double value, int digits) {
   return std::stod(fmt::format("{:.{}g}", value, digits));
 }
 
+std::string spaced(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 }  // namespace host

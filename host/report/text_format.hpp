@@ -26,4 +26,7 @@ std::string format_value(double value, int digits = 3);
 /// `value` rounded to `digits` significant digits, so that it prints shortly.
 double rounded_to_digits(double value, int digits);
 
+/// A name with spaces for underscores: "travel since reversal".
+std::string spaced(std::string name);
+
 }  // namespace host

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "host/diagnose/improvement.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/model/model_file.hpp"
 #include "host/scoreboard/simulated_null.hpp"
+#include "sim/catalogue.hpp"
 
 namespace host {
 
@@ -94,12 +96,13 @@ namespace {
 
 /// Diagnoses what passes the gate; what does not is no answer either.
 Answer ask(const std::string& name, const std::string& group, const Truth& truth, const sim::DriveDescription& model,
-           std::vector<Record> train, std::vector<Record> validate, const ShareDone& progress) {
+           std::vector<Record> train, std::vector<Record> validate, const ShareDone& progress,
+           const std::vector<std::string>& absent = {}) {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   try {
     const Measurements measured = MeasurementGate(model).admit(std::move(train), std::move(validate));
-    const Diagnosis diagnosis = diagnose(model, measured, progress);
+    const Diagnosis diagnosis = diagnose(model, measured, progress, nullptr, absent);
     return answer_of(name, group, truth, diagnosis, seconds());
   } catch (const Failure& refused) {
     Answer answer{name, group, truth, {}, 0.0, 0.0, seconds(), Outcome::missed, {}};
@@ -116,6 +119,33 @@ Answer run_trial(const Trial& trial, const ShareDone& progress) {
   const sim::DriveDescription model = read_model((trial.folder / "model.toml").string());
   return ask(trial.name, trial.group, read_truth(trial.folder), model, read_pieces(trial.train, model.data),
              read_pieces(trial.validate, model.data), progress);
+}
+
+LeftOut leave_out(const Trial& trial, const ShareDone& progress) {
+  const sim::DriveDescription model = read_model((trial.folder / "model.toml").string());
+  const Truth truth = read_truth(trial.folder);
+  const std::vector<Record> train = read_pieces(trial.train, model.data);
+  const std::vector<Record> validate = read_pieces(trial.validate, model.data);
+  LeftOut result{ask(trial.name, "left out", truth, model, train, validate, progress, truth.effects), {}, 0.0};
+  Answer& answer = result.answer;
+  const auto is_near = [&](const std::string& claimed) {
+    return std::ranges::any_of(truth.effects, [&](const std::string& hidden) {
+      const auto& relatives = sim::find_effect(hidden)->confused_with;
+      return std::ranges::find(relatives, claimed) != relatives.end();
+    });
+  };
+  answer.outcome = answer.gives_all_clear()                               ? Outcome::wrong
+                   : answer.verdict.effects.empty()                       ? Outcome::right
+                   : std::ranges::all_of(answer.verdict.effects, is_near) ? Outcome::group
+                                                                          : Outcome::wrong;
+  try {
+    const Addition curve = add_free_curve(model, {}, MeasurementGate(model).admit(train, validate));
+    result.over = curve.judged.model.effects.back().over;
+    const double before = curve.judged.before * curve.judged.before - 1.0;
+    if (before > 0.0) result.curve = 1.0 - (curve.judged.after * curve.judged.after - 1.0) / before;
+  } catch (const Failure&) {  // no curve lowers the error
+  }
+  return result;
 }
 
 Answer run_null(std::uint64_t seed, const std::string& name) {

@@ -45,6 +45,16 @@ Answer answer_of(const std::string& name, const std::string& group, const Truth&
 /// Runs a trial on a case's model.
 Answer run_trial(const Trial& trial, const ShareDone& progress = {});
 
+/// What is left of a catalogue when the effect that a case hides is taken out of it.
+struct LeftOut {
+  Answer answer;       ///< right: no name. Group: near relatives of it alone. Wrong: any other name, or an all-clear
+  std::string over;    ///< coordinate of the free curve that judged best; empty where none lowers the error
+  double curve = 0.0;  ///< part of the explainable squared error that it takes, 0..1
+};
+
+/// Runs a whole case with its effects declared absent.
+LeftOut leave_out(const Trial& trial, const ShareDone& progress = {});
+
 /// Diagnoses a simulated drive in which nothing is hidden.
 Answer run_null(std::uint64_t seed, const std::string& name);
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "host/compare/residual_tests.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/scoreboard/simulated_null.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
@@ -101,6 +102,13 @@ TEST(Diagnosis, AnEffectOutsideTheCatalogueIsUnexplainedAndItsPlaceIsNamed) {
   EXPECT_LT(from_mm, place_mm);
   EXPECT_GT(to_mm, place_mm);
   EXPECT_LT(to_mm - from_mm, 15.0);  // of 150 mm of travel
+  // Programs see what it depends on, too.
+  const nlohmann::json residual = host::to_json(diagnosis).at("residual");
+  EXPECT_GT(residual.at("dependences").at(0).at("share").get<double>(), 0.1);
+  const nlohmann::json& with_itself = residual.at("autocorrelation");
+  EXPECT_NEAR(with_itself.at("value").at(0).get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(with_itself.at("value").size(), with_itself.at("lag_s").size());
+  EXPECT_GT(with_itself.at("bound").get<double>(), 0.0);
 }
 
 }  // namespace
