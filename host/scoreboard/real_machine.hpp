@@ -1,0 +1,40 @@
+// Measured machines with the answers that their records allow: what diagnose makes of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// A machine as FOLDER/expected.json lists it.
+struct RealMachine {
+  std::string name;
+  std::string model;                            ///< file
+  std::vector<std::string> train, validate;     ///< files
+  std::vector<std::string> accepted;            ///< faults of the log
+  std::vector<std::vector<std::string>> right;  ///< sets of kinds, each a right answer
+  std::vector<std::string> must_not;            ///< kinds that are known not to be there
+};
+
+/// Throws Failure(bad_input) where the file is missing or has no object "machines".
+std::vector<RealMachine> read_real_machines(const std::filesystem::path& folder);
+
+struct RealAnswer {
+  Diagnosis diagnosis;
+  double seconds = 0.0;
+  bool listed = false;                 ///< the verdict is a right answer, or a group that holds one
+  std::vector<std::string> not_there;  ///< claimed, though it is known not to be there
+
+  bool is_right() const { return listed && not_there.empty(); }
+};
+
+/// Throws Failure(bad_input) where a record is missing or bad.
+RealAnswer ask(const RealMachine& machine, const ShareDone& progress = {});
+
+/// Orders of the periodic effects that a diagnosis added.
+std::vector<double> orders_of(const Diagnosis& diagnosis);
+
+}  // namespace host
