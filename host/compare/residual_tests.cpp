@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "host/compare/period_search.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {
@@ -122,6 +123,38 @@ struct Folds {
     return all > 0.0 ? std::max(0.0, 1.0 - left / all) : 0.0;
   }
 };
+
+/// The strongest ripple over the travel, learnt on one fold and tried on the other: bins over the whole travel are too
+/// wide for what repeats with each turn of a screw.
+ResidualDependence on_period(const std::array<const Half*, 2>& halves, double resolution, double in_mm) {
+  constexpr double kStepsAPeriod = 40.0, kFinest = 2000.0, kPeriodsOfTravel = 3.0;
+  ResidualDependence result{"position", {}, 0.0};
+  const Folds folds(halves, &ResidualEffort::x);
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Values& along : folds.along)
+    for (const double x : along) low = std::min(low, x), high = std::max(high, x);
+  const double shortest = std::max(kStepsAPeriod * resolution, (high - low) / kFinest);
+  const double longest = (high - low) / kPeriodsOfTravel;
+  if (!(longest > shortest)) return result;
+  double left = 0.0, all = 0.0, strongest = 0.0;
+  for (const std::size_t tried : {0U, 1U}) {
+    const std::size_t other = 1 - tried;
+    const std::vector<PeriodPeak> peaks = find_periods(
+        {folds.along[other], folds.value[other], Values(folds.along[other].size(), 1.0)}, shortest, longest, 1);
+    if (peaks.empty()) return result;
+    const PeriodPeak& peak = peaks.front();
+    for (std::size_t k = 0; k < folds.value[tried].size(); ++k) {
+      const double turn = 2.0 * std::numbers::pi * folds.along[tried][k] / peak.period;
+      left += std::pow(folds.value[tried][k] - peak.cosine * std::cos(turn) - peak.sine * std::sin(turn), 2);
+    }
+    all += sum_of_squares(folds.value[tried]);
+    if (peak.share <= strongest) continue;
+    strongest = peak.share;
+    result.where = fmt::format("every {} mm of travel", format_value(in_mm * peak.period, 4));
+  }
+  result.share = all > 0.0 ? std::max(0.0, 1.0 - left / all) : 0.0;
+  return result;
+}
 
 /// Part of the squared residual that the two windows before and behind a window foretell.
 double share_of_time(const Half& half) {
@@ -280,8 +313,14 @@ ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet
   const double in_mm = rotary ? 1.0 : 1e3;
   const char* speed_unit = rotary ? "rad/s" : "m/s";
   against("speed", &ResidualEffort::w, 24, 1.0, "at speeds", speed_unit);
-  if (training.records.front().prepared.record->has_position())
+  if (training.records.front().prepared.record->has_position()) {
     against("position", &ResidualEffort::x, 40, in_mm, "at positions", "mm");
+    for (const auto& halves : {std::array{&first, &second}, std::array{&as_friction[0], &as_friction[1]}})
+      if (ResidualDependence periodic = on_period(halves, model.data.encoder_resolution, in_mm);
+          !tests.dependences.empty() && tests.dependences.back().coordinate == "position" &&
+          periodic.share > tests.dependences.back().share)
+        tests.dependences.back() = std::move(periodic);
+  }
   against("travel_since_reversal", &ResidualEffort::since_reversal, 24, in_mm, "where the travel since a reversal is",
           "mm");
   against("acceleration", &ResidualEffort::acceleration, 24, 1.0, "at accelerations", rotary ? "rad/s²" : "m/s²");

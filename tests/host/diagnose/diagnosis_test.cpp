@@ -73,6 +73,22 @@ TEST(Diagnosis, WhatACompleteModelLeavesDependsOnNothing) {
   }
 }
 
+TEST(Diagnosis, ARippleOverTheTravelIsSeenThoughBinsOverAllOfItAreTooWide) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const DriveCase cogging("single/case-00");
+  std::vector<const host::Record*> train, validate;
+  for (const host::Record& record : cogging.train) train.push_back(&record);
+  for (const host::Record& record : cogging.validate) validate.push_back(&record);
+  const host::PreparedSets sets = host::prepare_sets(cogging.model, train, validate);
+  const host::ResidualTests tests = host::test_residuals(sets.base, sets.training, sets.validation);
+  const auto position = std::ranges::find(tests.dependences, "position", &host::ResidualDependence::coordinate);
+  ASSERT_NE(position, tests.dependences.end());
+  EXPECT_GT(position->share, 0.1);
+  double period_mm = 0.0;
+  ASSERT_EQ(std::sscanf(position->where.c_str(), "every %lf mm", &period_mm), 1) << position->where;
+  EXPECT_NEAR(period_mm, 1.25, 0.005);  // truth.json
+}
+
 /// A hard spot, which the catalogue does not know. The axis moved as it did under the recorded command; had the spot
 /// been there, the same motion would have taken the spot's effort more.
 void add_hard_spot(host::Record& record, const sim::DataSheet& data, double place_mm, double width_mm,
