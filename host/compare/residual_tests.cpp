@@ -136,11 +136,13 @@ ResidualDependence on_period(const std::array<const Half*, 2>& halves, double re
   const double shortest = std::max(kStepsAPeriod * resolution, (high - low) / kFinest);
   const double longest = (high - low) / kPeriodsOfTravel;
   if (!(longest > shortest)) return result;
-  double left = 0.0, all = 0.0, strongest = 0.0;
+  const auto strongest = [&](const Values& along, const Values& value) {
+    return find_periods({along, value, Values(along.size(), 1.0)}, shortest, longest, 1);
+  };
+  double left = 0.0, all = 0.0;
   for (const std::size_t tried : {0U, 1U}) {
     const std::size_t other = 1 - tried;
-    const std::vector<PeriodPeak> peaks = find_periods(
-        {folds.along[other], folds.value[other], Values(folds.along[other].size(), 1.0)}, shortest, longest, 1);
+    const std::vector<PeriodPeak> peaks = strongest(folds.along[other], folds.value[other]);
     if (peaks.empty()) return result;
     const PeriodPeak& peak = peaks.front();
     for (std::size_t k = 0; k < folds.value[tried].size(); ++k) {
@@ -148,10 +150,10 @@ ResidualDependence on_period(const std::array<const Half*, 2>& halves, double re
       left += std::pow(folds.value[tried][k] - peak.cosine * std::cos(turn) - peak.sine * std::sin(turn), 2);
     }
     all += sum_of_squares(folds.value[tried]);
-    if (peak.share <= strongest) continue;
-    strongest = peak.share;
-    result.where = fmt::format("every {} mm of travel", format_value(in_mm * peak.period, 4));
   }
+  const std::vector<PeriodPeak> peaks = strongest(halves[0]->samples.x, halves[0]->value);
+  if (peaks.empty()) return result;
+  result.where = fmt::format("every {} mm of travel", format_value(in_mm * peaks.front().period, 4));
   result.share = all > 0.0 ? std::max(0.0, 1.0 - left / all) : 0.0;
   return result;
 }
