@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "host/exit_codes.hpp"
 #include "host/identify/linear_axis.hpp"
+#include "host/identify/zero_phase_filter.hpp"
 #include "sim/drive.hpp"
 #include "sim/friction.hpp"
 
@@ -50,6 +52,37 @@ std::vector<double> inverse_effort(const sim::Drive& drive, const Motion& motion
   return effort;
 }
 
+namespace {
+
+/// A model's effort as the regression sees it. What repeats along the travel may be faster than the filter that the
+/// measured effort has passed, and passes the same one; speed and acceleration have passed it already.
+class SeenEffort {
+ public:
+  explicit SeenEffort(const sim::DriveDescription& model) : drive_(model) {
+    sim::DriveDescription smooth = model;
+    if (std::erase_if(smooth.effects, [](const sim::EffectEntry& entry) { return entry.has("period"); }) > 0)
+      smooth_.emplace(smooth);
+  }
+
+  const sim::Drive& drive() const { return drive_; }
+
+  std::vector<double> operator()(const Motion& motion) const {
+    std::vector<double> effort = inverse_effort(drive_, motion);
+    if (!smooth_) return motion.seen(effort);
+    const std::vector<double> smooth = inverse_effort(*smooth_, motion);
+    for (std::size_t k = 0; k < effort.size(); ++k) effort[k] -= smooth[k];
+    effort = ZeroPhaseLowPass::butterworth(motion.cutoff_Hz, motion.sample_rate_Hz)(effort);
+    for (std::size_t k = 0; k < effort.size(); ++k) effort[k] += smooth[k];
+    return motion.seen(effort);
+  }
+
+ private:
+  sim::Drive drive_;
+  std::optional<sim::Drive> smooth_;  ///< without what repeats along the travel; empty where nothing does
+};
+
+}  // namespace
+
 double relative_error(const sim::DriveDescription& model, const Record& record, const MotionOptions& options) {
   return relative_error(model, std::vector<Record>{record}, options);
 }
@@ -57,15 +90,15 @@ double relative_error(const sim::DriveDescription& model, const Record& record, 
 double relative_error(const sim::DriveDescription& model, const std::vector<Record>& records,
                       const MotionOptions& options) {
   rigid_axis(model);  // says what is wrong where there is no inertia
-  const sim::Drive drive(model);
+  const SeenEffort modelled_effort(model);
   MotionOptions settled = options;
   if (!settled.cutoff_Hz) settled.cutoff_Hz = choose_cutoff(records, model.data);
-  settled.command_path = &drive;
+  settled.command_path = &modelled_effort.drive();
   double residual = 0.0, total = 0.0;
   for (const Record& record : records) {
     const Motion motion = prepare_motion(record, model.data, settled);
     const std::vector<double> measured = motion.seen(motion.effort);
-    const std::vector<double> modelled = motion.seen(inverse_effort(drive, motion));
+    const std::vector<double> modelled = modelled_effort(motion);
     for (std::size_t k = 0; k < measured.size(); ++k) {
       residual += (measured[k] - modelled[k]) * (measured[k] - modelled[k]);
       total += measured[k] * measured[k];
