@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "host/compare/free_run.hpp"
+#include "host/identify/inverse_model.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {
@@ -192,9 +193,12 @@ std::string comparison_text(std::span<const ComparedModel> models, const Termina
   text += terminal_table(error_table(models), terminal);
   if (models.size() > 1) return text + "\n" + terminal_bars(overlaid_bars(models, "regime", "By regime"), terminal);
   if (first.comparison.relative_error)
-    text += wrapped(fmt::format("\nThe inverse model leaves {} of the {} unexplained.",
+    text += wrapped(fmt::format("\nThe inverse model leaves {} of the {} unexplained.{}",
                                 percent(*first.comparison.relative_error),
-                                first.model.data.kind == sim::DriveKind::rotary ? "torque" : "force"),
+                                first.model.data.kind == sim::DriveKind::rotary ? "torque" : "force",
+                                has_inverse(sim::Drive(first.model))
+                                    ? ""
+                                    : " It leaves out what has no inverse (a second mass, a lag, bristles)."),
                     terminal.columns) +
             "\n";
   for (const RecordError& record : first.comparison.records)
