@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/claim.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -84,11 +85,19 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   found.singles =
       search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5), effort);
   if (!found.singles.empty()) {
-    const Candidate& best = found.singles.front();
-    renew_floors(result.training, best.model);
-    renew_floors(result.validation, best.model);
-    if (error_of(sim::Drive(best.model), result.validation).combined > kExplained)
-      found.pairs = search_candidates(best.model, best.kinds, result.training, result.validation,
+    renew_floors(result.training, found.singles.front().model);
+    renew_floors(result.validation, found.singles.front().model);
+    // What only helps at the end of its physical range makes up for something else: nothing stands on it.
+    const auto is_physical = [](const Candidate& candidate) {
+      return parameters_on_bound(candidate.model, candidate.kinds).empty();
+    };
+    std::vector<std::string> excluded = result.absent;
+    for (const Candidate& candidate : found.singles)
+      if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
+    effort.absent = &excluded;
+    const auto best = std::ranges::find_if(found.singles, is_physical);
+    if (best != found.singles.end() && error_of(sim::Drive(best->model), result.validation).combined > kExplained)
+      found.pairs = search_candidates(best->model, best->kinds, result.training, result.validation,
                                       part(progress, 0.5, 0.95), effort);
   }
   judge(result, model, found);
