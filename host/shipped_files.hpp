@@ -17,4 +17,11 @@ std::vector<std::string> shipped_scenarios();
 /// naming those that there are.
 std::string scenario_file(const std::string& name);
 
+/// Names, without .toml, of the machines for `axistool commission --sim`, sorted; the second, for a line of help.
+std::vector<std::string> shipped_machines();
+std::string shipped_machines_text();
+
+/// A model file of this name, else the shipped machine that is called so. Throws Failure(usage) naming those there are.
+std::string machine_file(const std::string& name);
+
 }  // namespace host

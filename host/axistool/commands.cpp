@@ -22,6 +22,7 @@ void add_all_commands(CLI::App& app) {
   add_add(app);
   add_improve(app);
   add_scoreboard(app);
+  add_commission(app);
   add_effects(app);
   add_demo(app);
   add_flash(app);

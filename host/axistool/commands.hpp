@@ -54,6 +54,7 @@ void add_diagnose(CLI::App& app);
 void add_improve(CLI::App& app);
 void add_add(CLI::App& app);
 void add_scoreboard(CLI::App& app);
+void add_commission(CLI::App& app);
 
 /// All of them, by their names.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);

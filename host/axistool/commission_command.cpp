@@ -1,0 +1,180 @@
+// axistool commission: from an unknown axis to one that follows better, in one command.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/commission/commission.hpp"
+#include "host/external_plant/external_plant.hpp"
+#include "host/model/model_file.hpp"
+#include "host/shipped_files.hpp"
+#include "host/simulated_board/simulated_link.hpp"
+
+namespace axistool {
+
+namespace {
+
+struct CommissionArguments : DeviceArguments {
+  std::string axis, model, plant, drive, folder, box, from, to;
+  double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz;
+  std::uint64_t seed = 1;
+  bool save = false;
+};
+
+std::atomic<bool> interrupted = false;
+
+void watch_for_interrupt(bool watch) {
+  const auto handler = watch ? [](int) { interrupted = true; } : SIG_DFL;
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+/// One axis, behind the board's own protocol.
+host::BoardClient board_of(const CommissionArguments& arguments, const sim::DriveDescription& machine,
+                           std::uint8_t axis) {
+  if (arguments.model.empty() && arguments.plant.empty()) return open_board(arguments);
+  std::vector<host::SimulatedDrive> drives(static_cast<std::size_t>(axis) + 1);
+  for (host::SimulatedDrive& drive : drives) drive.drive = machine;
+  if (!arguments.plant.empty()) {
+    const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(std::max(arguments.patience_s, 10.0)));
+    const auto plant =
+        std::make_shared<host::ExternalPlant>(arguments.plant, drives.size(), machine.data.sample_period_s, patience);
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      drives[i].drive = host::data_sheet_alone(machine);
+      drives[i].motion = host::ExternalPlant::axis(plant, i);
+    }
+  }
+  return host::BoardClient(
+      std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", arguments.seed}));
+}
+
+std::uint8_t axis_of(const std::string& name) { return axis_index(name, hal::kMostAxes); }
+
+/// The data sheet: of the command line, else of the machine that is simulated, else as the folder keeps it.
+sim::DriveDescription sheet_of(const CommissionArguments& arguments, const std::string& kept) {
+  std::error_code fault;
+  if (!arguments.drive.empty()) return host::read_drive(arguments.drive);
+  if (!arguments.model.empty()) {
+    sim::DriveDescription sheet = host::read_drive(host::machine_file(arguments.model));
+    sheet.effects.clear();  // they are what is looked for
+    return sheet;
+  }
+  if (std::filesystem::exists(kept, fault)) return host::read_drive(kept);
+  throw host::Failure(host::ExitCode::usage,
+                      "what is a count, a volt and a turn of this drive? Give its data sheet with --drive DRIVE.toml");
+}
+
+/// What a simulated machine may do where nobody has said: it hurts nobody.
+std::string usual_box(sim::DriveKind kind) {
+  return kind == sim::DriveKind::rotary ? "travel=100,speed=200,volts=4,time=360"
+                                        : "travel=0.2,speed=0.4,volts=4,time=360";
+}
+
+void begin_or_go_on(const CommissionArguments& arguments, const host::CommissionFolder& folder) {
+  if (!arguments.from.empty() || folder.first_undone() == std::size_t{0}) return;
+  const auto next = folder.first_undone();
+  throw host::Failure(host::ExitCode::usage,
+                      fmt::format("{} holds a commissioning{}: --from {} goes on there, --from look begins it anew, "
+                                  "another -o keeps both",
+                                  arguments.folder, next ? "" : " that is complete",
+                                  next ? host::kCommissionSteps[*next].name : "compensate"));
+}
+
+void run(const CommissionArguments& arguments) {
+  host::CommissionFolder folder(arguments.folder);
+  begin_or_go_on(arguments, folder);
+  const std::size_t from = arguments.from.empty() ? 0 : host::commission_step(arguments.from);
+  const std::size_t to = arguments.to.empty() ? host::kCommissionSteps.size() - 1 : host::commission_step(arguments.to);
+  const std::string kept = folder.path("drive.toml");
+  host::CommissionOptions options;
+  options.axis = axis_of(arguments.axis);
+  options.axis_name = arguments.axis;
+  options.sheet = sheet_of(arguments, kept);
+  options.bandwidth_Hz = arguments.bandwidth_Hz;
+  options.save = arguments.save;
+  const bool is_simulated = !arguments.model.empty() || !arguments.plant.empty();
+  std::string box = arguments.box.empty() ? folder.document().value("box", "") : arguments.box;
+  if (box.empty() && is_simulated) box = usual_box(options.sheet.data.kind);
+  if (box.empty())
+    throw host::Failure(host::ExitCode::refused,
+                        "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
+  options.box = host::parse_box(box, options.sheet.data.kind);
+  folder.put("axis", arguments.axis);
+  folder.put("box", box);
+  host::write_model(options.sheet, kept);
+  const sim::DriveDescription machine =
+      arguments.model.empty() ? options.sheet : host::read_drive(host::machine_file(arguments.model));
+  host::BoardClient board = board_of(arguments, machine, options.axis);
+  axis_index(arguments.axis, board.axis_count());
+  host::CommissionTalk talk;
+  talk.consents = [&](const std::string& question) {
+    require_consent(arguments, question);
+    return true;
+  };
+  talk.stop = [] { return interrupted.load(); };
+  talk.computes = [](bool computes) { watch_for_interrupt(!computes); };
+  if (talks(arguments))
+    talk.tell = [](const std::string& text) {
+      fmt::print("{}\n", text);
+      std::fflush(stdout);
+    };
+  watch_for_interrupt(true);
+  host::commission_axis(board, options, talk, folder, from, to);
+  if (!arguments.json.empty()) write_json(folder.document(), arguments.json);
+  if (talks(arguments) && folder.document()["page"].is_string())
+    fmt::print("Page: {}\n", folder.document()["page"].get<std::string>());
+}
+
+std::string footer() {
+  std::string text =
+      "Examples:\n"
+      "  axistool commission x --sim cogging -o x --yes\n"
+      "  axistool commission x --drive x.toml --box travel=80,speed=200,volts=3,time=360 -o x\n"
+      "  axistool commission x -o x --from diagnose\n"
+      "  axistool commission x --plant 'python3 05-own-plant.py' --drive 05-own-plant.toml -o own --yes\n"
+      "Every step asks before the axis moves. Its results are files in the folder, from which --from goes on. Steps:\n";
+  for (const host::CommissionStepText& step : host::kCommissionSteps)
+    text += fmt::format("  {:<11} {}\n", step.name, step.does);
+  return text + "Machines that come with it, for --sim: " + host::shipped_machines_text();
+}
+
+}  // namespace
+
+void add_commission(CLI::App& app) {
+  auto arguments = std::make_shared<CommissionArguments>();
+  CLI::App* command =
+      app.add_subcommand("commission", "From an unknown axis to one that follows better: record, model, cause, remedy");
+  command->add_option("AXIS", arguments->axis, "x, y, …")->required();
+  command->add_option("-o,--output", arguments->folder, "folder for every result")->required();
+  command->add_option("--sim", arguments->model,
+                      "simulate this machine instead of using a board: a model file, or one that comes with axistool");
+  command->add_option("--plant", arguments->plant, "program that is the machine, in lockstep (axis-plant/1)");
+  add_input(*command, "--drive", arguments->drive, "data sheet of the drive (default: that of --sim)");
+  command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s in all");
+  command->add_option("--from", arguments->from, "go on at this step");
+  command->add_option("--to", arguments->to, "end after this step");
+  command->add_option("--bandwidth", arguments->bandwidth_Hz, "of the closed loop, Hz")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--seed", arguments->seed, "of a simulated machine's noise")->capture_default_str();
+  command->add_flag("--save", arguments->save, "save the better parameters in the board's flash");
+  command
+      ->add_option("--device", arguments->device, "board: usb:SERIAL, sim, socket:PATH; default: the only one on USB")
+      ->envname("AXIS_DEVICE");
+  command->add_option("--patience", arguments->patience_s, "seconds that board or plant may take to answer")
+      ->envname("AXIS_PATIENCE")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str();
+  command->add_flag("-y,--yes", arguments->yes, "do not ask");
+  add_json_option(*command, arguments->json);
+  command->footer(footer());
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,87 @@
+// Compare, diagnose, improve: the axis stands disabled meanwhile.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "host/commission/steps.hpp"
+#include "host/compare/model_comparison.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
+#include "host/diagnose/diagnosis_report.hpp"
+#include "host/diagnose/improvement_report.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/model/model_file.hpp"
+
+namespace host {
+
+namespace {
+
+std::vector<std::string> paths(CommissionSession& session, const std::vector<std::string>& files) {
+  std::vector<std::string> all;
+  for (const std::string& file : files)
+    all.push_back(session.folder().require(file, file == "steps.csv"          ? "identify"
+                                                 : file.starts_with("ladder") ? "ladder"
+                                                                              : "validate"));
+  return all;
+}
+
+/// The axis may be left to itself while this lives.
+class Computing {
+ public:
+  explicit Computing(CommissionSession& session) : session_(session) { session_.talk().computes(true); }
+  ~Computing() { session_.talk().computes(false); }
+
+ private:
+  CommissionSession& session_;
+};
+
+std::string named(const DiagnosisVerdict& verdict) {
+  return fmt::format("{}{}{}. {}", status_name(verdict.status), verdict.effects.empty() ? "" : ": ",
+                     fmt::join(verdict.effects, verdict.status == Status::ambiguous ? " or " : " + "),
+                     verdict.explanation);
+}
+
+}  // namespace
+
+CommissionStepResult compare_first(CommissionSession& session) {
+  const Computing computing(session);
+  const sim::DriveDescription given = read_model(session.folder().require("model.toml", "friction"));
+  const Measurements measured = MeasurementGate(given).read(paths(session, kJudgingFiles));
+  const sim::DriveDescription model = with_measured_sensors(given, measured.training());
+  const RecordSet set = compare_on(measured.training_records(), model, kWindow_s);
+  const ModelComparison comparison = compare_model(model, measured, set, kWindow_s);
+  session.folder().write_json("comparison.json", comparison_json(comparison));
+  return {
+      {"comparison.json"},
+      fmt::format("On motions that it has not seen the model errs by {:.3g} times the floor.", comparison.combined)};
+}
+
+CommissionStepResult diagnose_machine(CommissionSession& session) {
+  const Computing computing(session);
+  const std::string path = session.folder().require("model.toml", "friction");
+  const sim::DriveDescription model = read_model(path);
+  const Measurements measured =
+      MeasurementGate(model).read(paths(session, kTrainingFiles), paths(session, kJudgingFiles));
+  const Diagnosis diagnosis = diagnose(model, measured);
+  session.folder().write_json("diagnosis.json", to_json(diagnosis));
+  write_diagnosis_report(diagnosis, path, session.folder().path("diagnosis.html"));
+  return {{"diagnosis.json", "diagnosis.html"}, named(diagnosis.verdict)};
+}
+
+CommissionStepResult improve_model(CommissionSession& session) {
+  const Computing computing(session);
+  const std::string path = session.folder().require("model.toml", "friction");
+  const sim::DriveDescription model = read_model(path);
+  const Measurements measured =
+      MeasurementGate(model).read(paths(session, kTrainingFiles), paths(session, kJudgingFiles));
+  const Improvement improvement = improve(model, measured);
+  const std::string output = session.folder().path("improved.toml");
+  write_model(improvement.model, output);
+  const nlohmann::json document = to_json(improvement, output);
+  session.folder().write_json("improvement.json", document);
+  write_improvement_report(improvement, {path, output}, session.folder().path("improvement.html"));
+  session.folder().put("verdict", session.folder().read_json("diagnosis.json").at("verdict"));
+  return {{"improved.toml", "improvement.json", "improvement.html"},
+          fmt::format("{:.3g} → {:.3g} times the floor; stopped because {}.", improvement.first.given_validate,
+                      improvement.ladder.back().validate, improvement.stopped_because)};
+}
+
+}  // namespace host

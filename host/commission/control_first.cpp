@@ -1,0 +1,18 @@
+// The first controller: pole placement on the identified drive, of modest bandwidth.
+#include <fmt/format.h>
+
+#include "host/commission/steps.hpp"
+#include "host/model/model_file.hpp"
+
+namespace host {
+
+CommissionStepResult control_first(CommissionSession& session) {
+  const sim::DriveDescription model = read_model(session.folder().require("identified.toml", "identify"));
+  session.plan_limits(model);
+  session.download(session.design(model, "first-params.toml"));
+  return {
+      {"first-params.toml"},
+      fmt::format("Poles at {:g} Hz; the parameters are on the board and not saved.", session.options().bandwidth_Hz)};
+}
+
+}  // namespace host

@@ -1,0 +1,70 @@
+// The folder of a commissioning: every step's result is a file in it, and commission.json tells which are there.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/device/excitation.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+struct CommissionStepText {
+  std::string_view name, does;
+};
+
+/// In their order.
+inline constexpr std::array<CommissionStepText, 12> kCommissionSteps{{
+    {"look", "rights and faults, standstill noise, direction and breakaway by a slow ramp of voltage"},
+    {"identify", "steps of voltage in open loop: inertia, viscous and Coulomb friction"},
+    {"control", "a first controller of modest bandwidth, downloaded but not saved"},
+    {"ladder", "jogs at a ladder of speeds, both ways"},
+    {"friction", "the friction curve"},
+    {"response", "the frequency response"},
+    {"validate", "further motions to learn from, and others to judge by, one of them twice"},
+    {"compare", "how the model fares on the motions that judge"},
+    {"diagnose", "which effect is missing"},
+    {"improve", "effects that earn their place, all parameters fitted again"},
+    {"compensate", "the same motion with the old and the new parameters; the better set stays"},
+    {"page", "one page"},
+}};
+
+/// The place of a step in kCommissionSteps. Throws Failure(usage) naming them.
+std::size_t commission_step(std::string_view name);
+
+/// What is kept between steps and between commands. Every change is on disk when its function returns.
+class CommissionFolder {
+ public:
+  /// Opens a folder, or makes it. Throws Failure: permission, bad_input (commission.json is none).
+  explicit CommissionFolder(std::string folder);
+
+  std::string path(std::string_view file) const;
+  bool has(std::string_view file) const;
+  /// Throws Failure(usage) naming the step that makes it.
+  std::string require(std::string_view file, std::string_view step) const;
+
+  bool is_done(std::size_t step) const;
+  std::optional<std::size_t> first_undone() const;
+  void begin_at(std::size_t step);  ///< this one and all after it are to be done
+  /// `said`: a sentence for the page.
+  void finish(std::size_t step, const std::vector<std::string>& files, const std::string& said);
+
+  /// axis-commission/1, with whatever the steps put beside the fields that are fixed.
+  const nlohmann::json& document() const { return document_; }
+  void put(const std::string& key, const nlohmann::json& value);
+
+  nlohmann::json read_json(std::string_view file) const;
+  void write_json(std::string_view file, const nlohmann::json& content) const;
+
+ private:
+  void keep() const;
+
+  std::string folder_;
+  nlohmann::json document_;
+};
+
+}  // namespace host

@@ -1,0 +1,189 @@
+// One page: error before, cause, error after, floor; then what it rests on.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "host/commission/following.hpp"
+#include "host/commission/steps.hpp"
+#include "host/model/model_file.hpp"
+#include "host/parameters/compensation_parameters.hpp"
+#include "host/record/read_record.hpp"
+#include "host/report/binned_curve.hpp"
+#include "host/report/report.hpp"
+#include "host/report/text_format.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+std::string title_of(const std::string& kind) {
+  const sim::EffectInfo* info = sim::find_effect(kind);
+  return info == nullptr ? kind : std::string(info->title);
+}
+
+struct Page {
+  CommissionSession& session;
+  const nlohmann::json& state;
+  nlohmann::json errors, improvement, diagnosis;
+
+  double before() const { return errors["before"]["rms_um"]; }
+  bool has_after() const { return !errors["after"].is_null(); }
+  double after() const { return has_after() ? errors["after"]["rms_um"].get<double>() : before(); }
+  double floor() const { return errors["floor_um"]; }
+  bool is_new() const { return state.value("kept", "") == "new"; }
+
+  /// What the improved model has and the first one lacked.
+  std::vector<std::string> added() const {
+    std::vector<std::string> kinds;
+    for (const auto& rung : improvement["ladder"])
+      for (const auto& kind : rung["added"]) kinds.push_back(kind);
+    return kinds;
+  }
+
+  std::string cause() const {
+    std::vector<std::string> titles;
+    for (const std::string& kind : added()) titles.push_back(title_of(kind));
+    if (!titles.empty()) return fmt::format("{}", fmt::join(titles, " and "));
+    const auto& verdict = diagnosis["verdict"];
+    const std::string status = verdict["status"];
+    if (status == "adequate") return "nothing is missing in the model";
+    if (status == "parameters")
+      return fmt::format("values were off: {}", fmt::join(verdict["parameters"].get<std::vector<std::string>>(), ", "));
+    if (status == "ambiguous")
+      return fmt::format("one of {}", fmt::join(verdict["effects"].get<std::vector<std::string>>(), ", "));
+    return "no effect of the catalogue";
+  }
+};
+
+Verdict verdict_of(const Page& page) {
+  Verdict verdict;
+  verdict.tone = page.is_new() ? Tone::good : Tone::neutral;
+  verdict.label = page.is_new() ? "better" : "as it was";
+  verdict.headline =
+      fmt::format("Following error: {} µm before, {}, floor {}. Cause: {}.", format_value(page.before()),
+                  page.has_after() ? format_value(page.after()) + " after" : "stopped by the new parameters",
+                  format_value(page.floor()), page.cause());
+  verdict.sentences.push_back(page.diagnosis["verdict"]["explanation"]);
+  verdict.sentences.push_back(
+      fmt::format("The {} parameters are on the board{}.", page.is_new() ? "new" : "old",
+                  page.state.value("saved", false) ? " and saved" : "; they are not saved yet"));
+  for (const auto& kind : page.errors["by_hand"]) {
+    const std::string name = kind.get<std::string>();
+    const sim::EffectInfo* info = sim::find_effect(name.substr(0, name.find_first_of(" :")));
+    verdict.sentences.push_back(fmt::format("By hand: {}: {}.", info != nullptr ? std::string(info->title) : name,
+                                            info != nullptr ? std::string(info->remedy) : "no parameter mends it"));
+  }
+  if (!page.state.value("saved", false)) verdict.command = "axistool save";
+  return verdict;
+}
+
+BarChart errors_chart(const Page& page) {
+  BarChart chart;
+  chart.title = "The axis's own following error, µm RMS";
+  chart.caption =
+      "The same jogs each time. Floor: what the motion, made twice, does not repeat; no parameter mends that.";
+  chart.unit = "µm";
+  chart.series = {{"RMS", SeriesRole::measured}};
+  chart.rows.push_back({"before", {page.before()}, ""});
+  if (page.has_after()) chart.rows.push_back({"after", {page.after()}, page.is_new() ? "" : "not kept"});
+  chart.rows.push_back({"floor", {page.floor()}, ""});
+  return chart;
+}
+
+Facts model_facts(const Page& page) {
+  Facts facts;
+  facts.title = "The model behind it, error over floor (1 is perfect)";
+  for (const auto& rung : page.improvement["ladder"]) {
+    const auto added = rung["added"].get<std::vector<std::string>>();
+    facts.items.emplace_back(added.empty() ? "without" : fmt::format("with {}", fmt::join(added, " + ")),
+                             format_value(rung["validate"].get<double>()));
+  }
+  return facts;
+}
+
+std::vector<double> travel_of(const Record& record) {
+  const MovingRows rows = moving_rows(record);
+  return {record.x.begin() + static_cast<std::ptrdiff_t>(rows.begin),
+          record.x.begin() + static_cast<std::ptrdiff_t>(rows.end)};
+}
+
+void add_pictures(Report& report, const Page& page, const std::vector<std::pair<const char*, const char*>>& runs) {
+  const sim::DataSheet& data = page.session.options().sheet.data;
+  ScatterPlot along;
+  along.title = "Following error along the travel";
+  along.caption = "Mean in bins of the travel, with the spread from a tenth to nine tenths.";
+  along.x = {"travel", data.kind == sim::DriveKind::rotary ? "mm" : "m"};
+  along.y = {"reference less encoder", "µm"};
+  TimePlot over;
+  over.title = "Following error over time";
+  TracePanel panel{"reference less encoder", "µm", {}};
+  for (const auto& [file, name] : runs) {
+    const Record record = read_record(page.session.folder().path(file));
+    std::vector<double> error = following_um(record, data);
+    const SeriesRole role = std::string_view(name) == "before" ? SeriesRole::before : SeriesRole::after;
+    constexpr std::size_t kBins = 200;
+    along.series.push_back(curve_series(name, role, binned_curve(travel_of(record), error, kBins)));
+    if (over.t_s.empty())
+      for (std::size_t k = 0; k < error.size(); ++k)
+        over.t_s.push_back(static_cast<double>(k) * record.sample_period_s);
+    error.resize(over.t_s.size(), std::nan(""));
+    panel.traces.push_back({name, role, std::move(error)});
+  }
+  over.panels.push_back(std::move(panel));
+  report.add(std::move(along));
+  report.add(std::move(over));
+}
+
+Table steps_table(const Page& page) {
+  Table table;
+  table.title = "Steps and their files";
+  table.headings = {"step", "what was found", "files in the folder"};
+  for (const auto& step : page.state["steps"])
+    if (step.value("done", false))
+      table.rows.push_back({step["name"], step.value("said", ""),
+                            fmt::format("{}", fmt::join(step["files"].get<std::vector<std::string>>(), ", "))});
+  return table;
+}
+
+Table pages_table(const Page& page) {
+  Table table;
+  table.title = "In detail";
+  table.headings = {"page", "what it shows"};
+  for (const auto& [file, shows] :
+       {std::pair{"improvement.html", "the residual before and after, along speed, travel and time"},
+        {"diagnosis.html", "every effect that was tried, and how much each explains"}}) {
+    if (!page.session.folder().has(file)) continue;
+    table.rows.push_back({file, shows});
+    table.links.emplace_back(file);
+  }
+  return table;
+}
+
+}  // namespace
+
+CommissionStepResult write_page(CommissionSession& session) {
+  CommissionFolder& folder = session.folder();
+  folder.require("errors.json", "compensate");
+  const Page page{session, folder.document(), folder.read_json("errors.json"), folder.read_json("improvement.json"),
+                  folder.read_json("diagnosis.json")};
+  Report report("Axis " + session.options().axis_name,
+                session.options().sheet.name.empty() ? "commissioning" : session.options().sheet.name);
+  report.verdict(verdict_of(page));
+  report.section("Before and after, on the machine");
+  report.add(errors_chart(page));
+  report.add(model_facts(page));
+  std::vector<std::pair<const char*, const char*>> runs{{"before.csv", "before"}};
+  if (page.has_after()) runs.emplace_back("after.csv", "after");
+  add_pictures(report, page, runs);
+  report.section("How it was found");
+  report.add(pages_table(page));
+  report.add(steps_table(page));
+  report.write(folder.path("page.html"));
+  folder.put("page", folder.path("page.html"));
+  return {{"page.html"}, "Written."};
+}
+
+}  // namespace host

@@ -1,0 +1,249 @@
+#include "host/commission/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/app/parameters/axis_values.hpp"
+#include "firmware/core/excitation/excitation_run.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/atomic_file.hpp"
+#include "host/device/motion.hpp"
+#include "host/exit_codes.hpp"
+#include "host/identify/friction_law.hpp"
+#include "host/parameters/board_parameters.hpp"
+#include "host/parameters/compensation_parameters.hpp"
+#include "host/parameters/data_sheet_values.hpp"
+#include "host/parameters/parameter_file.hpp"
+#include "host/parameters/parameter_names.hpp"
+#include "host/record/read_record.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kRideMargin =
+    1.3;  // of a commanded speed to the box's, which the board enforces (excite asks for 1.25)
+
+/// An axis without current rolls on for a moment, and the board enables only one that stands.
+constexpr std::chrono::milliseconds kToRest{500};
+
+}  // namespace
+
+CommissionSession::CommissionSession(BoardClient& board, CommissionOptions options, CommissionTalk talk,
+                                     CommissionFolder& folder)
+    : board_(board), options_(std::move(options)), talk_(std::move(talk)), folder_(folder), origin_(counts()) {
+  motion_s_ = folder.document().value("motion_s", 0.0);
+}
+
+std::int64_t CommissionSession::counts() { return board_.status().axis.at(options_.axis).counts(); }
+
+double CommissionSession::steady_speed() const {
+  // A second of it, and the ways of its beginning and end, have to fit the travel.
+  return std::min(options_.box.speed / kRideMargin, 0.6 * options_.box.travel);
+}
+
+double CommissionSession::top_speed() const {
+  // A stop may take a quarter of the travel (excitation_design.cpp), and something is left for its jerk.
+  const double acceleration = folder_.document().at("limits").at("acceleration");
+  return std::min(options_.box.speed / kRideMargin, 0.8 * std::sqrt(acceleration * options_.box.travel / 2.0));
+}
+
+void CommissionSession::ask(const std::string& what) {
+  const ExcitationLimits& box = options_.box;
+  const char* unit = options_.sheet.data.kind == sim::DriveKind::rotary ? "mm" : "m";
+  const std::string question = fmt::format(
+      "{} Axis {} moves, at most {:g} {} to either side of where it stood, {:g} {}/s, {:g} V; {:.0f} s of "
+      "{:g} s of motion are left. Go on?",
+      what, options_.axis_name, box.travel / 2.0, unit, box.speed, unit, box.volts, box.time_s - motion_s_, box.time_s);
+  if (!talk_.consents(question)) throw Failure(ExitCode::refused, "not done, as you wished: " + what);
+}
+
+ExcitationScale CommissionSession::scale(const firmware::ParameterValues& values) const {
+  const firmware::AxisValues v = values.axis(options_.axis);
+  ExcitationScale scale;
+  scale.kind = options_.sheet.data.kind;
+  scale.encoder_resolution = options_.sheet.data.encoder_resolution;
+  scale.dac_resolution_V = options_.sheet.data.dac_resolution_V;
+  scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
+  scale.lead = options_.sheet.data.lead;
+  scale.has_tachometer = v.get<"tachometer.fitted">();
+  if (v.get<"drive.fitted">()) {
+    scale.acceleration = static_cast<double>(v.get<"limits.acceleration">());
+    scale.jerk = static_cast<double>(v.get<"limits.jerk">());
+  }
+  return scale;
+}
+
+void CommissionSession::spend(std::chrono::steady_clock::time_point begin) {
+  motion_s_ += std::chrono::duration<double>(board_.now() - begin).count();
+  folder_.put("motion_s", motion_s_);
+}
+
+void CommissionSession::go_back() {
+  const std::int64_t away = counts() - origin_;
+  if (away == 0) return;
+  move_and_wait(board_, options_.axis, -away, true, talk_.stop);
+  if (talk_.stop()) throw Failure(ExitCode::refused, "interrupted");
+}
+
+Record CommissionSession::record(const CommissionRun& run) {
+  const auto begin = board_.now();
+  const firmware::ParameterValues values = board_.read_values();
+  const ExcitationScale units = scale(values);
+  ExcitationLimits box = options_.box;
+  box.time_s = run.time_s;
+  if (motion_s_ + run.time_s > options_.box.time_s)
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("{} would take {:g} s, and of the box's {:g} s {:.0f} are left: a longer --box time=… goes "
+                    "on from here",
+                    run.file, run.time_s, options_.box.time_s, options_.box.time_s - motion_s_));
+  const bool can_go_back = values.axis(options_.axis).get<"drive.fitted">();
+  if (can_go_back) {
+    const auto state = static_cast<firmware::SupervisorState>(board_.status().axis.at(options_.axis).state);
+    if (state != firmware::SupervisorState::enabled) {
+      board_.wait(kToRest);
+      enable_and_wait(board_, mask());
+    }
+    go_back();
+  }
+  const double away = static_cast<double>(std::abs(counts() - origin_)) * units.encoder_resolution;
+  box.travel -= 2.0 * away;
+  if (box.travel < options_.box.travel / 4.0)
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("the axis stands {:g} from where it began, near the end of the box: move it back by hand, "
+                    "or widen travel",
+                    away));
+  const Excitation excitation = design_excitation(run.kind, run.numbers, box, units, run.loop);
+  const bool is_open = excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
+  if (is_open && can_go_back) disable();
+  const ExcitationOutcome outcome = run_excitation(board_, options_.axis, excitation, values, units, talk_.stop);
+  spend(begin);
+  Record record = capture_record(outcome.capture, outcome.settings, options_.axis_name);
+  record.header["source"] = "axistool commission";
+  record.header.insert(excitation.header.begin(), excitation.header.end());
+  record.header["excitation_ended"] = std::string(end_name(outcome.state));
+  write_record(record, folder_.path(run.file));
+  require_completed(outcome, run.file);
+  record.path = folder_.path(run.file);
+  return record;
+}
+
+void CommissionSession::require_completed(const ExcitationOutcome& outcome, const std::string& file) {
+  using firmware::ExcitationEnd;
+  const auto end = static_cast<ExcitationEnd>(outcome.state.end);
+  const std::string kept = folder_.path(file) + " holds what there is";
+  if (end == ExcitationEnd::completed && outcome.capture.lost == 0) return;
+  if (end == ExcitationEnd::completed)
+    throw Failure(ExitCode::protocol, fmt::format("{} rows were lost on the way; `axistool doctor` looks at the way to "
+                                                  "the board ({})",
+                                                  outcome.capture.lost, kept));
+  if (end == ExcitationEnd::fault || end == ExcitationEnd::refused) require_no_fault(board_.status(), options_.axis);
+  if (end == ExcitationEnd::asked) throw Failure(ExitCode::refused, "interrupted");
+  if (end == ExcitationEnd::blind)
+    throw Failure(ExitCode::refused,
+                  fmt::format("encoder and tachometer show different motion: one of them is reversed, dead, or not on "
+                              "this axis; mend that first ({})",
+                              kept));
+  if (end == ExcitationEnd::no_motion)
+    throw Failure(ExitCode::refused,
+                  fmt::format("nothing moved under the largest command: free the axis, look at motor, "
+                              "amplifier, brake and encoder, or raise the volts of the box ({})",
+                              kept));
+  throw Failure(ExitCode::refused, fmt::format("the axis {} and was stopped: less volts, or a wider box ({})",
+                                               end_name(outcome.state), kept));
+}
+
+firmware::ParameterValues CommissionSession::with_file(const std::string& path) {
+  firmware::ParameterValues values = board_.read_values();
+  for (const Assignment& one : read_parameter_file(path)) put(values, one);
+  return values;
+}
+
+void CommissionSession::download(const firmware::ParameterValues& values) {
+  require_fitting_set(values);
+  if (values == board_.read_values()) return;
+  disable();
+  board_.write_values(values);
+}
+
+void CommissionSession::plan_limits(const sim::DriveDescription& model) {
+  const AxisDesign made = design_axis(model, {});
+  const FrictionLaw friction = friction_law(model);
+  const double dry = std::max(friction.effort(1e-3 * options_.box.speed), -friction.effort(-1e-3 * options_.box.speed));
+  // Half of what the box's volts leave beside friction: the other half is the feedback's.
+  const double available =
+      0.5 * model.data.lead * (made.axis.effort_per_volt * options_.box.volts - dry) / made.axis.inertia;
+  if (!(available > 0.0))
+    throw Failure(ExitCode::refused, "friction takes all of the box's volts: nothing is left to accelerate with");
+  const ReferenceLimits usual = ReferenceLimits::usual_for(model.data.kind);
+  const double acceleration = std::min(usual.acceleration, available);
+  folder_.put("limits", {{"velocity", std::min(usual.velocity, options_.box.speed / kRideMargin)},
+                         {"acceleration", acceleration},
+                         {"jerk", acceleration * usual.jerk / usual.acceleration}});
+}
+
+firmware::ParameterValues CommissionSession::with_planned_limits(firmware::ParameterValues values) const {
+  for (const auto& [name, value] : folder_.document().at("limits").items())
+    values.set(require_place(fmt::format("{}.limits.{}", options_.axis_name, name)), value.get<float>());
+  return values;
+}
+
+firmware::ParameterValues CommissionSession::design(const sim::DriveDescription& model, const std::string& file) {
+  DesignOptions wanted;
+  wanted.bandwidth_Hz = options_.bandwidth_Hz;
+  const std::string text = board_parameters_toml(model, design_axis(model, wanted)) + compensation_toml(model);
+  firmware::ParameterValues values = board_.read_values();
+  for (const Assignment& one : parse_parameter_text(text, file, options_.axis_name)) put(values, one);
+  values = with_planned_limits(values);
+  require_fitting_set(values);
+  std::string kept = fmt::format("format = \"axis-params/1\"\n\n[{}]\n", options_.axis_name);
+  for (std::size_t place = 0; place < values.size(); ++place) {
+    const std::string name = full_name(place);
+    if (name.starts_with(options_.axis_name + "."))
+      kept += fmt::format("{} = {}\n", name.substr(options_.axis_name.size() + 1),
+                          value_text(info_at(place), values.at(place)));
+  }
+  write_file_atomically(folder_.path(file), kept);
+  return values;
+}
+
+void CommissionSession::give_scales() {
+  const sim::DataSheet& sheet = options_.sheet.data;
+  const std::uint8_t axis = options_.axis;
+  const firmware::ParameterValues before = board_.read_values();
+  firmware::ParameterValues values = with_data_sheet(before, axis, sheet);
+  if (before.axis(axis).get<"drive.fitted">()) {
+    for (const char* name : {"drive.lead", "drive.encoder_resolution", "drive.dac_resolution"}) {
+      const std::size_t place = require_place(options_.axis_name + "." + name);
+      if (std::abs(values.at(place) - before.at(place)) > 1e-5F * std::abs(before.at(place)))
+        throw Failure(ExitCode::refused,
+                      fmt::format("{} is {} on the board and {} in the data sheet: mend the one that is wrong first",
+                                  full_name(place), before.at(place), values.at(place)));
+    }
+    return;
+  }
+  values.set(require_place("control.rate"), static_cast<float>(std::round(1.0 / sheet.sample_period_s)));
+  download(values);
+}
+
+void CommissionSession::disable() {
+  const auto state = static_cast<firmware::SupervisorState>(board_.status().axis.at(options_.axis).state);
+  if (firmware::outputs_are_on(state)) disable_and_wait(board_, mask());
+}
+
+void CommissionSession::leave_standing() noexcept {
+  try {
+    board_.stop_excitation();
+  } catch (const std::exception&) {  // none ran, or the board has gone
+  }
+  try {
+    disable();
+  } catch (const std::exception&) {  // gone: its own watch on the host stops the axis
+  }
+}
+
+}  // namespace host

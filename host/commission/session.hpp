@@ -1,0 +1,103 @@
+// What the steps of a commissioning share: board, box, folder, user; and the motions that they make.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/commission/folder.hpp"
+#include "host/device/board_client.hpp"
+#include "host/device/excitation.hpp"
+#include "host/identify/axis_design.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+struct CommissionOptions {
+  std::uint8_t axis = 0;
+  std::string axis_name;        ///< x, y, …
+  sim::DriveDescription sheet;  ///< data sheet; effects, if any, give the form of the base and are not believed
+  /// Travel about where the axis stands when the command begins; volts in open loop, and what motions in closed loop
+  /// are planned for; time of all motion together.
+  ExcitationLimits box;
+  double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of resonances
+  bool save = false;           ///< the better set, in the board's flash
+};
+
+/// The user's side.
+struct CommissionTalk {
+  std::function<bool(const std::string&)> consents = [](const std::string&) { return true; };
+  std::function<bool()> stop = [] { return false; };
+  std::function<void(const std::string&)> tell = [](const std::string&) {};
+  /// Before and after work during which the axis stands disabled and `stop` is not asked.
+  std::function<void(bool)> computes = [](bool) {};
+};
+
+/// A motion and where its record goes.
+struct CommissionRun {
+  std::string file;
+  std::string kind;  ///< of `axistool excite`
+  ExcitationNumbers numbers;
+  std::string loop;  ///< "", "reference", "output"
+  double time_s = 0.0;
+};
+
+/// Functions throw what BoardClient throws, and Failure(refused) when the user stops.
+class CommissionSession {
+ public:
+  CommissionSession(BoardClient& board, CommissionOptions options, CommissionTalk talk, CommissionFolder& folder);
+
+  BoardClient& board() { return board_; }
+  const CommissionOptions& options() const { return options_; }
+  const CommissionTalk& talk() const { return talk_; }
+  CommissionFolder& folder() { return folder_; }
+  std::uint8_t mask() const { return static_cast<std::uint8_t>(1u << options_.axis); }
+
+  /// Throws Failure(refused) where the user does not want the motions of this step.
+  void ask(const std::string& what);
+
+  /// Makes the motion within what is left of the box, and writes its record however it ended. An axis in closed loop
+  /// goes back to where the command began first. Throws Failure(refused) for a motion that did not end by itself,
+  /// saying why and what to do.
+  Record record(const CommissionRun& run);
+
+  /// Puts the data sheet's scales and its control rate on an axis that nobody has fitted. Throws Failure(refused) where
+  /// a fitted axis has other scales than the data sheet.
+  void give_scales();
+
+  /// The board's parameters with those of a file.
+  firmware::ParameterValues with_file(const std::string& path);
+  /// Downloads a set, unless the board has it, with the axis disabled.
+  void download(const firmware::ParameterValues& values);
+  /// Writes the file of a design for `model`, and returns its parameters on this board, with the planned limits.
+  firmware::ParameterValues design(const sim::DriveDescription& model, const std::string& file);
+  /// The same for every set, so that motions are the same: decided from `model` by what the box leaves, and kept in the
+  /// folder. Throws Failure(refused) where friction takes all of the box's volts.
+  void plan_limits(const sim::DriveDescription& model);
+  firmware::ParameterValues with_planned_limits(firmware::ParameterValues values) const;
+
+  /// The axis stands and is disabled; whatever fails meanwhile is not said.
+  void leave_standing() noexcept;
+  void disable();
+
+  double motion_s() const { return motion_s_; }
+  /// Speeds that motions of this box may have, mm/s (m/s): held for a second; reached at all.
+  double steady_speed() const;
+  double top_speed() const;
+
+ private:
+  ExcitationScale scale(const firmware::ParameterValues& values) const;
+  std::int64_t counts();
+  void go_back();
+  void require_completed(const ExcitationOutcome& outcome, const std::string& file);
+  void spend(std::chrono::steady_clock::time_point begin);
+
+  BoardClient& board_;
+  CommissionOptions options_;
+  CommissionTalk talk_;
+  CommissionFolder& folder_;
+  std::int64_t origin_;  ///< counts when the command began
+  double motion_s_ = 0.0;
+};
+
+}  // namespace host

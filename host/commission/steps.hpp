@@ -1,0 +1,59 @@
+// The steps of a commissioning, a file each. What one leaves to the next are files of the folder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/commission/session.hpp"
+
+namespace host {
+
+struct CommissionStepResult {
+  std::vector<std::string> files;  ///< in the folder
+  std::string said;                ///< what was found, a sentence or two
+};
+
+/// Makes before-params.toml (the board as it was), standstill.csv, pulse.csv, look.json. Throws Failure(refused) where
+/// feedback and motor disagree.
+CommissionStepResult look(CommissionSession& session);
+
+/// Makes steps.csv, identified.toml, identification.json.
+CommissionStepResult identify_first(CommissionSession& session);
+
+/// Makes first-params.toml, and downloads it.
+CommissionStepResult control_first(CommissionSession& session);
+
+/// Makes ladder-slow.csv, ladder-fast.csv.
+CommissionStepResult climb_ladder(CommissionSession& session);
+
+/// Makes model.toml, of which the jogs decide the friction where they can.
+CommissionStepResult find_friction(CommissionSession& session);
+
+CommissionStepResult measure_response(CommissionSession& session);
+
+/// Makes the other records that train (kTrainingFiles) and those that judge (kJudgingFiles).
+CommissionStepResult record_validation(CommissionSession& session);
+
+/// Makes comparison.json.
+CommissionStepResult compare_first(CommissionSession& session);
+
+/// Makes diagnosis.json, diagnosis.html.
+CommissionStepResult diagnose_machine(CommissionSession& session);
+
+/// Makes improved.toml, improvement.json, improvement.html.
+CommissionStepResult improve_model(CommissionSession& session);
+
+/// Makes old-params.toml, new-params.toml, before.csv, after.csv, errors.json; leaves the better set on the board.
+CommissionStepResult compensate(CommissionSession& session);
+
+/// Makes page.html.
+CommissionStepResult write_page(CommissionSession& session);
+
+inline const std::vector<std::string> kTrainingFiles{"steps.csv", "ladder-slow.csv", "ladder-fast.csv",
+                                                     "sweep.csv", "reversals.csv",   "dwell.csv"};
+inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-again.csv", "judge-steps.csv"};
+
+/// The motion that judges a controller; the same each time.
+CommissionRun judging_jogs(const CommissionSession& session, const std::string& file);
+
+}  // namespace host

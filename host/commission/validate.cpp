@@ -1,0 +1,44 @@
+// Motions beside steps and ladder: some to learn from, others that no fit ever sees, and one of those twice.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "host/commission/steps.hpp"
+
+namespace host {
+
+CommissionRun judging_jogs(const CommissionSession& session, const std::string& file) {
+  constexpr double kHold_s = 0.8;  // or less, where the box ends
+  std::vector<double> speeds;
+  for (const double share : {0.01, 0.05, 0.18, 0.5, 0.95}) speeds.push_back(share * session.top_speed());
+  return {file, "ladder", {speeds, {{"hold", kHold_s}}}, "", 2.5 * kHold_s * static_cast<double>(speeds.size())};
+}
+
+CommissionStepResult record_validation(CommissionSession& session) {
+  session.ask("Validate: strokes with a multisine, reversals, rests, jogs and steps of other sizes.");
+  session.download(session.with_file(session.folder().require("first-params.toml", "control")));
+  const ExcitationLimits& box = session.options().box;
+  const double top = std::min(session.steady_speed(), session.top_speed()),
+               count = session.options().sheet.data.encoder_resolution;
+  // Enough to move, too little to turn the ride round.
+  session.record({"sweep.csv",
+                  "multisine",
+                  {{}, {{"amplitude", 0.2 * box.volts}, {"from", 2.0}, {"to", 80.0}, {"ride", 0.2 * top}}},
+                  "output",
+                  8.0});
+  const double stroke = std::max(box.travel / 100.0, 100.0 * count);
+  session.record({"reversals.csv", "reversals", {{}, {{"amplitude", stroke}, {"speed", 3.0 * stroke}}}, "", 5.0});
+  session.record(
+      {"dwell.csv", "dwell", {{0.05, 0.15, 0.4, 1.0, 2.0}, {{"speed", 0.1 * top}, {"hold", 0.25}}}, "", 6.0});
+  session.record(judging_jogs(session, "judge-jogs.csv"));
+  session.record(judging_jogs(session, "judge-again.csv"));
+  std::vector<double> levels;
+  for (const double share : {0.85, 0.6, 0.45}) levels.insert(levels.end(), {-share * box.volts, share * box.volts});
+  session.record({"judge-steps.csv", "steps", {levels, {{"hold", 0.35}}}, "", 6.0});
+  session.disable();
+  std::vector<std::string> files(kTrainingFiles.begin() + 3, kTrainingFiles.end());
+  files.insert(files.end(), kJudgingFiles.begin(), kJudgingFiles.end());
+  return {files, "Three motions to learn from, three to judge by; the jogs among these were made twice."};
+}
+
+}  // namespace host

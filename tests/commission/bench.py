@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""commission-bench: `axistool commission` on made machines whose hidden effects it is not told.
+
+bench.py AXISTOOL MACHINES.json [--only NAME …] [--jobs N] [--keep FOLDER] [--check]
+
+A line a machine: what it hides and what was found; the following error before and after, and what a controller that
+is told the truth reaches with the same motion on the same machine; minutes of motion and seconds of computing.
+"""
+import argparse
+import concurrent.futures
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+MOST_OVER_TRUTH, MOST_MOTION_S, MOST_COMPUTING_S = 1.5, 360.0, 180.0
+
+
+def toml(value):
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+def effect(entry):
+    return "[[effect]]\n" + "".join(f"{key} = {toml(value)}\n" for key, value in entry.items())
+
+
+def data_sheet(base, torque):
+    drive = dict(base["drive"])
+    metres = drive["kind"] == "linear"
+    drive["force_constant_N_per_V" if metres else "torque_constant_Nm_per_A"] *= torque
+    text = 'format = "axis-model/1"\nname = "x"\n[drive]\n' + "".join(f"{k} = {toml(v)}\n" for k, v in drive.items())
+    text += "sample_period_s = 0.001\n[drive.dac]\nresolution_V = 0.00030517578125\nlimit_V = 10.0\n[drive.encoder]\n"
+    text += f"resolution_{'m' if metres else 'mm'} = {base['encoder']}\n"
+    return text + (f"[drive.tach]\nnoise_variance_rad2_s2 = {base['tach']}\n" if "tach" in base else "")
+
+
+def machine(base, hidden):
+    metres = base["drive"]["kind"] == "linear"
+    force, speed = ("N", "m_s") if metres else ("Nm", "rad_s")
+    inertia, viscous = ("M_kg", "B_N_s_per_m") if metres else ("J_kg_m2", "B_Nm_s_per_rad")
+    dry, static, omega = base["coulomb"], base["static"], base["omega"]
+    effects = [
+        {"kind": "inertia", inertia: base[inertia]},
+        {"kind": "viscous", viscous: base[viscous]},
+        {"kind": "coulomb", f"positive_{force}": dry[0], f"negative_{force}": -dry[1]},
+        {"kind": "stribeck", f"static_positive_{force}": static[0], f"static_negative_{force}": -static[1],
+         f"omega1_positive_{speed}": omega[0], f"omega1_negative_{speed}": -omega[0],
+         f"omega2_positive_{speed}": omega[1], f"omega2_negative_{speed}": -omega[1]},
+    ]
+    return data_sheet(base, 1.0) + "".join(effect(entry) for entry in effects + hidden)
+
+
+def run(axistool, folder, arguments):
+    began = time.process_time(), time.monotonic()
+    done = subprocess.run([axistool, "commission", "x", "-o", folder, "--yes", *arguments], capture_output=True, text=True)
+    return done, time.monotonic() - began[1]
+
+
+def commission(axistool, base, entry, folder):
+    truth, sheet, out = folder / "truth.toml", folder / "sheet.toml", folder / "found"
+    truth.write_text(machine(base, entry["hides"]))
+    sheet.write_text(data_sheet(base, entry["sheet"]["torque"]))
+    common = ["--sim", str(truth), "--seed", str(entry["seed"]), "--box", base["box"]]
+    done, took = run(axistool, str(out), [*common, "--drive", str(sheet)])
+    result = {"name": entry["name"], "hides": [e["kind"] for e in entry["hides"]], "computing_s": took}
+    if done.returncode != 0:
+        return {**result, "failed": (done.stderr or done.stdout).strip().splitlines()[-1]}
+    state = json.loads((out / "commission.json").read_text())
+    ladder = json.loads((out / "improvement.json").read_text())["ladder"]
+    # The same step with the truth in place of the model: the data sheet is then the truth's as well.
+    told = folder / "told"
+    shutil.copytree(out, told)
+    shutil.copy(truth, told / "improved.toml")
+    other, _ = run(axistool, str(told), [*common, "--drive", str(truth), "--from", "compensate", "--to", "compensate"])
+    best = json.loads((told / "commission.json").read_text())["following_error_um"] if other.returncode == 0 else {}
+    return {**result, "verdict": state["verdict"], "added": [k for rung in ladder for k in rung["added"]],
+            "error": state["following_error_um"], "truth_um": best.get("after"), "kept": state["kept"],
+            "motion_s": state["motion_s"]}
+
+
+def answer(result):
+    """What the tool says, and whether that is right: the hidden effects named, or an honest group that holds them."""
+    hidden, verdict = set(result["hides"]), result["verdict"]
+    if result["added"]:
+        found = set(result["added"])
+        return " + ".join(sorted(found)), found == hidden
+    groups = [set(group) for group in verdict["alternatives"]]
+    if verdict["status"] == "ambiguous":
+        return " or ".join(sorted(verdict["effects"])), any(hidden & group for group in groups) or bool(
+            hidden & set(verdict["effects"]))
+    return verdict["status"], not hidden and verdict["status"] in ("adequate", "parameters")
+
+
+def judge(result):
+    if "failed" in result:
+        return f"{result['name']:<26} FAILED: {result['failed']}", False
+    said, right = answer(result)
+    error = result["error"]
+    reached = min(error["before"], error["after"] if error["after"] is not None else error["before"])
+    share = reached / result["truth_um"] if result["truth_um"] else float("nan")
+    good = right and share <= MOST_OVER_TRUTH and result["motion_s"] <= MOST_MOTION_S and result["computing_s"] <= MOST_COMPUTING_S
+    after = "stopped" if error["after"] is None else f"{error['after']:.2f}"
+    return (f"{result['name']:<26} {'right' if right else 'WRONG':<6} {said:<46} {error['before']:8.2f} {after:>8} "
+            f"{result['truth_um'] or float('nan'):8.2f} {share:6.2f} {error['floor']:6.2f} {result['motion_s'] / 60:6.1f} {result['computing_s']:6.0f}"), good
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("axistool")
+    parser.add_argument("machines")
+    parser.add_argument("--only", nargs="*")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--keep")
+    parser.add_argument("--check", action="store_true", help="fail unless every machine is right")
+    options = parser.parse_args()
+    book = json.loads(pathlib.Path(options.machines).read_text())
+    entries = [e for e in book["machines"] if not options.only or e["name"] in options.only]
+    folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="commission-bench-"))
+    print(f"{'machine':<26} {'':<6} {'found':<46} {'before':>8} {'after':>8} {'truth':>8} {'ratio':>6} {'floor':>6} {'min':>6} {'s':>6}")
+
+    def one(entry):
+        place = folder / entry["name"]
+        shutil.rmtree(place, ignore_errors=True)
+        place.mkdir(parents=True)
+        return commission(options.axistool, book["bases"][entry["base"]], entry, place)
+
+    good = 0
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for result in pool.map(one, entries):
+            line, is_good = judge(result)
+            print(line, flush=True)
+            good += is_good
+    print(f"{good} of {len(entries)}: the right effect or an honest group, following error at most {MOST_OVER_TRUTH} times "
+          f"that of the true parameters, at most {MOST_MOTION_S / 60:.0f} minutes of motion and {MOST_COMPUTING_S:.0f} s of computing")
+    if not options.keep:
+        shutil.rmtree(folder)
+    return 0 if good == len(entries) or not options.check else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
