@@ -1,10 +1,7 @@
 // axistool excite: an experiment on an axis, within a box that the board enforces -> record.
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <memory>
-#include <thread>
 
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
@@ -12,6 +9,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/axistool/motion_consent.hpp"
 #include "host/device/excitation.hpp"
 #include "host/device/motion.hpp"
 #include "host/model/model_file.hpp"
@@ -29,8 +27,6 @@ struct ExciteArguments : DeviceArguments {
   int countdown_s = 3;
   bool linear = false, as_set = false;
 };
-
-std::atomic<bool> interrupted = false;
 
 /// The board's parameters, with the data sheet's where one is given.
 firmware::ParameterValues scaled_values(const ExciteArguments& arguments, host::BoardClient& board, std::uint8_t axis,
@@ -66,22 +62,6 @@ host::ExcitationScale scale_of(const ExciteArguments& arguments, const firmware:
     scale.jerk = static_cast<double>(v.get<"limits.jerk">());
   }
   return scale;
-}
-
-std::string box_text(const host::ExcitationLimits& box, sim::DriveKind kind) {
-  const char* unit = kind == sim::DriveKind::rotary ? "mm" : "m";
-  return fmt::format("{:g} {} of travel ({:g} to either side of where it stands), {:g} {}/s, {:g} V, {:g} s",
-                     box.travel, unit, box.travel / 2.0, box.speed, unit, box.volts, box.time_s);
-}
-
-void count_down(int seconds) {
-  for (; seconds > 0 && !interrupted; --seconds) {
-    fmt::print(stderr, "{} … ", seconds);
-    std::fflush(stderr);
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-  }
-  fmt::print(stderr, "\n");
-  if (interrupted) throw host::Failure(host::ExitCode::refused, "interrupted before anything moved");
 }
 
 /// Closes the loop where the excitation needs it closed; opens it again at the end, if it was open.
@@ -156,12 +136,10 @@ void run(const ExciteArguments& arguments) {
   if (arguments.dry_run) return;
   require_consent(arguments, fmt::format("Excite axis {}? It moves within this box: {}.", arguments.axis,
                                          box_text(box, scale.kind)));
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  catch_interrupts();
   count_down(arguments.countdown_s);
   Loop loop(board, axis, excitation.request.input != static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop));
-  const host::ExcitationOutcome outcome =
-      host::run_excitation(board, axis, excitation, values, scale, [] { return interrupted.load(); });
+  const host::ExcitationOutcome outcome = host::run_excitation(board, axis, excitation, values, scale, interrupted);
   loop.open();
   host::Record record = host::capture_record(outcome.capture, outcome.settings, arguments.axis);
   record.header["source"] = "axistool excite";

@@ -5,17 +5,30 @@
 
 namespace host {
 
+namespace {
+
+firmware::ParameterValues values_of(const sim::DriveDescription& model, const AxisDesign& design,
+                                    const ReferenceLimits& limits) {
+  firmware::ParameterValues values;
+  for (const auto& [name, value] : board_parameters(model, design, limits))
+    values.set(require_place("x." + name), static_cast<float>(value));
+  return values;
+}
+
+}  // namespace
+
 firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                 double tachometer_resolution, const ReferenceLimits& limits) {
-  firmware::ParameterValues values;
-  const auto set = [&](const std::string& name, double value) {
-    values.set(require_place("x." + name), static_cast<float>(value));
-  };
-  for (const BoardParameter& parameter : board_parameters(model, design, limits)) set(parameter.name, parameter.value);
-  set("tachometer.gain", tachometer_resolution);
-  for (const char* name : {"feedback.cancel_disturbance", "feedforward.zero_phase", "feedforward.friction"})
-    set(name, 0.0);
+  firmware::ParameterValues values = values_of(model, design, limits);
+  values.set(require_place("x.tachometer.gain"), static_cast<float>(tachometer_resolution));
+  for (const char* name : {"x.feedback.cancel_disturbance", "x.feedforward.zero_phase", "x.feedforward.friction"})
+    values.set(require_place(name), 0.0F);
   return firmware::axis_parameters<float>(values.axis(0));
+}
+
+firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design) {
+  return firmware::axis_parameters<float>(
+      values_of(model, design, ReferenceLimits::usual_for(model.data.kind)).axis(0));
 }
 
 }  // namespace host

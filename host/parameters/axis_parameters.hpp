@@ -12,4 +12,7 @@ namespace host {
 firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                                 double tachometer_resolution, const ReferenceLimits& limits = {});
 
+/// The same as a board runs them after `design` and `set-params`: with the switches as board_parameters() has them.
+firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design);
+
 }  // namespace host

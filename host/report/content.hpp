@@ -80,6 +80,7 @@ struct ScatterPlot {
   std::vector<ScatterSeries> series;
   bool logarithmic_y = false;  ///< values <= 0 leave gaps
   bool equal_scales = false;   ///< a unit of x is as long as a unit of y: for paths in a plane
+  bool logarithmic_x = false;  ///< every x > 0
 };
 
 /// One turn about the circle, or several: where the path is, and how far outside the circle (negative: inside).

@@ -122,6 +122,7 @@ nlohmann::json scatter_plot_json(const ScatterPlot& plot) {
           {"unit", plot.y.unit},
           {"xUnit", plot.x.unit},
           {"logarithmic", plot.logarithmic_y},
+          {"logarithmicX", plot.logarithmic_x},
           {"equal", plot.equal_scales},
           {"series", all}};
 }

@@ -304,10 +304,11 @@
     options.customBars = withBars;
     options.connectSeparatedPoints = true;
     options.logscale = plot.logarithmic;
+    options.axes.x.logscale = plot.logarithmicX;
     if (!plot.logarithmic) options.underlayCallback = background([], plot.series);
     options.series = {};
     plot.series.forEach((series) => (options.series[series.name] = seriesOptions(series)));
-    options.xRangePad = 12;
+    options.xRangePad = plot.logarithmicX ? 0 : 12;
     options.yRangePad = plot.logarithmic || plot.equal ? null : 12;
     const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot);
     if (plot.equal) equaliseScales(chart, plot);

@@ -1,0 +1,18 @@
+// A frequency response for people: a page, and a few lines for a terminal.
+#pragma once
+
+#include <string>
+
+#include "host/report/report.hpp"
+#include "host/report/terminal.hpp"
+#include "host/response/axis_response.hpp"
+
+namespace host {
+
+/// Verdict, margins, Bode plots with their bands, Nyquist plot with the modulus margin's circle, resonances. `before`:
+/// another state of the axis, drawn beside it; nullptr: none.
+Report response_report(const AxisResponse& axis, const std::string& subtitle, const AxisResponse* before = nullptr);
+
+std::string response_text(const AxisResponse& axis, const Terminal& terminal);
+
+}  // namespace host
