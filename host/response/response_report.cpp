@@ -268,10 +268,14 @@ Verdict verdict_of(const AxisResponse& axis) {
     const double modulus = axis.margins->modulus ? axis.margins->modulus->value : 1.0;
     verdict.tone = modulus >= kGoodModulus ? Tone::good : modulus >= kPoorModulus ? Tone::attention : Tone::bad;
     verdict.label = modulus >= kGoodModulus ? "robust" : modulus >= kPoorModulus ? "tight" : "close to oscillation";
-    verdict.headline =
-        fmt::format("Modulus margin {}, phase margin {} degrees, gain margin {} dB at a crossover of {} Hz.",
-                    with_interval(axis.margins->modulus), with_interval(axis.margins->phase_deg),
-                    with_interval(axis.margins->gain_dB), with_interval(axis.margins->crossover_Hz));
+    verdict.headline = fmt::format("Modulus margin {}", with_interval(axis.margins->modulus));
+    if (axis.margins->phase_deg)
+      verdict.headline += fmt::format(", phase margin {} degrees", with_interval(axis.margins->phase_deg));
+    if (axis.margins->gain_dB)
+      verdict.headline += fmt::format(", gain margin {} dB", with_interval(axis.margins->gain_dB));
+    if (axis.margins->crossover_Hz)
+      verdict.headline += fmt::format(" at a crossover of {} Hz", with_interval(axis.margins->crossover_Hz));
+    verdict.headline += ".";
     verdict.sentences.push_back(fmt::format("The loop comes nearest to -1 at {} Hz; 0.5 is a usual aim.",
                                             format_value(axis.margins->modulus_at_Hz)));
   }
