@@ -82,6 +82,29 @@ std::string TomlFields::text(std::string_view key) {
   return *std::move(value);
 }
 
+const toml::array* TomlFields::list_of(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node != nullptr && !node->is_array()) fail(key, "a list in brackets belongs here");
+  return node == nullptr ? nullptr : node->as_array();
+}
+
+std::vector<double> TomlFields::numbers(std::string_view key) {
+  std::vector<double> values;
+  if (const toml::array* list = list_of(key))
+    for (const toml::node& entry : *list) values.push_back(number_of(entry, key));
+  return values;
+}
+
+std::vector<std::string> TomlFields::texts(std::string_view key) {
+  std::vector<std::string> values;
+  const toml::array* list = list_of(key);
+  for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
+    if (!(*list)[k].is_string()) fail(key, "texts in quotes belong here");
+    values.push_back((*list)[k].as_string()->get());
+  }
+  return values;
+}
+
 bool TomlFields::toggle(std::string_view key, bool otherwise) {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;

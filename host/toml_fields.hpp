@@ -24,6 +24,9 @@ class TomlFields {
   double not_negative(std::string_view key);
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
+  /// Lists; empty where the key is absent.
+  std::vector<double> numbers(std::string_view key);
+  std::vector<std::string> texts(std::string_view key);
   bool toggle(std::string_view key, bool otherwise);
   /// Position of the text of `key` among `known`.
   std::size_t choice(std::string_view key, const std::vector<std::string_view>& known);
@@ -40,6 +43,7 @@ class TomlFields {
 
  private:
   const toml::node* find(std::string_view key);
+  const toml::array* list_of(std::string_view key);
   double number_of(const toml::node& node, std::string_view key) const;
 
   const toml::table& table_;

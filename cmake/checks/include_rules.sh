@@ -29,6 +29,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/device/"] = "host/device/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/external_plant/"] = "host/external_plant/ sim/"
     may["host/response/"] = "host/response/ host/model/ host/report/ " may["host/device/"] " " may["host/identify/"]
+    may["host/plan/"] = "host/plan/ host/device/ host/parameters/ hal/ firmware/core/ firmware/app/ " may["host/diagnose/"]
     may["host/axistool/"] = "host/ host/axistool/ sim/ hal/ firmware/core/ firmware/app/"
     may["tests/"] = "tests/ host/ host/axistool/ sim/ hal/ firmware/"
 

@@ -19,6 +19,7 @@ void add_all_commands(CLI::App& app) {
   add_design(app);
   add_compare(app);
   add_diagnose(app);
+  add_plan(app);
   add_add(app);
   add_improve(app);
   add_scoreboard(app);

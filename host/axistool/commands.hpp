@@ -52,6 +52,7 @@ void add_hil(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_diagnose(CLI::App& app);
+void add_plan(CLI::App& app);
 void add_improve(CLI::App& app);
 void add_add(CLI::App& app);
 void add_scoreboard(CLI::App& app);

@@ -20,18 +20,6 @@ using std::chrono::steady_clock;
 
 constexpr milliseconds kHeartbeat{20};
 
-void load(BoardClient& board, std::uint8_t axis, const Excitation& excitation) {
-  firmware::ExcitationEntriesRequest part;
-  part.axis = axis;
-  part.input = excitation.request.input;
-  for (std::size_t i = 0; i < excitation.entries.size(); i += part.count) {
-    part.first = static_cast<std::uint8_t>(i);
-    part.count = static_cast<std::uint8_t>(std::min(firmware::kEntriesPerReport, excitation.entries.size() - i));
-    for (std::size_t k = 0; k < part.count; ++k) part.entry[k] = excitation.entries[i + k];
-    board.load_excitation(part);
-  }
-}
-
 /// Rows of a capture as they come, in the order of the channels.
 class Rows {
  public:
@@ -58,6 +46,20 @@ class Rows {
 };
 
 }  // namespace
+
+std::vector<firmware::ExcitationEntriesRequest> entry_requests(const Excitation& excitation, std::uint8_t axis) {
+  std::vector<firmware::ExcitationEntriesRequest> parts;
+  for (std::size_t i = 0; i < excitation.entries.size(); i += parts.back().count) {
+    firmware::ExcitationEntriesRequest part;
+    part.axis = axis;
+    part.input = excitation.request.input;
+    part.first = static_cast<std::uint8_t>(i);
+    part.count = static_cast<std::uint8_t>(std::min(firmware::kEntriesPerReport, excitation.entries.size() - i));
+    for (std::size_t k = 0; k < part.count; ++k) part.entry[k] = excitation.entries[i + k];
+    parts.push_back(part);
+  }
+  return parts;
+}
 
 std::string_view end_name(firmware::ExcitationStatePayload state) {
   switch (static_cast<ExcitationEnd>(state.end)) {
@@ -96,7 +98,7 @@ ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Ex
   Rows rows(board, outcome.settings,
             ChannelScale(values.axis(axis), board.identify().fixed_point != 0, board.status().axis.at(axis).counts()),
             outcome.capture);
-  load(board, axis, excitation);
+  for (const auto& part : entry_requests(excitation, axis)) board.load_excitation(part);
   firmware::ExcitationRequest request = excitation.request;
   request.axis = axis;
   firmware::CaptureRequest capture;

@@ -52,6 +52,9 @@ struct Excitation {
   std::string summary;                        ///< a line for the user
 };
 
+/// What a board is loaded with before the excitation starts.
+std::vector<firmware::ExcitationEntriesRequest> entry_requests(const Excitation& excitation, std::uint8_t axis);
+
 /// The kinds of `axistool excite`, with what each does and its numbers.
 struct ExcitationKindText {
   std::string_view name, does, numbers;

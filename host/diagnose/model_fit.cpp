@@ -137,19 +137,26 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   return result;
 }
 
+Linearisation linearise(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set) {
+  const WindowResiduals residuals(model, vector, set);
+  const auto rows = static_cast<Eigen::Index>(residuals.num_residuals());
+  Eigen::VectorXd scaled = vector.read(model);
+  for (Eigen::Index k = 0; k < scaled.size(); ++k) scaled(k) /= vector.parameters()[static_cast<std::size_t>(k)].scale;
+  Linearisation found{Eigen::VectorXd(rows), {rows, scaled.size()}};
+  const double* parameters = scaled.data();
+  double* slopes = found.slopes.data();
+  if (!residuals.Evaluate(&parameters, found.residuals.data(), &slopes)) return {};
+  return found;
+}
+
 std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, const RecordSet& training) {
   const ParameterVector vector(model);
   const auto columns = static_cast<Eigen::Index>(vector.size());
-  const WindowResiduals residuals(model, vector, training);
-  const auto rows = static_cast<Eigen::Index>(residuals.num_residuals());
-  Eigen::VectorXd values = vector.read(model), scaled(columns), here(rows);
-  for (Eigen::Index k = 0; k < columns; ++k)
-    scaled(k) = values(k) / vector.parameters()[static_cast<std::size_t>(k)].scale;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
-  const double* parameters = scaled.data();
-  double* slopes = jacobian.data();
+  const Eigen::VectorXd values = vector.read(model);
+  const auto [here, jacobian] = linearise(model, vector, training);
+  const Eigen::Index rows = here.size();
   std::vector<ParameterEstimate> estimates;
-  if (!residuals.Evaluate(&parameters, here.data(), &slopes)) return estimates;
+  if (rows == 0) return estimates;
 
   // Cluster-robust: residuals of one window of one channel are alike, those of different windows are not.
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(columns, columns);

@@ -30,6 +30,15 @@ struct FitResult {
 /// Levenberg-Marquardt (Ceres) within the catalogue's bounds, from the model's present values.
 FitResult fit_model(const sim::DriveDescription& start, const RecordSet& training, const FitOptions& options = {});
 
+/// What a small change of each parameter does to the residuals of a set.
+struct Linearisation {
+  Eigen::VectorXd residuals;  ///< as residuals_of() gives them, and below them what is believed
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;  ///< per scale of each parameter
+};
+
+/// At the model's present values. Empty where the model runs away.
+Linearisation linearise(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set);
+
 /// What the data say of one fitted parameter.
 struct ParameterEstimate {
   std::string name;  ///< "cogging.cosine"

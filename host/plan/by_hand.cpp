@@ -1,0 +1,82 @@
+// What separates two explanations that no motion does.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "host/plan/experiment_plan.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+struct ByHand {
+  std::string_view a, b, text;
+};
+
+constexpr std::array kByHand = {
+    ByHand{"constant_torque", "dac_offset",
+           "Take the command away: with the amplifier's input shorted and its enable on, an offset of the converter is "
+           "gone, while a weight still pulls; or measure the converter's output at command 0 with a voltmeter."},
+    ByHand{
+        "constant_torque", "coulomb_asymmetry",
+        "Change the load: with a known weight added or the counterweight taken off, or the axis laid level, a constant "
+        "torque changes by as much, while friction keeps its two levels."},
+    ByHand{
+        "coulomb_asymmetry", "dac_offset",
+        "Short the amplifier's input with its enable on, or measure the converter's output at command 0: an offset of "
+        "the converter shows there; then diagnose again with dac_offset set to it."},
+    ByHand{
+        "current_loop_lag", "input_delay",
+        "Put a current clamp on the motor and step the command at standstill: a delay shifts the step, a current loop "
+        "rounds it."},
+    ByHand{
+        "dac_dead_zone", "load_dependent_friction",
+        "Put a current clamp on the motor and give small commands at standstill: a dead zone gives no current; or run "
+        "the same motion with another load, with which load-dependent friction grows."},
+    ByHand{
+        "backlash", "compliance",
+        "Put a dial gauge or a second encoder on the table, hold the motor and push the table: a gap moves freely, a "
+        "spring pushes back."},
+    ByHand{"backlash", "presliding",
+           "Put a dial gauge on the table and turn the motor to and fro by some micrometres: behind a gap the table "
+           "stands, on bristles it follows and springs back."},
+    ByHand{
+        "compliance", "presliding",
+        "Change the table's load: a spring's resonance moves with it, bristles' deflection does not; or put a second "
+        "encoder on the table."},
+    ByHand{
+        "cogging", "torque_ripple",
+        "Run with another load, or pull the axis by hand with the amplifier off: cogging stays, ripple goes with the "
+        "current."},
+    ByHand{
+        "cogging", "encoder_cyclic_error",
+        "Compare the encoder with a second scale or a laser: an error of the encoder shows there, cogging does not."},
+    ByHand{"constant_torque", "spring_torque",
+           "Let the axis work in another part of its travel, or unhook cable chain and bellows: a spring's torque goes "
+           "with the position."},
+    ByHand{"tach_gain", "torque_ripple",
+           "Compare the tachometer with the encoder's travel over a long way at constant speed."},
+};
+
+std::string own_advice(const std::vector<std::string>& kinds) {
+  const sim::EffectInfo* info = kinds.empty() ? nullptr : sim::find_effect(kinds.back());
+  return info == nullptr ? std::string() : std::string(info->separate_by);
+}
+
+}  // namespace
+
+std::string separation_by_hand(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  if (a.size() == 1 && b.size() == 1) {
+    const auto known = std::ranges::find_if(kByHand, [&](const ByHand& entry) {
+      return (entry.a == a.front() && entry.b == b.front()) || (entry.a == b.front() && entry.b == a.front());
+    });
+    if (known != kByHand.end()) return fmt::format("{} or {}: {}", a.front(), b.front(), known->text);
+  }
+  return fmt::format("{} or {}: no motion in this box separates them. {}: {}. {}: {}.", rival_name(a), rival_name(b),
+                     rival_name(a), own_advice(a), rival_name(b), own_advice(b));
+}
+
+}  // namespace host

@@ -1,0 +1,31 @@
+// Which of the rivals a run speaks for: odds from exp(-chi^2/2) with the parameters of each fitted again.
+#pragma once
+
+#include <vector>
+
+#include "host/plan/rival.hpp"
+
+namespace host {
+
+/// No odds are stated above these: what no rival holds, and no model of the noise, is never less probable.
+inline constexpr double kHighestOdds = 1000.0;
+/// A run has decided where the best rival is as probable as this.
+inline constexpr double kDecided = 0.95;
+
+struct Decision {
+  std::vector<Rival> rivals;       ///< with their parameters fitted to everything, and their probabilities afterwards
+  std::vector<double> chi_square;  ///< what the run adds to each rival's, re-fitted to training and run together
+  std::size_t best = 0;            ///< index of the most probable
+  double odds = 1.0;               ///< of the best to the next, at most kHighestOdds
+  std::vector<std::size_t> left;   ///< rivals that are not yet ruled out: the best, and all with odds below 19:1 to it
+  double error = 0.0;              ///< of the best rival on the run, over the floor
+};
+
+/// `rivals`: fitted to the training records, with what is believed before the run. What they cost on the training
+/// records is part of that belief; a rival that bends to suit the run pays there for it.
+Decision decide(const std::vector<Rival>& rivals, const std::vector<const Record*>& training, const Record& run);
+
+/// The same for records that are prepared. `ground`: training records on common ground.
+Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, const RecordSet& run);
+
+}  // namespace host

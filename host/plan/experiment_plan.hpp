@@ -1,0 +1,56 @@
+// The run that best separates the explanations that are left of a machine's records.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/plan/decision.hpp"
+#include "host/plan/run_plan.hpp"
+
+namespace host {
+
+struct PlanOptions {
+  /// Steps of the integrator after which no further piece is tried: no clock, so that every machine plans the same.
+  double most_steps = 600e6;
+  std::uint64_t seed = 1;  ///< of the noise in simulated runs
+};
+
+/// How two of the rivals fare in the run.
+struct PairOutlook {
+  std::size_t a = 0, b = 0;  ///< indices of rivals
+  bool separable = false;
+  double expected_odds =
+      1.0;              ///< of the true one to the other after the run, the worse of both cases, up to kHighestOdds
+  std::string by_hand;  ///< where no motion in the box separates them: what does
+};
+
+/// A piece that was simulated, and what it alone would do.
+struct ConsideredPiece {
+  RunPiece piece;
+  double expected_log_odds = 0.0;  ///< of the pair that it separates worst, among those that anything separates
+};
+
+struct Plan {
+  std::vector<Rival> rivals;
+  std::vector<PairOutlook> pairs;
+  bool separable = false;                   ///< some pair is
+  std::string by_hand;                      ///< for the pairs that are not, in words; empty where all are
+  RunPlan run;                              ///< without pieces where nothing is separable
+  double expected_odds = 1.0;               ///< the least of the separable pairs'
+  std::vector<ConsideredPiece> considered;  ///< best first
+  std::vector<Record> predicted;            ///< the run as simulated, one for each rival in turn
+  double steps = 0.0;                       ///< of the integrator
+  bool cut_short = false;                   ///< pieces were left untried
+};
+
+/// What a person can do where no motion separates two explanations.
+std::string separation_by_hand(const std::vector<std::string>& a, const std::vector<std::string>& b);
+
+/// `model`: whose design the board runs. `rivals`: of fit_rivals() on the same training records, or what a Decision
+/// left of them; two at least. In each simulated run one of them is true, and the others bend to it as far as the
+/// training records let them. Throws Failure(usage) for fewer than two rivals; what design and records may throw.
+Plan plan_run(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+              const std::vector<Rival>& rivals, const ExcitationLimits& box, const PlanOptions& options = {},
+              const ShareDone& progress = {});
+
+}  // namespace host

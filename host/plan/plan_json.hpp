@@ -1,0 +1,15 @@
+// A plan and a decision as JSON documents (`axis-plan/1`, `axis-decision/1`).
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "host/plan/experiment_plan.hpp"
+
+namespace host {
+
+/// `run_file`: where the run was written; it stands in the document where there is a run.
+nlohmann::json to_json(const Plan& plan, const std::string& run_file);
+
+nlohmann::json to_json(const Decision& decision);
+
+}  // namespace host

@@ -1,0 +1,145 @@
+#include "host/plan/rival.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "host/diagnose/candidate_starts.hpp"
+#include "host/diagnose/model_fit.hpp"
+#include "host/exit_codes.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+/// As long as the last word of a diagnosis' search has.
+constexpr FitOptions kFit{.most_iterations = 15, .least_gain = 1e-5, .most_steps = 40e6};
+
+/// The best fit of the effect from any of its starts, where a search that asks for a promise found none.
+sim::DriveDescription best_start(const sim::EffectInfo& info, const sim::DriveDescription& model,
+                                 const RecordSet& training) {
+  constexpr std::size_t kStarts = 3;
+  std::vector<sim::DriveDescription> starts = starting_models(info, model, training);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    order.emplace_back(error_of(sim::Drive(starts[k]), training).robust, k);
+  std::ranges::sort(order);
+  order.resize(std::min(order.size(), kStarts));
+  FitResult best;
+  best.robust = HUGE_VAL;
+  for (const auto& [error, k] : order)
+    if (FitResult fit = fit_model(starts[k], training, kFit); fit.robust < best.robust) best = std::move(fit);
+  if (best.model.effects.empty())
+    throw Failure(ExitCode::usage,
+                  fmt::format("{}: these records do not show where it would begin: no period stands out", info.kind));
+  return best.model;
+}
+
+sim::DriveDescription with_effect(const std::string& kind, const sim::DriveDescription& model,
+                                  const sim::DriveDescription& nominal, const RecordSet& training) {
+  const sim::EffectInfo* info = sim::find_effect(kind);
+  if (info == nullptr)
+    throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown; `axistool effects` lists them", kind));
+  if (!is_applicable(*info, model, training))
+    throw Failure(ExitCode::usage,
+                  fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or these "
+                              "records do not hold the channel in which it shows",
+                              kind));
+  SearchEffort effort;
+  effort.nominal = &nominal;
+  const std::vector<Candidate> found = search_kinds({info}, model, {}, training, training, {}, effort);
+  return found.empty() ? best_start(*info, model, training) : found.front().model;
+}
+
+}  // namespace
+
+std::string rival_name(const std::vector<std::string>& kinds) { return fmt::format("{}", fmt::join(kinds, " + ")); }
+
+std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress) {
+  RecordSet set = compare_on(training, model);
+  const sim::DriveDescription base = fit_base(model, set);
+  renew_floors(set, base);
+  std::vector<Rival> rivals;
+  for (const std::vector<std::string>& names : kinds) {
+    Rival rival{names, base, 1.0 / static_cast<double>(kinds.size())};
+    for (const std::string& kind : names) rival.model = with_effect(kind, rival.model, model, set);
+    rivals.push_back(std::move(rival));
+    if (progress) progress(static_cast<double>(rivals.size()) / static_cast<double>(kinds.size()));
+  }
+  const RecordSet ground = common_ground(training, rivals);
+  for (Rival& rival : rivals) rival.model = refitted(rival.model, ground);
+  return rivals;
+}
+
+std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const Record*>& records) {
+  std::vector<Rival> rivals;
+  if (diagnosis.verdict.status != Status::ambiguous) return rivals;
+  std::vector<std::string> group = diagnosis.verdict.effects;
+  for (const std::vector<std::string>& kinds : diagnosis.verdict.alternatives)
+    group.insert(group.end(), kinds.begin(), kinds.end());
+  double sum = 0.0;
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    if (candidate.kinds.size() != 1 || std::ranges::find(group, candidate.kinds.front()) == group.end()) continue;
+    rivals.push_back({candidate.kinds, candidate.model, candidate.probability});
+    sum += candidate.probability;
+  }
+  if (rivals.size() < 2) return {};
+  for (Rival& rival : rivals)
+    rival.probability = sum > 0.0 ? rival.probability / sum : 1.0 / static_cast<double>(rivals.size());
+  const RecordSet ground = common_ground(records, rivals);
+  for (Rival& rival : rivals) rival.model = refitted(rival.model, ground);
+  return rivals;
+}
+
+RecordSet common_ground(const std::vector<const Record*>& records, const std::vector<Rival>& rivals, double window_s) {
+  RecordSet set = compare_on(records, rivals.front().model, window_s);
+  double common = set.common_square;
+  for (std::size_t r = 1; r < rivals.size(); ++r) {
+    RecordSet own = set;
+    renew_floors(own, rivals[r].model);
+    common = std::min(common, own.common_square);
+    const auto widen = [](std::vector<double>& floor, const std::vector<double>& other) {
+      for (std::size_t k = 0; k < floor.size(); ++k) floor[k] = std::max(floor[k], other[k]);
+    };
+    for (std::size_t k = 0; k < set.records.size(); ++k) {
+      widen(set.records[k].floor.x, own.records[k].floor.x);
+      widen(set.records[k].floor.w, own.records[k].floor.w);
+    }
+  }
+  set.common_square = common;
+  return set;
+}
+
+RecordSet part_of(const RecordSet& set, std::size_t begin, std::size_t end) {
+  RecordSet part = set;
+  part.records.assign(set.records.begin() + static_cast<std::ptrdiff_t>(begin),
+                      set.records.begin() + static_cast<std::ptrdiff_t>(end));
+  return part;
+}
+
+RecordSet joined(const RecordSet& a, const RecordSet& b) {
+  RecordSet both = a;
+  both.records.insert(both.records.end(), b.records.begin(), b.records.end());
+  return both;
+}
+
+double chi_scale(const RecordSet& set) {
+  double count = 0.0;
+  for (const ComparedRecord& compared : set.records)
+    count += static_cast<double>(compared.prepared.windows.size() * channel_count(compared, set.measure));
+  return count * kCommonSquare / set.common_square;
+}
+
+double chi_square(const sim::DriveDescription& model, const RecordSet& set) {
+  const double robust = error_of(sim::Drive(model), set).robust;
+  return chi_scale(set) * robust * robust;
+}
+
+sim::DriveDescription refitted(const sim::DriveDescription& start, const RecordSet& set) {
+  return fit_model(start, set, kFit).model;
+}
+
+}  // namespace host

@@ -1,0 +1,54 @@
+// Rival explanations of the same records: fitted models, held against one another on common ground.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/compare/comparison.hpp"
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// One explanation: effects added to the model, with everything fitted.
+struct Rival {
+  std::vector<std::string> kinds;
+  sim::DriveDescription model;
+  double probability = 0.0;  ///< believed before the run; those of all rivals together are 1
+};
+
+/// "cogging", "backlash + input_delay"
+std::string rival_name(const std::vector<std::string>& kinds);
+
+/// Fits every explanation to the records, whether or not it earns its place. All are equally probable. Throws
+/// Failure(usage) for an effect that is unknown or cannot be added to this model, Failure(bad_input) for records that
+/// cannot be compared.
+std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress = {});
+
+/// What a diagnosis leaves undecided, with its probabilities: the candidates of its group that cannot be told apart.
+/// Fitted to `records`, all that it saw. Empty where its verdict is another.
+std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const Record*>& records);
+
+/// Records prepared for comparing rivals: a window's floors are the largest that any of the rivals has there, since a
+/// floor of its own would let a model that amplifies errors explain anything.
+RecordSet common_ground(const std::vector<const Record*>& records, const std::vector<Rival>& rivals,
+                        double window_s = kWindow_s);
+
+/// A set that holds the records from `begin` to before `end` only.
+RecordSet part_of(const RecordSet& set, std::size_t begin, std::size_t end);
+
+/// Both sets as one, each with its floors.
+RecordSet joined(const RecordSet& a, const RecordSet& b);
+
+/// Sum over windows and channels of squared error over squared floor, as a fit weighs it: each window of 0.1 s counts
+/// as one observation, since errors within it are alike. Where even good models stay far above the floors, over what is
+/// common there.
+double chi_square(const sim::DriveDescription& model, const RecordSet& set);
+
+/// chi_square() over its part of SetError::robust squared.
+double chi_scale(const RecordSet& set);
+
+/// The rival's parameters fitted to a set from where they stand.
+sim::DriveDescription refitted(const sim::DriveDescription& start, const RecordSet& set);
+
+}  // namespace host

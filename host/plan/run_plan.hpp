@@ -1,0 +1,47 @@
+// A run that was planned: pieces of excitation, one after the other in one record, within one box.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/device/excitation.hpp"
+
+namespace host {
+
+/// One piece: a kind of `axistool excite` with its numbers.
+struct RunPiece {
+  std::string kind;
+  ExcitationNumbers numbers;
+  std::string closed_loop;  ///< "", "reference" or "output"; ladder, dwell and reversals are closed by themselves
+  double time_s = 1.0;      ///< > 0
+  unsigned seed = 1;
+};
+
+struct RunPlan {
+  std::vector<RunPiece> pieces;
+  ExcitationLimits box;             ///< of the whole run, around where the axis stands at its beginning
+  std::vector<std::string> rivals;  ///< what it is to separate, "cogging", "backlash + input_delay"
+  double expected_odds = 0.0;       ///< of the true rival to the next, stated before; 0: nothing was stated
+
+  double duration_s() const;
+};
+
+/// "steps 3 -3 hold=0.3, open loop, 2 s"
+std::string piece_text(const RunPiece& piece);
+
+/// The excitation of a piece that begins so far from where the run began, mm (m): its window is what the box leaves to
+/// both sides. Throws Failure as design_excitation() does.
+Excitation design_piece(const RunPiece& piece, const ExcitationLimits& box, double offset,
+                        const ExcitationScale& scale);
+
+/// Fields that a record of the run carries in its header, above those of its pieces.
+std::map<std::string, std::string> run_header(const RunPlan& run);
+
+/// `axis-run-plan/1`, TOML. Reading throws Failure(bad_input) naming file, line and field.
+std::string run_plan_toml(const RunPlan& run);
+RunPlan parse_run_plan(std::string_view text, const std::string& name);
+RunPlan read_run_plan(const std::string& path);
+void write_run_plan(const RunPlan& run, const std::string& path);
+
+}  // namespace host

@@ -1,0 +1,52 @@
+// A planned run on a simulated machine, under the board's own controller.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "host/plan/excited_axis.hpp"
+#include "host/plan/run_plan.hpp"
+
+namespace host {
+
+/// What a run left behind.
+struct RunOutcome {
+  Record record;
+  bool completed = false;  ///< every piece came to its end within its box
+  std::string ended;       ///< how the last piece ended, in words
+  double farthest = 0.0;   ///< from where the run began, mm (m)
+};
+
+/// The parameters that `axistool design` gives a board for this model, on its first axis. Throws Failure(bad_input) for
+/// a model that cannot be designed for.
+firmware::ParameterValues design_values(const sim::DriveDescription& model);
+
+/// Units of a drive with such a design.
+ExcitationScale scale_of_drive(const sim::DataSheet& data);
+
+/// Carries the pieces out, one after the other; ends with the first that does not complete.
+template <firmware::SupervisedHal Hal>
+RunOutcome run_on(ExcitedAxis<Hal>& axis, const RunPlan& run, const ExcitationScale& scale) {
+  RunOutcome outcome;
+  outcome.completed = !run.pieces.empty();
+  for (const RunPiece& piece : run.pieces) {
+    const double offset = axis.offset();
+    const firmware::ExcitationStatePayload state = axis.run(design_piece(piece, run.box, offset, scale));
+    outcome.farthest = std::max(outcome.farthest, std::abs(offset) + state.farthest * scale.encoder_resolution);
+    outcome.ended = end_name(state);
+    if (state.end != static_cast<std::uint8_t>(firmware::ExcitationEnd::completed)) {
+      outcome.completed = false;
+      break;
+    }
+  }
+  outcome.record = axis.take();
+  outcome.record.header = run_header(run);
+  return outcome;
+}
+
+/// On a plant made of `machine`; `board`: of design_values(). `seed` fixes the tachometer's noise. Throws Failure where
+/// a piece does not fit its box.
+RunOutcome simulate_run(const RunPlan& run, const sim::DriveDescription& machine,
+                        const firmware::ParameterValues& board, std::uint64_t seed);
+
+}  // namespace host
