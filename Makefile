@@ -154,6 +154,13 @@ scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=
 	$(BUILD)/bin/axistool scoreboard $(if $(REAL),--real $(REAL),$(or $(CASES),tests/data/drive-cases)) $(if $(CUTS),--cuts) \
 	  $(if $(REWRITTEN),--rewritten) $(if $(NULLS),--nulls $(NULLS)) $(if $(SAMPLE),--sample $(SAMPLE))
 
+.PHONY: plan-bench
+plan-bench: ## Plan, run and decide on machines made by independent code, pair by pair (CASES=DIR: the public cases)
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axis_plan_bench
+	$(BUILD)/bin/axis_plan_bench $(or $(CASES),tests/data/drive-cases)
+
 .PHONY: mutants
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
 	$(NEED) build test

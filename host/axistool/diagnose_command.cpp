@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <memory>
+#include <optional>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
@@ -10,6 +11,8 @@
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/model/effect_forms.hpp"
+#include "host/plan/plan_json.hpp"
+#include "host/plan/posterior.hpp"
 
 namespace axistool {
 
@@ -50,29 +53,48 @@ void print(const host::Diagnosis& diagnosis) {
   fmt::print("  {:<50} {:>9} {:>9} {:10.1f}%\n", "something else", "", "", 100.0 * verdict.probability_other);
 }
 
-void run(const InsightArguments& arguments) {
+struct DiagnoseArguments : InsightArguments {
+  std::string beliefs;  ///< a document of plan or diagnose
+};
+
+void run(const DiagnoseArguments& arguments) {
   for (const std::string& kind : arguments.absent) host::known_effect(kind);
   const InsightRecords records(arguments);
+  std::optional<host::Beliefs> beliefs;
+  std::optional<host::Decision> decision;
+  if (!arguments.beliefs.empty()) {
+    beliefs = host::read_beliefs(arguments.beliefs);
+    decision = host::decide(records.model, *beliefs, records.measurements);
+  }
   host::Diagnosis diagnosis;
   {
     SearchProgress progress("diagnose");
     diagnosis = host::diagnose(records.model, records.measurements, progress.callback(), nullptr, arguments.absent);
   }
+  if (decision) host::apply(*decision, *beliefs, diagnosis);
   if (!arguments.report.empty()) host::write_diagnosis_report(diagnosis, arguments.model, arguments.report);
-  if (!arguments.json.empty()) write_json(host::to_json(diagnosis), arguments.json);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::to_json(diagnosis);
+    if (decision) document["decision"] = host::to_json(*decision);
+    write_json(document, arguments.json);
+  }
   if (arguments.json != "-") print(diagnosis);
 }
 
 }  // namespace
 
 void add_diagnose(CLI::App& app) {
-  auto arguments = std::make_shared<InsightArguments>();
+  auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command =
       app.add_subcommand("diagnose", "which physical effect is missing from a model, and how sure is that");
   arguments->add_to(*command);
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
+  add_input(*command, "--believed", arguments->beliefs,
+            "what was believed before a planned run that is among --train: JSON of plan or diagnose");
   command->footer(
       "Example:\n  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
+      "After a planned run (`axistool plan`, `excite x run.toml -o run.csv`), whose odds then decide:\n"
+      "  axistool diagnose x.toml --train steps.csv jog.csv run.csv --believed plan.json\n"
       "Exit code 0 whatever the verdict; 9 for a bad file.");
   command->callback(
       [arguments] { with_log_of_failure(arguments->json, "axis-diagnosis/1", [&] { run(*arguments); }); });

@@ -5,15 +5,17 @@
 
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
-#include "firmware/core/supervision/supervisor_state.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/motion_consent.hpp"
+#include "host/axistool/parameter_commands.hpp"
 #include "host/device/excitation.hpp"
 #include "host/device/motion.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/data_sheet_values.hpp"
+#include "host/parameters/parameter_file.hpp"
+#include "host/plan/run_plan.hpp"
 #include "host/record/read_record.hpp"
 
 namespace axistool {
@@ -21,7 +23,7 @@ namespace axistool {
 namespace {
 
 struct ExciteArguments : DeviceArguments {
-  std::string axis, kind, box, output, drive, closed_loop;
+  std::string axis, kind, box, output, drive, closed_loop, parameters;
   std::vector<std::string> numbers;
   unsigned seed = 1;
   int countdown_s = 3;
@@ -32,6 +34,11 @@ struct ExciteArguments : DeviceArguments {
 firmware::ParameterValues scaled_values(const ExciteArguments& arguments, host::BoardClient& board, std::uint8_t axis,
                                         std::optional<sim::DriveDescription>& drive) {
   firmware::ParameterValues values = board.read_values();
+  if (!arguments.parameters.empty()) {
+    values = with_changes(values, {arguments.parameters}, arguments.axis);
+    host::require_fitting_set(values);
+    if (!arguments.dry_run) board.write_values(values);
+  }
   if (!arguments.drive.empty()) {
     drive = host::read_drive(arguments.drive);
     return host::with_data_sheet(values, axis, drive->data);
@@ -63,25 +70,6 @@ host::ExcitationScale scale_of(const ExciteArguments& arguments, const firmware:
   }
   return scale;
 }
-
-/// Closes the loop where the excitation needs it closed; opens it again at the end, if it was open.
-class Loop {
- public:
-  Loop(host::BoardClient& board, std::uint8_t axis, bool is_needed) : board_(board), axis_(axis) {
-    if (!is_needed) return;
-    const auto state = static_cast<firmware::SupervisorState>(board.status().axis.at(axis).state);
-    was_open_ = state != firmware::SupervisorState::enabled;
-    if (was_open_) host::enable_and_wait(board, static_cast<std::uint8_t>(1u << axis));
-  }
-  void open() {
-    if (was_open_) host::disable_and_wait(board_, static_cast<std::uint8_t>(1u << axis_));
-  }
-
- private:
-  host::BoardClient& board_;
-  std::uint8_t axis_;
-  bool was_open_ = false;
-};
 
 nlohmann::json document_of(const ExciteArguments& arguments, const host::ExcitationOutcome& outcome,
                            const host::ExcitationScale& scale, std::size_t rows) {
@@ -116,34 +104,60 @@ nlohmann::json document_of(const ExciteArguments& arguments, const host::Excitat
                                                                 host::end_name(outcome.state), arguments.output));
 }
 
+/// What is to be run: one excitation, or the pieces of a planned run.
+struct Programme {
+  host::RunPlan run;
+  bool is_plan = false;
+
+  Programme(const ExciteArguments& arguments, sim::DriveKind kind) : is_plan(arguments.kind.ends_with(".toml")) {
+    if (is_plan) run = host::read_run_plan(arguments.kind);
+    if (is_plan && !(arguments.numbers.empty() && arguments.closed_loop.empty()))
+      throw host::Failure(host::ExitCode::usage, "a planned run holds its own numbers and loops; write them there");
+    if (arguments.box.empty() && !is_plan)
+      throw host::Failure(
+          host::ExitCode::refused,
+          "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
+    if (!arguments.box.empty()) {
+      const host::ExcitationLimits asked = host::parse_box(arguments.box, kind);
+      run.box = is_plan ? host::within_both(run.box, asked) : asked;
+    }
+    if (!is_plan)
+      run.pieces = {{arguments.kind, host::parse_numbers(arguments.numbers), arguments.closed_loop, run.box.time_s,
+                     arguments.seed}};
+  }
+};
+
 void run(const ExciteArguments& arguments) {
-  if (arguments.box.empty())
-    throw host::Failure(host::ExitCode::refused,
-                        "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
   std::optional<sim::DriveDescription> drive;
   if (!arguments.drive.empty()) drive = host::read_drive(arguments.drive);
   const bool is_linear = drive ? drive->data.kind == sim::DriveKind::linear : arguments.linear;
-  const host::ExcitationLimits box =
-      host::parse_box(arguments.box, is_linear ? sim::DriveKind::linear : sim::DriveKind::rotary);
+  const Programme programme(arguments, is_linear ? sim::DriveKind::linear : sim::DriveKind::rotary);
+  const host::RunPlan& plan = programme.run;
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
   const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
   const firmware::ParameterValues values = scaled_values(arguments, board, axis, drive);
   const host::ExcitationScale scale = scale_of(arguments, values, axis, drive);
-  const host::Excitation excitation = host::design_excitation(arguments.kind, host::parse_numbers(arguments.numbers),
-                                                              box, scale, arguments.closed_loop, arguments.seed);
-  if (talks(arguments)) fmt::print("{}\nbox: {}\n", excitation.summary, box_text(box, scale.kind));
+  std::map<std::string, std::string> header;
+  for (const host::RunPiece& piece : plan.pieces) {
+    const host::Excitation excitation = host::design_piece(piece, plan.box, 0.0, scale);
+    header = excitation.header;
+    if (talks(arguments)) fmt::print("{}\n", excitation.summary);
+  }
+  if (talks(arguments)) fmt::print("box: {}\n", box_text(plan.box, scale.kind));
   if (arguments.dry_run) return;
   require_consent(arguments, fmt::format("Excite axis {}? It moves within this box: {}.", arguments.axis,
-                                         box_text(box, scale.kind)));
+                                         box_text(plan.box, scale.kind)));
   catch_interrupts();
   count_down(arguments.countdown_s);
-  Loop loop(board, axis, excitation.request.input != static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop));
-  const host::ExcitationOutcome outcome = host::run_excitation(board, axis, excitation, values, scale, interrupted);
-  loop.open();
+  const host::ExcitationOutcome outcome = host::run_excitations(
+      board, axis, plan.pieces.size(),
+      [&](std::size_t piece, double offset) { return host::design_piece(plan.pieces[piece], plan.box, offset, scale); },
+      values, scale, interrupted);
   host::Record record = host::capture_record(outcome.capture, outcome.settings, arguments.axis);
   record.header["source"] = "axistool excite";
-  record.header.insert(excitation.header.begin(), excitation.header.end());
+  if (programme.is_plan) header = host::run_header(plan);
+  record.header.insert(header.begin(), header.end());
   record.header["excitation_ended"] = std::string(host::end_name(outcome.state));
   host::write_record(record, arguments.output);
   if (!arguments.json.empty()) write_json(document_of(arguments, outcome, scale, record.size()), arguments.json);
@@ -163,6 +177,7 @@ std::string footer() {
       "  axistool excite x steps --box travel=40,speed=150,volts=3,time=5 --drive x.toml -o steps.csv\n"
       "  axistool excite x multisine amplitude=0.5 from=5 to=200 --closed-loop output --box … -o lines.csv\n"
       "  axistool excite x ladder 5 20 80 --box travel=100,speed=120,volts=5,time=20 -o ladder.csv\n"
+      "  axistool excite x run.toml -o run.csv       # what `axistool plan` wrote, piece by piece in one record\n"
       "KIND and its numbers, all of which may be left out:\n";
   for (const host::ExcitationKindText& kind : host::kExcitationKindTexts)
     text += fmt::format("  {:<10} {}: {}\n", kind.name, kind.does, kind.numbers);
@@ -177,12 +192,16 @@ void add_excite(CLI::App& app) {
   auto arguments = std::make_shared<ExciteArguments>();
   CLI::App* command = app.add_subcommand("excite", "Move an axis by an experiment, within a box -> record");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
-  command->add_option("KIND", arguments->kind, "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell")
+  command
+      ->add_option("KIND", arguments->kind,
+                   "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell; or a RUN.toml of plan")
       ->required();
   command->add_option("NUMBERS", arguments->numbers, "of the kind: values, or name=value");
-  command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s");
+  command->add_option("--box", arguments->box,
+                      "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s; a planned run has its own");
   add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive: units of counts, volts and travel");
+  add_input(*command, "--params", arguments->parameters, "parameters to set before (axis-params/1), not saved");
   command->add_flag("--as-set", arguments->as_set, "an axis without a design: the units on the board are right");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--closed-loop", arguments->closed_loop,

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include "firmware/core/excitation/excitation_run.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -85,44 +89,94 @@ std::string_view end_name(firmware::ExcitationStatePayload state) {
   return "unknown";
 }
 
+namespace {
+
+bool is_open_loop(const Excitation& excitation) {
+  return excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
+}
+
+/// Closes the loop where the excitation needs it closed; opens it again behind it, if it was open.
+class Loop {
+ public:
+  Loop(BoardClient& board, std::uint8_t axis, bool is_needed)
+      : board_(board), mask_(static_cast<std::uint8_t>(1u << axis)) {
+    if (!is_needed) return;
+    was_open_ = board.status().axis.at(axis).state != static_cast<std::uint8_t>(firmware::SupervisorState::enabled);
+    if (was_open_) enable_and_wait(board, mask_);
+  }
+  void open() {
+    if (was_open_) disable_and_wait(board_, mask_);
+  }
+
+ private:
+  BoardClient& board_;
+  std::uint8_t mask_;
+  bool was_open_ = false;
+};
+
+}  // namespace
+
 ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Excitation& excitation,
                                  const firmware::ParameterValues& values, const ExcitationScale& scale,
                                  const std::function<bool()>& stop, const std::function<void(std::size_t)>& progress) {
+  return run_excitations(
+      board, axis, 1, [&](std::size_t, double) { return excitation; }, values, scale, stop, progress);
+}
+
+ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::size_t count,
+                                  const std::function<Excitation(std::size_t, double)>& make,
+                                  const firmware::ParameterValues& values, const ExcitationScale& scale,
+                                  const std::function<bool()>& stop, const std::function<void(std::size_t)>& progress) {
   ExcitationOutcome outcome;
   outcome.settings.axis = axis;
   outcome.settings.kind = scale.kind;
   outcome.settings.channels = usual_channels(scale.has_tachometer);
-  if (excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop))
-    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference
+  if (count > 1 || is_open_loop(make(0, 0.0)))
+    outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference, or not throughout
   outcome.capture.row_period_s = 1.0 / scale.rate_Hz;
-  Rows rows(board, outcome.settings,
-            ChannelScale(values.axis(axis), board.identify().fixed_point != 0, board.status().axis.at(axis).counts()),
+  const std::int64_t start = board.status().axis.at(axis).counts();
+  Rows rows(board, outcome.settings, ChannelScale(values.axis(axis), board.identify().fixed_point != 0, start),
             outcome.capture);
-  for (const auto& part : entry_requests(excitation, axis)) board.load_excitation(part);
-  firmware::ExcitationRequest request = excitation.request;
-  request.axis = axis;
   firmware::CaptureRequest capture;
   for (const Channel channel : outcome.settings.channels)
     capture.channels[axis] |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
   const auto is_over = [](const firmware::ExcitationStatePayload& state) {
     return state.phase == static_cast<std::uint8_t>(ExcitationPhase::done);
   };
-  try {
-    board.start_capture(capture);
+  bool is_capturing = false;
+  const auto run_one = [&](std::size_t index) {
+    const std::int64_t offset = board.status().axis.at(axis).counts() - start;
+    const Excitation excitation = make(index, static_cast<double>(offset) * scale.encoder_resolution);
+    Loop loop(board, axis, !is_open_loop(excitation));
+    for (const auto& part : entry_requests(excitation, axis)) board.load_excitation(part);
+    firmware::ExcitationRequest request = excitation.request;
+    request.axis = axis;
+    if (!is_capturing) board.start_capture(capture);
+    is_capturing = true;
     board.start_excitation(request);
+    firmware::ExcitationStatePayload state;
     bool is_asked = false;
-    for (auto heard = steady_clock::time_point{}; !is_over(outcome.state);) {
+    for (auto heard = steady_clock::time_point{}; !is_over(state);) {
       const bool came = rows.fetch(milliseconds(10));
       if (progress) progress(outcome.capture.number.size());
       const auto now = board.now();
       if (came && now - heard < kHeartbeat) continue;
       heard = now;
-      outcome.state = board.excitation_state();
+      state = board.excitation_state();
       if (stop() && !is_asked) {
         board.stop_excitation();
         is_asked = true;
       }
     }
+    loop.open();
+    state.elapsed += outcome.state.elapsed;
+    state.farthest = std::max(outcome.state.farthest, static_cast<std::int32_t>(std::abs(offset)) + state.farthest);
+    state.fastest = std::max(outcome.state.fastest, state.fastest);
+    outcome.state = state;
+    return state.end == static_cast<std::uint8_t>(ExcitationEnd::completed) && !stop();
+  };
+  try {
+    for (std::size_t index = 0; index < count && run_one(index);) ++index;
     outcome.capture.dropped_by_board = board.stop_capture().dropped;
     while (rows.fetch(milliseconds(50))) continue;
     outcome.capture.lost = lost_rows(outcome.capture);

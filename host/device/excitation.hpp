@@ -75,12 +75,21 @@ struct ExcitationOutcome {
 /// Why it ended, in words.
 std::string_view end_name(firmware::ExcitationStatePayload state);
 
-/// Runs it and captures every sample, from shortly before until the axis stands. The axis is enabled already if the
-/// excitation is in closed loop. `values`: with the scales of the drive. Throws what BoardClient throws; then the board
-/// is told to stop.
+/// Runs it and captures every sample, from shortly before until the axis stands. In closed loop an axis whose loop is
+/// open is enabled first, and disabled afterwards. `values`: with the scales of the drive. Throws what BoardClient
+/// throws; then the board is told to stop.
 ExcitationOutcome run_excitation(BoardClient& board, std::uint8_t axis, const Excitation& excitation,
                                  const firmware::ParameterValues& values, const ExcitationScale& scale,
                                  const std::function<bool()>& stop,
                                  const std::function<void(std::size_t)>& progress = {});
+
+/// Several, one after the other, in one capture, up to the first that does not complete. `make(index, offset)`: the
+/// excitation of an axis that stands `offset` (mm or m) from where the first one found it. The state is that of the
+/// last, with the time of all and the farthest of all from there.
+ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::size_t count,
+                                  const std::function<Excitation(std::size_t, double)>& make,
+                                  const firmware::ParameterValues& values, const ExcitationScale& scale,
+                                  const std::function<bool()>& stop,
+                                  const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace host

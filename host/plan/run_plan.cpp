@@ -59,6 +59,11 @@ Excitation design_piece(const RunPiece& piece, const ExcitationLimits& box, doub
   return design_excitation(piece.kind, piece.numbers, own, scale, piece.closed_loop, piece.seed);
 }
 
+ExcitationLimits within_both(const ExcitationLimits& a, const ExcitationLimits& b) {
+  return {std::min(a.travel, b.travel), std::min(a.speed, b.speed), std::min(a.volts, b.volts),
+          std::min(a.time_s, b.time_s)};
+}
+
 std::map<std::string, std::string> run_header(const RunPlan& run) {
   std::map<std::string, std::string> header;
   header["excitation"] = "plan";

@@ -35,6 +35,9 @@ std::string piece_text(const RunPiece& piece);
 Excitation design_piece(const RunPiece& piece, const ExcitationLimits& box, double offset,
                         const ExcitationScale& scale);
 
+/// The box whose every side is the smaller of both.
+ExcitationLimits within_both(const ExcitationLimits& a, const ExcitationLimits& b);
+
 /// Fields that a record of the run carries in its header, above those of its pieces.
 std::map<std::string, std::string> run_header(const RunPlan& run);
 

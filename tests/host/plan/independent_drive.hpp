@@ -20,7 +20,7 @@ struct IndependentDrive {
   double J = 0.0, B = 0.0, coulomb_positive = 0.0, coulomb_negative = 0.0;  ///< both >= 0
   double stribeck_ratio = 1.0, stribeck_speed = 0.0;
   // Effects.
-  double gravity = 0.0;                                     ///< added torque
+  double load = 0.0;                                        ///< a constant torque against the motor
   double dac_offset = 0.0, dead_zone = 0.0, delay_s = 0.0;  ///< of the converter
   double current_bandwidth_Hz = 0.0;
   double sigma0 = 0.0, sigma1 = 0.0;                           ///< bristles
@@ -90,7 +90,7 @@ struct IndependentDrive {
 
   void step() {
     const double motor = command();
-    double torque = motor + gravity;
+    double torque = motor - load;
     if (cogging != 0.0)
       torque += cogging * std::sin(2.0 * std::numbers::pi * angle_ * lead / cogging_period_mm + cogging_phase);
     if (load_share > 0.0) {

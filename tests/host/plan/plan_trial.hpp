@@ -1,0 +1,156 @@
+// One trial of planning: a machine that the tool does not know, a first record of it, and the group that is left.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "hal/pc/simulated_axis.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/model/model_file.hpp"
+#include "host/plan/experiment_plan.hpp"
+#include "host/plan/simulated_run.hpp"
+#include "tests/host/plan/drive_cases.hpp"
+
+struct PlanTrial {
+  std::string name, truth;
+  std::vector<std::string> group;
+  sim::DriveDescription model;
+  std::vector<host::Record> training;
+  IndependentDrive drive;
+};
+
+/// How one pair of the group came out.
+struct PairOutcome {
+  std::string a, b;
+  bool separable = false, by_hand = false;
+  double expected = 1.0, came = 1.0;
+  bool right = false;  ///< the true one won; meaningless where neither is true
+};
+
+struct TrialOutcome {
+  host::Plan plan;
+  bool completed = false;
+  double recorded_s = 0.0, computed_s = 0.0;
+  std::string best;
+  std::vector<PairOutcome> pairs;  ///< those that hold the truth
+  double error = 0.0;
+};
+
+inline const host::ExcitationLimits kTrialBox{80.0, 200.0, 4.0, 10.0};
+
+/// A case of the public folder; its first record is the one that a new machine gives.
+inline PlanTrial public_trial(const std::filesystem::path& folder) {
+  PlanTrial trial;
+  const auto truth = nlohmann::json::parse(std::ifstream(folder / "truth.json"));
+  trial.name = folder.filename();
+  trial.truth = truth["effects"][0];
+  trial.group = truth["groups"][0].get<std::vector<std::string>>();
+  trial.model = host::read_model(folder / "model.toml");
+  const bool has_steps = std::filesystem::exists(folder / "train-steps.csv");
+  trial.training = host::MeasurementGate(trial.model)
+                       .read({folder / (has_steps ? "train-steps.csv" : "train-sweep.csv")})
+                       .training();
+  trial.drive = drive_of_truth(truth);
+  put_data_sheet(trial.drive, trial.model.data);
+  return trial;
+}
+
+/// The same machine with another member of the group in it, and the first record that it would have made.
+inline PlanTrial with_other_truth(PlanTrial trial, const std::string& name, const std::string& truth,
+                                  const IndependentDrive& drive) {
+  trial.name = name;
+  trial.truth = truth;
+  trial.drive = drive;
+  for (host::Record& record : trial.training) record = replayed(drive, record);
+  return trial;
+}
+
+inline PlanTrial with_load_dependent_friction(const PlanTrial& trial) {
+  IndependentDrive drive = trial.drive;
+  drive.dead_zone = 0.0;
+  drive.friction_per_torque = 0.08;
+  return with_other_truth(trial, trial.name + " load", "load_dependent_friction", drive);
+}
+
+inline PlanTrial with_constant_torque(PlanTrial trial) {
+  IndependentDrive drive = trial.drive;
+  drive.delay_s = 0.0;
+  drive.load = 0.15 * drive.coulomb_positive;
+  trial.group = {"constant_torque", "coulomb_asymmetry", "dac_offset"};
+  return with_other_truth(trial, trial.name + " weight", "constant_torque", drive);
+}
+
+inline TrialOutcome carried_out(const PlanTrial& trial) {
+  const auto begun = std::chrono::steady_clock::now();
+  TrialOutcome outcome;
+  std::vector<const host::Record*> training;
+  for (const host::Record& record : trial.training) training.push_back(&record);
+  std::vector<std::vector<std::string>> kinds;
+  for (const std::string& kind : trial.group) kinds.push_back({kind});
+  outcome.plan = host::plan_run(trial.model, training, host::fit_rivals(trial.model, training, kinds), kTrialBox);
+  const host::Plan& plan = outcome.plan;
+  std::vector<double> probability(plan.rivals.size(), 1.0);
+  if (plan.separable) {
+    IndependentDrive drive = trial.drive;
+    drive.seed(7);
+    const double period_s = trial.model.data.sample_period_s;
+    IndependentAxis wires(drive, hal::pc::AxisWiring{}.tachometer_resolution);
+    host::ExcitedAxis axis(wires, host::design_values(trial.model), trial.model, [&] { drive.advance(period_s); });
+    const host::RunOutcome made = host::run_on(axis, plan.run, host::scale_of_drive(trial.model.data));
+    outcome.completed = made.completed;
+    outcome.recorded_s = static_cast<double>(made.record.size()) * period_s;
+    const host::Decision decision = host::decide(plan.rivals, training, made.record);
+    outcome.best = host::rival_name(decision.rivals[decision.best].kinds);
+    outcome.error = decision.error;
+    for (std::size_t k = 0; k < probability.size(); ++k) probability[k] = decision.rivals[k].probability;
+  }
+  for (const host::PairOutlook& pair : plan.pairs) {
+    const std::string a = host::rival_name(plan.rivals[pair.a].kinds), b = host::rival_name(plan.rivals[pair.b].kinds);
+    if (a != trial.truth && b != trial.truth) continue;
+    const double odds =
+        a == trial.truth ? probability[pair.a] / probability[pair.b] : probability[pair.b] / probability[pair.a];
+    outcome.pairs.push_back({a == trial.truth ? a : b, a == trial.truth ? b : a, pair.separable, !pair.by_hand.empty(),
+                             pair.expected_odds, std::min(odds, host::kHighestOdds), odds > 1.0});
+  }
+  outcome.computed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return outcome;
+}
+
+/// Prints a line a pair; false where a separable pair came out wrong, or its odds beyond a factor of three.
+inline bool print_plan_bench(const std::filesystem::path& folder, const std::vector<std::string>& chosen) {
+  const std::filesystem::path single = folder / "single";
+  std::vector<PlanTrial> trials;
+  for (const char* name : {"case-03", "case-04", "case-05", "case-06", "case-07", "case-09", "case-11", "case-12"})
+    if (chosen.empty() || std::ranges::find(chosen, name) != chosen.end())
+      trials.push_back(public_trial(single / name));
+  bool good = true;
+  fmt::print("{:<10} {:<22} {:<24} {:>9} {:>9} {:>9} {:>7} {:>6} {:>6}\n", "case", "true", "rival", "expected", "came",
+             "answer", "run s", "error", "CPU s");
+  for (const PlanTrial& trial : trials) {
+    const host::Record again = replayed(trial.drive, trial.training.front());
+    double square = 0.0;
+    for (std::size_t k = 0; k < again.size(); ++k)
+      square += (again.w[k] - trial.training.front().w[k]) * (again.w[k] - trial.training.front().w[k]);
+    const TrialOutcome outcome = carried_out(trial);
+    for (const PairOutcome& pair : outcome.pairs) {
+      const bool within = pair.came <= 3.0 * pair.expected && pair.expected <= 3.0 * pair.came;
+      const bool right = pair.separable ? pair.right && within : pair.by_hand;
+      good = good && right;
+      fmt::print("{:<10} {:<22} {:<24} {:9.4g} {:9.4g} {:>9} {:7.2f} {:6.2f} {:6.1f} {}{}\n", trial.name, pair.a,
+                 pair.b, pair.expected, pair.came, pair.separable ? (pair.right ? "right" : "WRONG") : "by hand",
+                 outcome.recorded_s, outcome.error, outcome.computed_s, right ? "" : "x",
+                 outcome.plan.separable && !outcome.completed ? " not completed" : "");
+    }
+    fmt::print("    w of the same commands differs by {:.3g} rad/s RMS (noise {:.3g} on both)\n",
+               std::sqrt(square / static_cast<double>(again.size())), std::sqrt(2.0 * trial.drive.tach_variance));
+    for (const host::RunPiece& piece : outcome.plan.run.pieces) fmt::print("    {}\n", host::piece_text(piece));
+    std::fflush(stdout);
+  }
+  return good;
+}
