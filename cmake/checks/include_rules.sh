@@ -24,9 +24,11 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/diagnose/"] = "host/diagnose/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
+    may["host/path/"] = "host/path/ firmware/core/"
+    may["host/gcode/"] = "host/gcode/ host/path/"
     may["host/link/"] = "host/link/ hal/"
     may["host/simulated_board/"] = "host/simulated_board/ host/link/ sim/ hal/ firmware/core/ firmware/app/"
-    may["host/device/"] = "host/device/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
+    may["host/device/"] = "host/device/ host/path/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/external_plant/"] = "host/external_plant/ sim/"
     may["host/response/"] = "host/response/ host/model/ host/report/ " may["host/device/"] " " may["host/identify/"]
     may["host/plan/"] = "host/plan/ host/device/ host/parameters/ hal/ firmware/core/ firmware/app/ " may["host/diagnose/"]

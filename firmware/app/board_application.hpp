@@ -13,6 +13,7 @@
 #include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
+#include "firmware/app/path_service.hpp"
 #include "firmware/app/protocol/messages.hpp"
 #include "firmware/app/store/parameter_store.hpp"
 #include "firmware/app/triggered_capture.hpp"
@@ -51,6 +52,7 @@ class BoardApplication {
   void control_period() {
     const std::uint32_t now_us = board_.clock().now_us();
     if (excitation_.is_active()) excitation_.before_step(axes_);
+    if (path_.is_moving()) path_.before_step();
     axes_.step({now_us, board_.emergency_stop().is_pressed(), board_.supply().is_low(), !store_is_usable()});
     capture_.take(axes_);
     if (trigger_.is_running()) trigger_.take(axes_);
@@ -138,13 +140,16 @@ class BoardApplication {
     return axes_[refused].state() == SupervisorState::ready ? Status::not_standing : refusal(refused);
   }
 
-  /// An orderly stop; the enable drops at standstill.
+  /// An orderly stop; the enable drops at standstill. Of an axis on a path all stop there, and this one is disabled at
+  /// the path's end.
   void disable(std::size_t axis) {
+    if (path_.disables_at_end(axis)) return;
     const typename Board::ControlShutOut guard;
     axes_[axis].disable();
   }
 
   void stop() {
+    path_.stop();
     const typename Board::ControlShutOut guard;
     excitation_.stop();
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].stop();
@@ -155,7 +160,7 @@ class BoardApplication {
     if (!ScalarTraits<float>::is_finite(velocity)) return Status::malformed;
     const Scalar wanted = in_core_units(axis, velocity);
     const typename Board::ControlShutOut guard;
-    if (is_excited(axis)) return Status::wrong_state;
+    if (is_led(axis)) return Status::wrong_state;
     if (axes_[axis].state() == SupervisorState::enabled && !axes_[axis].has_room_towards(wanted))
       return Status::outside_travel;
     if (!axes_[axis].jog(wanted)) return refusal(axis);
@@ -167,8 +172,7 @@ class BoardApplication {
   Status move(std::size_t axis, std::int64_t counts, bool relative) {
     {
       const typename Board::ControlShutOut guard;
-      if (axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis) || is_excited(axis))
-        return refusal(axis);
+      if (axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis) || is_led(axis)) return refusal(axis);
       if (!relative && !axes_[axis].is_homed()) return Status::not_homed;
     }
     // At rest the reference stands still, and only this background can change that.
@@ -191,8 +195,8 @@ class BoardApplication {
   /// In open loop of an axis that stands, disabled, and needs no design; in closed loop of one that is enabled and at
   /// rest.
   Status excite(const ExcitationRequest& request) {
-    if (excitation_.is_active()) return Status::wrong_state;
     const std::size_t axis = request.axis;
+    if (excitation_.is_active() || is_led(axis)) return Status::wrong_state;
     if (!excitation_.plan(request, active_.axis(axis), rate_Hz())) return Status::malformed;
     const typename Board::ControlShutOut guard;
     const SupervisorState state = axes_[axis].state();
@@ -221,6 +225,18 @@ class BoardApplication {
     return excitation_.state();
   }
 
+  /// A path, of axes that are enabled and stand. The rest of it is the path's own.
+  Status open_path(const OpenPathRequest& request, OpenPathPayload& opened) {
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      if ((request.mask >> axis & 1u) == 0) continue;
+      const typename Board::ControlShutOut guard;
+      if (is_excited(axis) || axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis))
+        return refusal(axis);
+    }
+    return path_.open(request, opened);
+  }
+  PathService<Axes, typename Board::ControlShutOut>& path() { return path_; }
+
   /// The limit of travel on one side of an axis.
   ProblemPayload limit_of_travel(std::size_t axis, bool positive) const {
     using parameter_check::id_of;
@@ -240,7 +256,7 @@ class BoardApplication {
     if (!is_fitted(axis)) return Status::not_fitted;
     const bool is_told = active_.axis(axis).template get<"homing.mode">() == static_cast<int>(HomingMode::none);
     if (here != is_told) return Status::homing_mode;
-    if (excitation_.is_active()) return Status::wrong_state;
+    if (excitation_.is_active() || is_led(axis)) return Status::wrong_state;
     const typename Board::ControlShutOut guard;
     if (here) return axes_[axis].set_position(axes_[axis].parameters().homing.position) ? Status::ok : refusal(axis);
     if (!axes_[axis].home()) return refusal(axis);
@@ -362,9 +378,12 @@ class BoardApplication {
 
   bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
 
+  /// By an experiment or a path.
+  bool is_led(std::size_t axis) const { return is_excited(axis) || path_.leads(axis); }
+
   bool is_in_motion() {
     const typename Board::ControlShutOut guard;
-    if (excitation_.is_active()) return true;
+    if (excitation_.is_active() || path_.is_moving()) return true;
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_in_motion(axis)) return true;
     return false;
@@ -463,6 +482,7 @@ class BoardApplication {
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<kBoardKeepsCapture, Nothing, TriggeredMemory> own_memory_{};
   ExcitationService<Scalar> excitation_;
+  PathService<Axes, typename Board::ControlShutOut> path_{axes_};
   MotionOwner owner_;
   ParameterValues active_{kAxes};
   ParameterValues staged_{kAxes};

@@ -158,11 +158,17 @@ class Axis {
   /// The same after step_with(): takes the whole reference over.
   constexpr void stop_interpolated() { generator_.stop_from(preview_.newest()); }
 
-  /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
-  constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
+  /// Where the reference of the table leads, kPreviewSamples from now: what is asked of the axis next goes on from
+  /// here.
+  constexpr CountPosition leading() const {
     CountPosition leading = preview_.leading();
     leading.advance(-backlash_.offset(kPreviewSamples));
-    return plan_move(target - leading, limits_);
+    return leading;
+  }
+
+  /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
+  constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
+    return plan_move(target - leading(), limits_);
   }
 
   /// Likewise, of a move by so many counts.

@@ -46,6 +46,7 @@ void add_all_commands(CLI::App& app) {
   add_capture(app);
   add_excite(app);
   add_bode(app);
+  add_run(app);
   add_faults(app);
   add_clear_faults(app);
   add_bench(app);

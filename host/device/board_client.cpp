@@ -117,6 +117,7 @@ void require_ok(const Message& reply, const std::string& others = "") {
     case Status::set_differs:
       fail(ExitCode::protocol, "the board staged other values than were sent: is another program setting parameters?");
     case Status::unknown_request:
+    case Status::no_room:
     case Status::malformed:
     case Status::no_such_row:
       break;
@@ -372,6 +373,37 @@ firmware::ExcitationStatePayload BoardClient::stop_excitation() {
 
 firmware::ExcitationStatePayload BoardClient::excitation_state() {
   return payload_of<firmware::ExcitationStatePayload>(request(MessageType::excitation_state));
+}
+
+firmware::OpenPathPayload BoardClient::open_path(const firmware::OpenPathRequest& wanted) {
+  return payload_of<firmware::OpenPathPayload>(request(MessageType::open_path, wanted));
+}
+
+bool BoardClient::path_nodes(std::span<const std::byte> nodes, firmware::PathStatePayload& state) {
+  Message message;
+  message.type = MessageType::path_nodes;
+  std::ranges::copy(nodes, message.payload.begin());
+  message.length = static_cast<std::uint8_t>(nodes.size());
+  const Message reply = reply_to(message, patience_);
+  if (reply.status != Status::no_room) require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
+  state = payload_of<firmware::PathStatePayload>(reply);
+  return reply.status == Status::ok;
+}
+
+firmware::PathStatePayload BoardClient::start_path() {
+  return payload_of<firmware::PathStatePayload>(request(MessageType::start_path));
+}
+
+firmware::PathStatePayload BoardClient::path_rate(const firmware::PathRateRequest& wanted) {
+  return payload_of<firmware::PathStatePayload>(request(MessageType::path_rate, wanted));
+}
+
+firmware::PathStatePayload BoardClient::stop_path() {
+  return payload_of<firmware::PathStatePayload>(request(MessageType::stop_path));
+}
+
+firmware::PathStatePayload BoardClient::path_state() {
+  return payload_of<firmware::PathStatePayload>(request(MessageType::path_state));
 }
 
 void BoardClient::arm_trigger(const firmware::TriggerRequest& wanted) { request(MessageType::arm_trigger, wanted); }

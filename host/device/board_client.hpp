@@ -6,11 +6,13 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "firmware/app/protocol/excitation_messages.hpp"
+#include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
 #include "firmware/app/store/stored_set.hpp"
@@ -67,6 +69,14 @@ class BoardClient {
   void start_excitation(const firmware::ExcitationRequest& wanted);
   firmware::ExcitationStatePayload stop_excitation();
   firmware::ExcitationStatePayload excitation_state();
+
+  firmware::OpenPathPayload open_path(const firmware::OpenPathRequest& wanted);
+  /// Nodes as they lie in the report; false where the board has no room for them now.
+  bool path_nodes(std::span<const std::byte> nodes, firmware::PathStatePayload& state);
+  firmware::PathStatePayload start_path();
+  firmware::PathStatePayload path_rate(const firmware::PathRateRequest& wanted);
+  firmware::PathStatePayload stop_path();
+  firmware::PathStatePayload path_state();
 
   void arm_trigger(const firmware::TriggerRequest& wanted);
   firmware::TriggerStatePayload trigger_state();

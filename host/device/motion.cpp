@@ -98,6 +98,11 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
   if (!closed) throw Failure(ExitCode::time_out, "the board does not enable the axis; `axistool doctor` looks further");
 }
 
+bool are_enabled(BoardClient& board, std::uint8_t mask) {
+  const BoardState status = board.status();
+  return for_all(mask, [&](std::uint8_t axis) { return state_of(status, axis) == SupervisorState::enabled; });
+}
+
 void disable_and_wait(BoardClient& board, std::uint8_t mask) {
   board.disable(mask);
   const bool off = ask_until(board, std::chrono::minutes(1), [&](const auto& status) {

@@ -13,6 +13,9 @@ namespace host {
 /// Failure(device_fault, refused, time_out).
 void enable_and_wait(BoardClient& board, std::uint8_t mask);
 
+/// Whether all loops of the mask are closed.
+bool are_enabled(BoardClient& board, std::uint8_t mask);
+
 /// Slows down, drops the enables and waits until they are off.
 void disable_and_wait(BoardClient& board, std::uint8_t mask);
 

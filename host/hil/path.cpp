@@ -8,8 +8,10 @@
 #include <numbers>
 
 #include "firmware/core/axis_check.hpp"
-#include "firmware/core/move_profile.hpp"
+#include "firmware/core/path/path_follower.hpp"
 #include "host/exit_codes.hpp"
+#include "host/path/path_words.hpp"
+#include "host/path/speed_profile.hpp"
 
 namespace host {
 
@@ -105,6 +107,69 @@ double Path::distance_to(const PlanePoint& point) const {
   return nearest;
 }
 
+namespace {
+
+/// As the host's planner would send it, but with limits along the path, as the paper has them.
+PlannedPath plan_along(const Path& path, const PathLimits& limits, double sample_period_s) {
+  PlannedPath planned;
+  double length = 0.0;
+  std::vector<double> joints;
+  for (const PathSegment& segment : path.segments()) {
+    const PathPoint begin(segment.begin.x, segment.begin.y, 0.0);
+    planned.curves.push_back(
+        {segment.angle == 0.0 ? PathCurve::line(begin, {segment.end.x, segment.end.y, 0.0})
+                              : PathCurve::arc(begin, {segment.centre.x, segment.centre.y, 0.0}, segment.angle, 0.0),
+         0.0, 0});
+    length += planned.curves.back().curve.length();
+    joints.push_back(length);
+  }
+  SpeedInterval whole{0.0, length, limits.feed, [&limits](double) {
+                        return TangentialLimits{limits.acceleration, limits.jerk};
+                      }};
+  SpeedState state;
+  double time_s = 0.0;
+  std::size_t curve = 0;
+  const auto add = [&](const SpeedState& s, double at_s) {
+    if (!planned.knots.empty() && at_s - planned.knots.back().time_s < 1.5 * sample_period_s) return;
+    while (curve + 1 < joints.size() && s.length > joints[curve]) ++curve;
+    const double begins = curve > 0 ? joints[curve - 1] : 0.0;
+    const PathCurve& on = planned.curves[curve].curve;
+    const CurveState q = on.at(std::min(s.length - begins, on.length()));
+    planned.knots.push_back(
+        {at_s, q.point, s.speed * q.tangent, s.speed * s.speed * q.curvature + s.acceleration * q.tangent});
+  };
+  add(state, 0.0);
+  for (const SpeedPhase& phase : speed_profile({whole})) {
+    // Where a line meets an arc the acceleration jumps: short pieces keep the polynomials to it.
+    constexpr double kPiece_s = 0.002;
+    const auto parts = std::max(1, static_cast<int>(phase.duration_s / kPiece_s));
+    for (int k = 1; k <= parts; ++k)
+      add(after(state, phase.duration_s * k / parts, phase.jerk), time_s + phase.duration_s * k / parts);
+    state = after(state, phase.duration_s, phase.jerk);
+    time_s += phase.duration_s;
+  }
+  if (planned.knots.size() > 1) planned.knots.pop_back();
+  add(state, std::max(time_s, planned.knots.back().time_s + 2.0 * sample_period_s));
+  PathKnot& last = planned.knots.back();
+  last.position = planned.curves.back().curve.end();
+  last.velocity = last.acceleration = PathPoint::Zero();
+  planned.knots.front().velocity = planned.knots.front().acceleration = PathPoint::Zero();
+  return planned;
+}
+
+/// What the board's follower leads, in place of its axes.
+struct LedAxes {
+  struct Axis {
+    firmware::Increment increment = 0;
+    static firmware::SupervisorState state() { return firmware::SupervisorState::enabled; }
+    void lead(firmware::Increment wanted) { increment = wanted; }
+  };
+  std::array<Axis, 2> axis;
+  Axis& operator[](std::size_t i) { return axis[i]; }
+};
+
+}  // namespace
+
 std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, const PathLimits& limits,
                                                             double sample_period_s,
                                                             const std::array<double, 2>& count_mm) {
@@ -118,41 +183,36 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
                   fmt::format("a feed of {:g} mm/s with {:g} mm/s² and {:g} mm/s³ is outside the range of references",
                               limits.feed, limits.acceleration, limits.jerk));
   }
-  constexpr double kOne = static_cast<double>(firmware::kOneCount);
-  const double units = path.length() / kUnit_mm;
-  const auto whole = static_cast<std::int64_t>(units);
-  const auto planned = firmware::plan_move({whole, std::llround((units - static_cast<double>(whole)) * kOne)}, along);
-  if (planned.error != firmware::MovePlanError::none)
+  constexpr double kLongest_s = 86'400.0;
+  if (!(path.length() / limits.feed < kLongest_s))
     throw Failure(ExitCode::bad_input, fmt::format("a path of {:g} mm lasts too long at this feed", path.length()));
-  firmware::MoveProfile profile;
-  profile.start(planned.plan);
+  const PlannedPath planned = plan_along(path, limits, sample_period_s);
+  const PathScale scale{{0, 1}, {count_mm[0], count_mm[1]}, {1.0, 1.0}, 1.0 / sample_period_s};
+  const PathWords words = path_words(planned, scale, units_of(planned, scale), {{}, {}});
+
+  firmware::PathFollower<2, 32> follower;
+  using Node = firmware::PathNode<2>;
+  constexpr firmware::Increment kNoLimit = firmware::kMostMotion;
+  follower.open(3, words.units, {}, {kNoLimit, kNoLimit}, firmware::kOneCount, firmware::kOneCount);
   std::vector<std::array<firmware::Increment, 2>> increments;
-  firmware::CountPosition travelled;
-  std::array<double, 2> given{};  // on the grid below
-  while (!profile.is_done()) {
-    travelled.advance(profile.next());
-    const double distance_mm =
-        kUnit_mm * (static_cast<double>(travelled.counts) + static_cast<double>(travelled.fraction) / kOne);
-    const PlanePoint point = path.at(distance_mm);
-    const std::array<double, 2> position_mm{point.x, point.y};
-    std::array<firmware::Increment, 2> step{};
-    for (std::size_t i = 0; i < 2; ++i) {
-      // Below 2^-20 counts the axis does not tell a difference; on that grid doubles are exact up to 2^33 counts. As
-      // increments whole positions would not fit: only their differences are made ones.
-      constexpr double kGrid = 1 << 20, kFarthest = 0x1p53, kLargestStep = 16384 * kGrid;  // as motion limits have it
-      const double target = std::round(position_mm[i] / count_mm[i] * kGrid);
-      const double change = target - given[i];
-      if (!(std::abs(target) <= kFarthest) || !(std::abs(change) <= kLargestStep))
-        throw Failure(
-            ExitCode::bad_input,
-            fmt::format("a path of {:g} mm at {:g} mm/s is outside the range of an encoder with steps of {:g} "
-                        "mm: smaller, or slower",
-                        path.length(), limits.feed, count_mm[i]));
-      step[i] = static_cast<firmware::Increment>(change) * (firmware::kOneCount >> 20);
-      given[i] = target;
+  LedAxes axes;
+  std::size_t sent = 0;
+  do {
+    for (; sent < words.nodes.size() && follower.room() > 0; ++sent) {
+      const PathWord& word = words.nodes[sent];
+      const auto problem =
+          follower.push(Node{word.duration, {word.axis[0], word.axis[1]}}, sent + 1 == words.nodes.size(),
+                        [](std::size_t, std::int64_t) { return true; });
+      if (problem != firmware::NodeProblem::none)
+        throw Failure(ExitCode::bad_input, fmt::format("a path of {:g} mm at {:g} mm/s is outside the range of an "
+                                                       "encoder with steps of {:g} mm: smaller, or slower",
+                                                       path.length(), limits.feed, count_mm[0]));
     }
-    increments.push_back(step);
-  }
+    if (increments.empty()) follower.start();
+    follower.prepare();
+    follower.before_step(axes);
+    increments.push_back({axes[0].increment, axes[1].increment});
+  } while (follower.is_moving());
   return increments;
 }
 

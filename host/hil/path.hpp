@@ -39,6 +39,7 @@ class Path {
   double length() const;
   PlanePoint at(double distance) const;
   double distance_to(const PlanePoint& point) const;
+  const std::vector<PathSegment>& segments() const { return segments_; }
   /// The circle that the path is; nothing for other paths.
   std::optional<PathSegment> whole_circle() const;
 
@@ -53,8 +54,9 @@ struct PathLimits {
   double jerk = 50'000.0;        // likewise
 };
 
-/// Increments of both axes, sample by sample, from rest to rest: jerk-limited along the path, exact at its end.
-/// Throws Failure(bad_input) for limits outside the references' range.
+/// Increments of both axes, sample by sample, from rest to rest, as the board's own follower makes them of nodes that
+/// are jerk-limited along the path; exact at its end. Throws Failure(bad_input) for limits outside the references'
+/// range.
 std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, const PathLimits& limits,
                                                             double sample_period_s,
                                                             const std::array<double, 2>& count_mm);

@@ -43,6 +43,12 @@ enum class MessageType : std::uint8_t {
   arm_trigger = 0x48,
   trigger_state = 0x49,
   read_triggered = 0x4A,
+  open_path = 0x50,
+  path_nodes = 0x51,
+  start_path = 0x52,
+  path_rate = 0x53,
+  stop_path = 0x54,
+  path_state = 0x55,
   samples = 0x70,   ///< from the board, unasked, while a capture runs
   rejected = 0x7F,  ///< from the board: a report that could not be decoded
 };
@@ -78,6 +84,7 @@ enum class Status : std::uint8_t {
   not_homed = 20,       ///< a move to a position, of an axis that does not know where it is
   homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
   others_capture = 22,  ///< another client's capture runs: wait for its end, or stop it
+  no_room = 23,         ///< for another node of a path: send it later
 };
 
 struct IdentityPayload {

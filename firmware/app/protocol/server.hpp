@@ -35,6 +35,7 @@ class ProtocolServer {
   template <hal::UsbHid Usb>
   void poll(Usb& usb, const ProgramUse& use = {}) {
     use_ = use;
+    app_.path().poll();
     if (!usb.is_configured()) {
       reply_waits_ = false;
       app_.capture().stop();
@@ -89,7 +90,8 @@ class ProtocolServer {
 
   static constexpr bool begins_motion(MessageType type) {
     return type == MessageType::enable || type == MessageType::jog || type == MessageType::move ||
-           type == MessageType::home || type == MessageType::start_excitation || type == MessageType::take_over;
+           type == MessageType::home || type == MessageType::start_excitation || type == MessageType::take_over ||
+           type == MessageType::open_path;
   }
 
   /// Looking, stopping and disabling are everybody's; the rest waits for the end of another client's motion.
@@ -101,6 +103,10 @@ class ProtocolServer {
       case MessageType::home:
       case MessageType::load_excitation:
       case MessageType::start_excitation:
+      case MessageType::open_path:
+      case MessageType::path_nodes:
+      case MessageType::start_path:
+      case MessageType::path_rate:
       case MessageType::clear_faults:
       case MessageType::commit:
       case MessageType::save:
@@ -145,6 +151,13 @@ class ProtocolServer {
       case MessageType::stop_excitation:
       case MessageType::excitation_state:
         return handle_excitation(request, reply);
+      case MessageType::open_path:
+      case MessageType::path_nodes:
+      case MessageType::start_path:
+      case MessageType::path_rate:
+      case MessageType::stop_path:
+      case MessageType::path_state:
+        return handle_path(request, reply);
       case MessageType::arm_trigger:
         return with<TriggerRequest>(request, [&](const TriggerRequest& r) { return app_.arm(r); });
       case MessageType::trigger_state:
@@ -177,6 +190,35 @@ class ProtocolServer {
       default:
         reply.put(app_.excitation_state());
         return Status::ok;
+    }
+  }
+
+  /// A path belongs to the client that opened it; everybody may look and stop.
+  Status handle_path(const Message& request, Message& reply) {
+    if (request.type == MessageType::open_path)
+      return with<OpenPathRequest>(request, [&](const OpenPathRequest& r) {
+        OpenPathPayload opened;
+        const Status status = app_.open_path(r, opened);
+        if (status == Status::ok) reply.put(opened);
+        return status;
+      });
+    Status status = Status::ok;
+    if (request.type == MessageType::stop_path)
+      app_.path().stop();
+    else if (request.type != MessageType::path_state)
+      status = app_.is_owner(request.client) ? handle_own_path(request) : Status::others_motion;
+    reply.put(app_.path().state());
+    return status;
+  }
+
+  Status handle_own_path(const Message& request) {
+    switch (request.type) {
+      case MessageType::path_nodes:
+        return app_.path().push(std::span(request.payload).first(request.length));
+      case MessageType::start_path:
+        return app_.path().start();
+      default:
+        return with<PathRateRequest>(request, [&](const PathRateRequest& r) { return app_.path().set_rate(r); });
     }
   }
 

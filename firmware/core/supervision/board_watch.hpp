@@ -51,6 +51,10 @@ class BoardWatch {
     silent_samples_ = 0;
   }
   constexpr void host_heard() { silent_samples_ = 0; }
+  /// While somebody brings the axes to rest because of it in a better way than each for itself, silence is no fault.
+  constexpr void excuse_silence(bool excused) { excuses_silence_ = excused; }
+  /// The host is silent for too long, and the outputs are on.
+  constexpr bool is_host_lost() const { return is_host_lost_; }
 
   /// The worst fault of this period. Silence matters only while `outputs_on()`, which is asked only where it matters.
   template <std::invocable OutputsOn>
@@ -62,10 +66,13 @@ class BoardWatch {
     if (inputs.supply_low) return AxisFault::supply_low;
     if (late) return AxisFault::control_overrun;
     if (inputs.store_damaged) return AxisFault::parameter_store_damaged;
-    if (silent_samples_ < (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples))
+    if (silent_samples_ < (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples)) {
       ++silent_samples_;
-    else if (outputs_on())
-      return AxisFault::host_heartbeat_lost;
+    } else if (outputs_on()) {
+      is_host_lost_ = true;
+      return excuses_silence_ ? AxisFault::none : AxisFault::host_heartbeat_lost;
+    }
+    is_host_lost_ = false;
     return AxisFault::none;
   }
   constexpr AxisFault watch(const BoardInputs& inputs, bool outputs_on) {
@@ -78,6 +85,7 @@ class BoardWatch {
   std::uint32_t last_us_ = 0;
   std::int32_t silent_samples_ = 0;
   bool host_commands_ = false;
+  bool excuses_silence_ = false, is_host_lost_ = false;
   bool is_primed_ = false;
 };
 

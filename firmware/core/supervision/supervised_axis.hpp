@@ -132,6 +132,11 @@ class SupervisedAxis {
   /// As of Axis, before a step that comes late.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
+  /// As of Axis.
+  constexpr CountPosition leading() const { return axis_.leading(); }
+  /// A place that a path may lead to: of a homed axis within its travel.
+  constexpr bool may_reach(std::int64_t counts) const { return !is_homed() || monitors_.travel().is_inside(counts); }
+
   /// The next step is a step_with() of this increment.
   constexpr void lead(Increment increment) {
     led_increment_ = increment;

@@ -1,0 +1,182 @@
+// Paths as the host asks for them.
+#pragma once
+
+#include <cstring>
+#include <span>
+
+#include "firmware/app/protocol/path_messages.hpp"
+#include "firmware/core/axis_check.hpp"
+#include "firmware/core/path/path_follower.hpp"
+
+namespace firmware {
+
+/// `Group`: an AxisGroup; `ShutOut` keeps the control interrupt away as long as it lives.
+template <typename Group, typename ShutOut>
+class PathService {
+ public:
+  static constexpr std::size_t kAxes = Group::kAxes;
+  /// 2 s of pieces of 5 ms on average.
+  static constexpr std::size_t kNodes = 400;
+
+  explicit PathService(Group& axes) : axes_(axes) {}
+
+  bool is_moving() const { return follower_.is_moving(); }
+  bool leads(std::size_t axis) const { return follower_.is_open() && follower_.is_led(axis); }
+
+  /// The axes of the mask are enabled and stand.
+  Status open(const OpenPathRequest& request, OpenPathPayload& opened) {
+    if (request.mask == 0 || request.mask >> kAxes != 0 || request.relative > 1 || !is_possible(request.units))
+      return Status::malformed;
+    std::array<CountPosition, kAxes> start{};
+    std::array<Increment, kAxes> acceleration{};
+    float clock_acceleration = 1.0F, clock_jerk = 1.0F;
+    const ShutOut guard;
+    if (is_moving()) return Status::wrong_state;
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      if ((request.mask >> i & 1u) == 0) continue;
+      if (request.relative == 0 && !axes_[i].is_homed()) return Status::not_homed;
+      start[i] = axes_[i].leading();
+      const MotionLimits limits = motion_limits(axes_[i].parameters());
+      using Traits = ScalarTraits<float>;
+      const float velocity = Traits::from_increment(limits.velocity);
+      acceleration[i] = limits.acceleration;
+      clock_acceleration = std::min(clock_acceleration, Traits::from_increment(limits.acceleration) / velocity);
+      clock_jerk = std::min(clock_jerk, Traits::from_increment(limits.jerk) / velocity);
+    }
+    follower_.open(request.mask, request.units, start, acceleration,
+                   ScalarTraits<float>::to_increment(clock_acceleration),
+                   ScalarTraits<float>::to_increment(clock_jerk));
+    for (std::size_t i = 0; i < kAxes; ++i)
+      opened.axis[i] = {static_cast<std::uint32_t>(start[i].counts), static_cast<std::int32_t>(start[i].counts >> 32),
+                        static_cast<std::uint32_t>(start[i].fraction >> (kFractionBits - 32))};
+    opened.room = kNodes;
+    return Status::ok;
+  }
+
+  /// Whole nodes as they came; those before one that is refused hold.
+  Status push(std::span<const std::byte> bytes) {
+    const ShutOut guard;
+    if (!follower_.is_open()) return Status::wrong_state;
+    const std::size_t size = path_node_size(static_cast<std::size_t>(std::popcount(follower_.mask())));
+    if (bytes.empty() || bytes.size() % size != 0) return Status::malformed;
+    const auto is_inside = [this](std::size_t axis, std::int64_t counts) { return axes_[axis].may_reach(counts); };
+    for (; !bytes.empty(); bytes = bytes.subspan(size)) {
+      bool is_last = false;
+      const Node node = node_of(bytes.first(size), is_last);
+      const Status status = status_of(follower_.push(node, is_last, is_inside));
+      if (status != Status::ok) return status;
+    }
+    return Status::ok;
+  }
+
+  /// The axes must still be where the path begins.
+  Status start() {
+    const ShutOut guard;
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if (follower_.is_led(i) &&
+          (axes_[i].state() != SupervisorState::enabled || !(axes_[i].leading() == follower_.start_position()[i])))
+        return Status::wrong_state;
+    if (!follower_.start()) return Status::wrong_state;
+    axes_.board().host_commands(true);
+    return Status::ok;
+  }
+
+  void stop() {
+    const ShutOut guard;
+    follower_.stop();
+  }
+
+  Status set_rate(const PathRateRequest& request) {
+    if (request.permille > 1000 || request.held > 1) return Status::malformed;
+    const ShutOut guard;
+    if (!follower_.is_open()) return Status::wrong_state;
+    follower_.hold(request.held != 0);
+    follower_.override_rate(request.permille == 1000 ? kOneCount : kOneCount / 1000 * request.permille);
+    return Status::ok;
+  }
+
+  PathStatePayload state() const {
+    const ShutOut guard;
+    PathStatePayload state;
+    state.phase = static_cast<std::uint8_t>(follower_.phase());
+    state.end = static_cast<std::uint8_t>(follower_.end());
+    state.mask = static_cast<std::uint8_t>(follower_.mask());
+    state.held = follower_.is_held() ? 1 : 0;
+    state.elapsed = follower_.elapsed();
+    state.ahead = follower_.ahead();
+    state.passed_nodes = follower_.passed_nodes();
+    state.room = static_cast<std::uint16_t>(follower_.room());
+    state.permille = static_cast<std::uint16_t>((follower_.rate() * 1000 + kOneCount / 2) >> kFractionBits);
+    return state;
+  }
+
+  /// True where an axis is on its path: then all stop there, and this one is disabled afterwards.
+  bool disables_at_end(std::size_t axis) {
+    const ShutOut guard;
+    if (!is_moving() || !follower_.is_led(axis)) return false;
+    follower_.stop();
+    disabled_at_end_ |= 1u << axis;
+    return true;
+  }
+
+  /// The background's own work, once a round.
+  void poll() {
+    if (follower_.is_open()) follower_.prepare();
+    if (disabled_at_end_ == 0 || is_moving()) return;
+    const ShutOut guard;
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if ((disabled_at_end_ >> i & 1u) != 0) axes_[i].disable();
+    disabled_at_end_ = 0;
+  }
+
+  /// The control interrupt's own, before the axes' steps, while is_moving().
+  [[gnu::noinline]] void before_step() {
+    if (axes_.board().is_host_lost()) follower_.stop(PathEnd::host_lost);
+    follower_.before_step(axes_);
+    axes_.board().excuse_silence(is_moving());
+  }
+
+ private:
+  using Follower = PathFollower<kAxes, kNodes>;
+  using Node = typename Follower::Node;
+
+  Node node_of(std::span<const std::byte> bytes, bool& is_last) const {
+    const auto word = [&bytes](std::size_t place) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, bytes.data() + 4 * place, sizeof value);
+      return value;
+    };
+    Node node;
+    is_last = (word(0) & kLastNode) != 0;
+    node.duration = word(0) & ~kLastNode;
+    std::size_t place = 1;
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      if (!follower_.is_led(i)) continue;
+      node.axis[i] = {static_cast<std::int32_t>(word(place)), static_cast<std::int32_t>(word(place + 1)),
+                      static_cast<std::int32_t>(word(place + 2))};
+      place += 3;
+    }
+    return node;
+  }
+
+  static Status status_of(NodeProblem problem) {
+    switch (problem) {
+      case NodeProblem::none:
+        return Status::ok;
+      case NodeProblem::no_room:
+        return Status::no_room;
+      case NodeProblem::outside_travel:
+        return Status::outside_travel;
+      case NodeProblem::not_open:
+        return Status::wrong_state;
+      default:
+        return Status::unreachable;
+    }
+  }
+
+  Group& axes_;
+  Follower follower_;
+  unsigned disabled_at_end_ = 0;  ///< axes
+};
+
+}  // namespace firmware

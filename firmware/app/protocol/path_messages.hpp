@@ -1,0 +1,53 @@
+// Payloads of the requests for a path. Little-endian, as they lie in the report: README.md.
+#pragma once
+
+#include "firmware/app/protocol/messages.hpp"
+#include "firmware/core/path/path_node.hpp"
+
+namespace firmware {
+
+struct OpenPathRequest {
+  std::uint8_t mask = 0;      ///< axes, bit 0 is x
+  std::uint8_t relative = 0;  ///< 1: axes need not be homed
+  PathUnits units{};
+  std::array<std::uint8_t, 3> reserved{};
+};
+static_assert(sizeof(OpenPathRequest) == 8);
+
+/// Where the references stand, from which the first node counts.
+struct OpenPathPayload {
+  struct Position {
+    std::uint32_t counts_low = 0;
+    std::int32_t counts_high = 0;
+    std::uint32_t fraction = 0;  ///< 2^-32 counts
+  };
+  std::array<Position, hal::kMostAxes> axis{};
+  std::uint32_t room = 0;  ///< nodes that the board holds
+};
+static_assert(sizeof(OpenPathPayload) == kPayloadSize);
+
+/// Nodes, as many as are sent: a word of duration, then travel, velocity and acceleration of each axis of the mask.
+inline constexpr std::uint32_t kLastNode = 1u << 31;  ///< in the word of duration: nothing comes after it
+constexpr std::size_t path_node_size(std::size_t axes) { return 4 + 12 * axes; }
+static_assert(path_node_size(hal::kMostAxes) <= kPayloadSize);
+
+struct PathRateRequest {
+  std::uint16_t permille = 1000;  ///< of the feeds that were planned, up to 1000
+  std::uint8_t held = 0;          ///< 1: feed hold
+  std::uint8_t reserved = 0;
+};
+
+struct PathStatePayload {
+  std::uint8_t phase = 0;  ///< PathPhase
+  std::uint8_t end = 0;    ///< PathEnd
+  std::uint8_t mask = 0;
+  std::uint8_t held = 0;
+  std::uint32_t elapsed = 0;  ///< samples of the path
+  std::uint32_t ahead = 0;    ///< likewise, that the board still has
+  std::uint32_t passed_nodes = 0;
+  std::uint16_t room = 0;      ///< nodes that fit
+  std::uint16_t permille = 0;  ///< of the clock, now
+};
+static_assert(sizeof(PathStatePayload) == 20);
+
+}  // namespace firmware

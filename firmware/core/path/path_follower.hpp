@@ -1,0 +1,296 @@
+// A path that the host streams and the board follows by itself: all axes led by one clock.
+#pragma once
+
+#include <atomic>
+
+#include "firmware/core/path/path_clock.hpp"
+#include "firmware/core/path/path_piece.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
+
+namespace firmware {
+
+/// Numbers are permanent: they stand in replies.
+enum class PathPhase : std::uint8_t {
+  idle = 0,
+  open = 1,  ///< takes nodes, and waits for its start
+  running = 2,
+  stopping = 3,  ///< comes to rest on the path, and ends there
+  done = 4,
+};
+
+enum class PathEnd : std::uint8_t {
+  none = 0,
+  completed = 1,  ///< its last node was reached
+  asked = 2,      ///< somebody stopped it
+  starved = 3,    ///< the host sent too little, too late
+  host_lost = 4,  ///< the host is silent
+  fault = 5,      ///< an axis stopped for a reason of its own, and left the path
+};
+
+/// What can be wrong with a node.
+enum class NodeProblem : std::uint8_t {
+  none,
+  not_open,
+  no_room,
+  too_fast,        ///< a word or the duration is out of range
+  ends_in_motion,  ///< the last node, and it is not at rest
+  outside_travel,  ///< of a homed axis
+};
+
+/// Nodes come in by push() and wait in a ring of `nodes`; prepare() makes the next few polynomials of them; both in the
+/// background. before_step() belongs to the control interrupt. What both touch is named so.
+///
+/// The clock runs at the override's rate. It stops for a hold, for a stop, for a silent host, and where the nodes that
+/// are there might not last for a stop: then it stops in time to stand on the path. Nodes at rest need no stop.
+template <std::size_t axes, std::size_t nodes>
+class PathFollower {
+ public:
+  static constexpr std::size_t kAxes = axes;
+  static constexpr std::size_t kNodes = nodes;
+  using Node = PathNode<axes>;
+
+  // The background, while the control interrupt is shut out.
+
+  /// Axes of the mask stand; `start`: where their references are. The clock: acceleration a sample^2 and jerk a
+  /// sample^3, kOneCount being a sample. The axes' accelerations: increments a sample^2.
+  constexpr void open(unsigned mask, const PathUnits& units, const std::array<CountPosition, axes>& start,
+                      const std::array<Increment, axes>& most_acceleration, Increment clock_acceleration,
+                      Increment clock_jerk) {
+    mask_ = mask;
+    units_ = units;
+    most_acceleration_ = most_acceleration;
+    for (std::size_t i = 0; i < axes; ++i) {
+      // Nodes stand on a grid; from what lies between two of its points the first sample leads to the grid.
+      planned_[i] = start[i];
+      begin_offset_[i] = start[i].fraction & ((Increment{1} << (kFractionBits - units.travel_bits)) - 1);
+      planned_[i].fraction -= begin_offset_[i];
+      last_increment_[i] = seen_[i] = 0;
+    }
+    start_ = start;
+    clock_.configure(clock_acceleration, clock_jerk);
+    clock_.stand();
+    ring_first_ = ring_count_ = 0;
+    made_.store(0);
+    used_.store(0);
+    newest_ = {};
+    accepted_ = passed_time_ = 0;
+    passed_nodes_ = 0;
+    time_ = 0;
+    ends_at_rest_ = true;
+    is_complete_ = is_held_ = false;
+    end_ = PathEnd::none;
+    phase_ = PathPhase::open;
+  }
+
+  /// False before there is anything to follow.
+  constexpr bool start() {
+    if (phase_ != PathPhase::open || accepted_ == 0) return false;
+    phase_ = PathPhase::running;
+    clock_.begin(wanted_rate());
+    return true;
+  }
+
+  /// Comes to rest on the path. One that has not begun just ends.
+  constexpr void stop(PathEnd why = PathEnd::asked) {
+    if (phase_ == PathPhase::open) finish(why);
+    if (phase_ != PathPhase::running) return;
+    phase_ = PathPhase::stopping;
+    end_ = why;
+  }
+
+  constexpr void hold(bool held) { is_held_ = held; }
+  /// 0..kOneCount.
+  constexpr void override_rate(Increment rate) { override_ = rate < 0 ? 0 : rate > kOneCount ? kOneCount : rate; }
+
+  /// The next node; `last`: nothing comes after it. `is_inside(axis, counts)` says whether an axis may go there.
+  template <typename IsInside>
+  constexpr NodeProblem push(const Node& node, bool last, IsInside is_inside) {
+    if ((phase_ != PathPhase::open && phase_ != PathPhase::running) || is_complete_) return NodeProblem::not_open;
+    if (ring_count_ == nodes) return NodeProblem::no_room;
+    if (node.duration < kShortestPiece || node.duration > kLongestPiece ||
+        !PathPiece<axes>::between(newest_, node, units_))
+      return NodeProblem::too_fast;
+    if (last && !node.is_at_rest()) return NodeProblem::ends_in_motion;
+    std::array<CountPosition, axes> there = planned_;
+    for (std::size_t i = 0; i < axes; ++i) {
+      there[i].counts += node.axis[i].travel >> units_.travel_bits;
+      const std::int64_t part = node.axis[i].travel & ((std::int64_t{1} << units_.travel_bits) - 1);
+      there[i].advance(part << (kFractionBits - units_.travel_bits));
+      if (is_led(i) && !is_inside(i, there[i].counts)) return NodeProblem::outside_travel;
+    }
+    planned_ = there;
+    newest_ = node.axis;
+    ring_[(ring_first_ + ring_count_) % nodes] = node;
+    ++ring_count_;
+    accepted_ += node.duration;
+    ends_at_rest_ = node.is_at_rest();
+    is_complete_ = last;
+    return NodeProblem::none;
+  }
+
+  // The background, at any time.
+
+  /// Makes the next polynomials; some tens of samples' worth. Cheap where there is nothing to do.
+  constexpr void prepare() {
+    while (ring_count_ > 0) {
+      const std::uint32_t made = made_.load(std::memory_order_relaxed);
+      if (made - used_.load(std::memory_order_acquire) == kPrepared) return;
+      const Node& node = ring_[ring_first_];
+      pieces_[made % kPrepared] = *PathPiece<axes>::between(made == 0 ? Ends{} : prepared_to_, node, units_);
+      prepared_to_ = node.axis;
+      ring_first_ = (ring_first_ + 1) % nodes;
+      --ring_count_;
+      made_.store(made + 1, std::memory_order_release);
+    }
+  }
+
+  constexpr std::size_t room() const { return nodes - ring_count_; }
+  constexpr unsigned mask() const { return mask_; }
+  constexpr bool is_led(std::size_t axis) const { return (mask_ >> axis & 1u) != 0; }
+  constexpr bool is_open() const { return phase_ != PathPhase::idle && phase_ != PathPhase::done; }
+  constexpr bool is_moving() const { return phase_ == PathPhase::running || phase_ == PathPhase::stopping; }
+  constexpr PathPhase phase() const { return phase_; }
+  constexpr PathEnd end() const { return end_; }
+  constexpr bool is_held() const { return is_held_; }
+  constexpr const std::array<CountPosition, axes>& start_position() const { return start_; }
+  constexpr Increment rate() const { return clock_.rate(); }
+  /// Path time: samples, from the start, and those that are still to come.
+  constexpr std::uint32_t elapsed() const {
+    return static_cast<std::uint32_t>((passed_time_ >> kPathTimeBits) + (time_ >> kFractionBits));
+  }
+  constexpr std::uint32_t ahead() const { return static_cast<std::uint32_t>(time_ahead() >> kPathTimeBits); }
+  constexpr std::uint32_t passed_nodes() const { return passed_nodes_; }
+
+  // The control interrupt.
+
+  /// Before the axes' steps, while is_moving(): leads those of the mask. An AxisGroup.
+  template <typename Group>
+  constexpr void before_step(Group& group) {
+    for (std::size_t i = 0; i < axes; ++i)
+      if (is_led(i) && group[i].state() != SupervisorState::enabled) return leave(group);
+    set_rate();
+    const Increment rate = clock_.next();
+    const bool has_ended = advance(rate);
+    lead(group);
+    if (has_ended)
+      finish(phase_ == PathPhase::stopping ? end_ : PathEnd::completed);
+    else if (clock_.stands() && (phase_ == PathPhase::stopping || is_starved_))
+      finish(phase_ == PathPhase::stopping ? end_ : PathEnd::starved);
+  }
+
+ private:
+  using Ends = std::array<PathAxisNode, axes>;
+  static constexpr std::uint32_t kPrepared = 8;
+  static constexpr int kToIncrement = kFractionBits - path_piece::kBits;
+
+  /// An axis goes its own way. The others hear of that in this step, and slow down from the speed that they have in it.
+  template <typename Group>
+  constexpr void leave(Group& group) {
+    for (std::size_t i = 0; i < axes; ++i)
+      if (is_led(i)) group[i].lead(last_increment_[i]);
+    finish(PathEnd::fault);
+  }
+
+  constexpr void finish(PathEnd why) {
+    end_ = why;
+    phase_ = PathPhase::done;
+    clock_.stand();
+  }
+
+  /// 2^-kPathTimeBits samples.
+  constexpr std::int64_t time_ahead() const {
+    return static_cast<std::int64_t>(accepted_ - passed_time_) - (time_ >> (kFractionBits - kPathTimeBits));
+  }
+
+  constexpr void set_rate() {
+    const std::int64_t ahead = time_ahead() >> kPathTimeBits;
+    const bool is_ample = ends_at_rest_ || ahead > 2 * clock_.longest_stop();
+    if (is_ample && clock_.is_steady() && clock_.rate() == wanted_rate()) {  // nearly always
+      is_starved_ = false;
+      return;
+    }
+    const std::int64_t way = clock_.way_of_stop();
+    is_starved_ = !ends_at_rest_ && ahead <= 2 * way;
+    const bool is_urgent = !ends_at_rest_ && ahead <= way;
+    // What the clock takes from a fast axis comes on top of what the path takes from it.
+    if (!clock_.is_steady() && is_loaded_ && !is_urgent)
+      clock_.level_out();
+    else
+      clock_.set_target(is_starved_ ? 0 : wanted_rate());
+  }
+
+  constexpr Increment wanted_rate() const { return phase_ == PathPhase::stopping || is_held_ ? 0 : override_; }
+
+  /// True at the end of the last node.
+  constexpr bool advance(Increment rate) {
+    time_ += rate;
+    const std::uint32_t made = made_.load(std::memory_order_acquire);
+    std::uint32_t used = used_.load(std::memory_order_relaxed);
+    has_piece_ = used != made;
+    // A piece lasts a sample at least, and the clock runs no faster: two ends at most.
+    for (int k = 0; k < 2 && has_piece_; ++k) {
+      const PathPiece<axes>& piece = pieces_[used % kPrepared];
+      if (time_ < piece.duration()) break;
+      time_ -= piece.duration();
+      passed_time_ += static_cast<std::uint64_t>(piece.duration() >> (kFractionBits - kPathTimeBits));
+      for (std::size_t i = 0; i < axes; ++i) seen_[i] -= piece.whole_travel(i);
+      ++used;
+      ++passed_nodes_;
+      has_piece_ = used != made;
+    }
+    used_.store(used, std::memory_order_release);
+    if (has_piece_) return false;
+    time_ = 0;  // at the end of what there is
+    return is_complete_ && passed_time_ == accepted_;
+  }
+
+  template <typename Group>
+  constexpr void lead(Group& group) {
+    const PathPiece<axes>* piece = has_piece_ ? &pieces_[used_.load(std::memory_order_relaxed) % kPrepared] : nullptr;
+    const std::uint32_t share = piece != nullptr ? piece->share(time_) : 0;
+    is_loaded_ = false;
+    for (std::size_t i = 0; i < axes; ++i) {
+      if (!is_led(i)) continue;
+      const std::int64_t here = piece != nullptr ? piece->travel_at(i, share) : 0;
+      const Increment increment = ((here - seen_[i]) << kToIncrement) - begin_offset_[i];
+      seen_[i] = here;
+      begin_offset_[i] = 0;
+      if (!clock_.is_steady()) note_load(i, increment);
+      last_increment_[i] = increment;
+      group[i].lead(increment);
+    }
+  }
+
+  /// Whether the clock's change adds to an acceleration that is near the axis's limit.
+  constexpr void note_load(std::size_t i, Increment increment) {
+    const Increment change = increment - last_increment_[i];
+    const Increment most = most_acceleration_[i] - (most_acceleration_[i] >> 4);
+    const bool is_with_motion = (change > 0) == (increment > 0);
+    if ((change > most || change < -most) && is_with_motion != clock_.is_slowing()) is_loaded_ = true;
+  }
+
+  unsigned mask_ = 0;
+  PathUnits units_{};
+  PathPhase phase_ = PathPhase::idle;
+  PathEnd end_ = PathEnd::none;
+  bool is_complete_ = false;   ///< the last node is there
+  bool ends_at_rest_ = false;  ///< the newest node is at rest
+  bool is_held_ = false, is_starved_ = false, is_loaded_ = false, has_piece_ = false;
+  Increment override_ = kOneCount;
+  PathClock clock_;
+  std::uint64_t accepted_ = 0, passed_time_ = 0;  ///< 2^-kPathTimeBits samples
+  std::uint32_t passed_nodes_ = 0;
+  Increment time_ = 0;                     ///< in the piece, kOneCount a sample
+  std::array<std::int64_t, axes> seen_{};  ///< where the axes are in the piece, 2^-32 counts
+  std::array<Increment, axes> last_increment_{};
+  std::array<Increment, axes> most_acceleration_{};  ///< of the axes' limits
+  std::array<Increment, axes> begin_offset_{};       ///< of the start from the nodes' grid, until the first sample
+  std::array<CountPosition, axes> start_{}, planned_{};
+  Ends newest_{}, prepared_to_{};
+  std::size_t ring_first_ = 0, ring_count_ = 0;
+  std::atomic<std::uint32_t> made_ = 0, used_ = 0;  // pieces: written by the background, by the control interrupt
+  std::array<PathPiece<axes>, kPrepared> pieces_{};
+  std::array<Node, nodes> ring_{};
+};
+
+}  // namespace firmware

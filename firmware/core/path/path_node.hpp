@@ -1,0 +1,45 @@
+// A path as the host plans it and the board follows it: nodes, and the motion of each axis at them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace firmware {
+
+/// Binary fractions in which the words of a path's nodes stand: the host chooses the finest that hold its motion.
+struct PathUnits {
+  std::uint8_t travel_bits = 16;        ///< of a count
+  std::uint8_t velocity_bits = 20;      ///< of a count a sample
+  std::uint8_t acceleration_bits = 26;  ///< of a count a sample^2
+};
+
+constexpr bool is_possible(const PathUnits& units) {
+  return units.travel_bits <= 24 && units.velocity_bits >= 17 && units.velocity_bits <= 30 &&
+         units.acceleration_bits >= 17 && units.acceleration_bits <= 40;
+}
+
+/// Of one axis at the end of a piece of path, which begins at the node before.
+struct PathAxisNode {
+  std::int32_t travel = 0;        ///< since the node before, in units
+  std::int32_t velocity = 0;      ///< here
+  std::int32_t acceleration = 0;  ///< here
+};
+
+inline constexpr int kPathTimeBits = 12;  ///< of a sample, in durations
+inline constexpr std::uint32_t kShortestPiece = 1u << kPathTimeBits;
+inline constexpr std::uint32_t kLongestPiece = 1u << 26;  ///< 16,384 samples
+
+template <std::size_t axes>
+struct PathNode {
+  std::uint32_t duration = 0;  ///< of the piece that ends here, kShortestPiece to kLongestPiece
+  std::array<PathAxisNode, axes> axis{};
+
+  constexpr bool is_at_rest() const {
+    for (const PathAxisNode& one : axis)
+      if (one.velocity != 0 || one.acceleration != 0) return false;
+    return true;
+  }
+};
+
+}  // namespace firmware

@@ -1,0 +1,115 @@
+// The motion between two nodes of a path: for each axis the polynomial of fifth degree in time that has position,
+// velocity and acceleration of both (quintic Hermite interpolation).
+#pragma once
+
+#include <bit>
+#include <optional>
+
+#include "firmware/core/count_position.hpp"
+#include "firmware/core/path/path_node.hpp"
+
+namespace firmware {
+
+namespace path_piece {
+
+/// Counts with 32 binary places; positions within a piece.
+inline constexpr int kBits = 32;
+/// 2^24 counts: sums of a polynomial's coefficients then fit 64 bits.
+inline constexpr std::int64_t kMost = std::int64_t{1} << (24 + kBits);
+
+/// value * factor * 2^-shift, downwards, 0 < shift <= 32; the result fits.
+constexpr std::int64_t scaled(std::int64_t value, std::uint32_t factor, int shift) {
+  const auto low = static_cast<std::uint32_t>(value);
+  const std::int64_t high = value >> 32;
+  return ((high * factor) << (32 - shift)) + static_cast<std::int64_t>((std::uint64_t{low} * factor) >> shift);
+}
+
+constexpr std::int64_t shifted(std::int64_t value, int left) { return left >= 0 ? value << left : value >> -left; }
+
+constexpr bool fits(std::int64_t value) { return value >= -kMost && value <= kMost; }
+
+/// As position terms, times the duration: V = v T, A = a T^2.
+struct Ends {
+  std::int64_t travel = 0, begin_velocity = 0, end_velocity = 0, begin_acceleration = 0, end_acceleration = 0;
+};
+
+constexpr std::int64_t way_of_velocity(std::int32_t velocity, int bits, std::uint32_t duration) {
+  return shifted(velocity * std::int64_t{duration}, kBits - bits - kPathTimeBits);  // below 2^60
+}
+
+/// Beyond kMost where it would not fit.
+constexpr std::int64_t way_of_acceleration(std::int32_t acceleration, int bits, std::uint32_t duration) {
+  const std::int64_t velocity = shifted(acceleration * std::int64_t{duration}, kBits - bits - kPathTimeBits);
+  constexpr std::int64_t kFastest = std::int64_t{1} << (14 + kBits);  // as motion limits have it
+  if (velocity > kFastest || velocity < -kFastest) return kMost + 1;
+  return scaled(velocity, duration, kPathTimeBits);
+}
+
+}  // namespace path_piece
+
+/// Whole numbers throughout: the same on every machine.
+template <std::size_t axes>
+class PathPiece {
+ public:
+  /// Nothing where a word is too large for the duration.
+  static constexpr std::optional<PathPiece> between(const std::array<PathAxisNode, axes>& begin,
+                                                    const PathNode<axes>& end, const PathUnits& units) {
+    using namespace path_piece;
+    PathPiece piece;
+    piece.duration_ = static_cast<Increment>(end.duration) << (kFractionBits - kPathTimeBits);
+    const int length = 32 - std::countl_zero(end.duration);
+    piece.shift_ = kFractionBits - kPathTimeBits - 32 + length;
+    piece.reciprocal_ = static_cast<std::uint32_t>(((std::uint64_t{1} << 63) - 1) / (end.duration << (32 - length)));
+    for (std::size_t i = 0; i < axes; ++i) {
+      const Ends e{std::int64_t{end.axis[i].travel} << (kBits - units.travel_bits),
+                   way_of_velocity(begin[i].velocity, units.velocity_bits, end.duration),
+                   way_of_velocity(end.axis[i].velocity, units.velocity_bits, end.duration),
+                   way_of_acceleration(begin[i].acceleration, units.acceleration_bits, end.duration),
+                   way_of_acceleration(end.axis[i].acceleration, units.acceleration_bits, end.duration)};
+      for (const std::int64_t way :
+           {e.travel, e.begin_velocity, e.end_velocity, e.begin_acceleration, e.end_acceleration})
+        if (!fits(way)) return {};
+      Polynomial& p = piece.axis_[i];
+      p.travel = e.travel;
+      p.term[0] = e.begin_velocity;
+      p.term[1] = e.begin_acceleration >> 1;
+      p.term[2] = 10 * e.travel - 6 * e.begin_velocity - 4 * e.end_velocity -
+                  ((3 * e.begin_acceleration - e.end_acceleration) >> 1);
+      p.term[3] = -15 * e.travel + 8 * e.begin_velocity + 7 * e.end_velocity +
+                  ((3 * e.begin_acceleration - 2 * e.end_acceleration) >> 1);
+      p.term[4] =
+          6 * e.travel - 3 * (e.begin_velocity + e.end_velocity) - ((e.begin_acceleration - e.end_acceleration) >> 1);
+    }
+    return piece;
+  }
+
+  /// Samples, as kOneCount a sample.
+  constexpr Increment duration() const { return duration_; }
+
+  /// The share of the duration that has passed, in 2^-32. 0 <= time < duration().
+  constexpr std::uint32_t share(Increment time) const {
+    const std::uint64_t product = std::uint64_t{static_cast<std::uint32_t>(time >> shift_)} * reciprocal_ >> 31;
+    return product >> 32 != 0 ? 0xFFFF'FFFFu : static_cast<std::uint32_t>(product);
+  }
+
+  /// Of an axis from where the piece begins, 2^-32 counts.
+  constexpr std::int64_t travel_at(std::size_t axis, std::uint32_t share) const {
+    const Polynomial& p = axis_[axis];
+    std::int64_t sum = p.term[4];
+    for (int i = 3; i >= 0; --i) sum = path_piece::scaled(sum, share, 32) + p.term[static_cast<std::size_t>(i)];
+    return path_piece::scaled(sum, share, 32);
+  }
+  constexpr std::int64_t whole_travel(std::size_t axis) const { return axis_[axis].travel; }
+
+ private:
+  struct Polynomial {
+    std::array<std::int64_t, 5> term{};  ///< of the share's powers 1 to 5
+    std::int64_t travel = 0;
+  };
+  Increment duration_ = 0;
+  int shift_ = 0;                 ///< makes a time of 32 bits, whose highest is set where it is the duration
+  std::uint32_t reciprocal_ = 0;  ///< 2^63 / that duration
+  std::array<Polynomial, axes> axis_{};
+};
+
+}  // namespace firmware

@@ -1,0 +1,285 @@
+// axistool run: a G-code program on a board.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
+
+#include "firmware/core/path/path_follower.hpp"
+#include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/device/motion.hpp"
+#include "host/device/path_run.hpp"
+#include "host/gcode/program.hpp"
+#include "host/read_file.hpp"
+#include "host/record/read_record.hpp"
+
+namespace axistool {
+
+namespace {
+
+using firmware::PathEnd;
+using host::ExitCode;
+using host::Failure;
+
+struct RunArguments : DeviceArguments {
+  std::string file, capture;
+  std::vector<std::string> linear;
+  double feed_percent = 100.0;
+  bool here = false;
+};
+
+std::atomic<bool> interrupted = false, held = false;
+
+/// Ctrl-Z holds the feed and lets it go again; a terminal's other ways of stopping a program end the path.
+void catch_signals() {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  std::signal(SIGTSTP, [](int) { held = !held; });
+}
+
+struct Extents {
+  host::PathPoint least, most;
+};
+
+Extents extents_of(const host::PlannedPath& path) {
+  Extents found{path.knots.front().position, path.knots.front().position};
+  for (std::size_t k = 0; k + 1 < path.knots.size(); ++k) {
+    constexpr int kParts = 4;
+    for (int i = 1; i <= kParts; ++i) {
+      const double time_s = path.knots[k].time_s + (path.knots[k + 1].time_s - path.knots[k].time_s) * i / kParts;
+      const host::PathPoint point = host::between(path.knots[k], path.knots[k + 1], time_s).position;
+      found.least = found.least.cwiseMin(point);
+      found.most = found.most.cwiseMax(point);
+    }
+  }
+  return found;
+}
+
+/// Before anything moves: the first place of the program that lies beyond a soft limit.
+void require_inside(const host::PlannedPath& path, const host::PathBoard& board, const std::string& name) {
+  for (const host::PlannedCurve& one : path.curves) {
+    const auto parts = std::max(2, static_cast<int>(one.curve.turning() * 32.0));
+    for (int i = 0; i <= parts; ++i) {
+      const host::PathPoint point = one.curve.at(one.curve.length() * i / parts).point;
+      for (std::size_t axis = 0; axis < board.scale.axes.size(); ++axis) {
+        const auto k = static_cast<Eigen::Index>(axis);
+        if (point[k] >= board.least[k] && point[k] <= board.most[k]) continue;
+        throw Failure(
+            ExitCode::refused,
+            fmt::format("{}:{}: {} = {:.4f} mm is beyond its travel, {:g} to {:g} mm: nothing has moved. Move "
+                        "the program, or monitor.travel_min and travel_max where the machine has the room",
+                        name, one.line, firmware::kAxisNames.at(board.scale.axes[axis]), point[k], board.least[k],
+                        board.most[k]));
+      }
+    }
+  }
+}
+
+std::string_view end_name(PathEnd end) {
+  switch (end) {
+    case PathEnd::none:
+      return "not ended";
+    case PathEnd::completed:
+      return "completed";
+    case PathEnd::asked:
+      return "interrupted";
+    case PathEnd::starved:
+      return "starved";
+    case PathEnd::host_lost:
+      return "host lost";
+    case PathEnd::fault:
+      return "fault";
+  }
+  return "unknown";
+}
+
+/// Where the program begins: where the references stand.
+host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale) {
+  host::PathPoint point = host::PathPoint::Zero();
+  for (std::size_t i = 0; i < at.size(); ++i)
+    point[static_cast<Eigen::Index>(i)] = (static_cast<double>(at[i].counts) + at[i].fraction) * scale.count_mm[i];
+  return point;
+}
+
+std::vector<host::BoardPosition> standing(const host::BoardState& status, const host::PathScale& scale) {
+  std::vector<host::BoardPosition> at;
+  for (const std::size_t axis : scale.axes) at.push_back({status.axis.at(axis).counts(), 0.0});
+  return at;
+}
+
+struct Planned {
+  host::GcodeProgram program;
+  host::PlannedPath path;
+};
+
+Planned plan(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
+             const std::vector<host::BoardPosition>& at) {
+  host::GcodeMachine machine;
+  machine.axes = board.scale.axes.size();
+  machine.home = board.home;
+  Planned planned;
+  planned.program = host::read_gcode(text, arguments.file, point_of(at, board.scale), machine);
+  host::PlanOptions options;
+  options.limits = board.limits;
+  options.count_mm = *std::min_element(board.scale.count_mm.begin(), board.scale.count_mm.end());
+  options.shortest_s = std::max(options.shortest_s, 2.0 / board.scale.rate_Hz);
+  planned.path = host::plan_path(planned.program.moves, options);
+  if (planned.path.knots.size() < 2)
+    throw Failure(ExitCode::bad_input, fmt::format("{}: nothing in it moves", arguments.file));
+  require_inside(planned.path, board, arguments.file);
+  return planned;
+}
+
+std::string box_text(const Extents& extents, std::size_t axes) {
+  std::string text;
+  for (std::size_t i = 0; i < axes; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    text += fmt::format("{}{} {:.3f} to {:.3f} mm", i > 0 ? ", " : "", firmware::kAxisNames.at(i), extents.least[k],
+                        extents.most[k]);
+  }
+  return text;
+}
+
+nlohmann::json document_of(const RunArguments& arguments, const Planned& planned, std::size_t axes) {
+  const Extents extents = extents_of(planned.path);
+  nlohmann::json document = {{"format", "axis-run/1"},
+                             {"file", arguments.file},
+                             {"lines", planned.program.lines},
+                             {"duration_s", planned.path.duration_s()},
+                             {"nodes", planned.path.knots.size() - 1},
+                             {"contour_um", nullptr}};
+  for (std::size_t i = 0; i < axes; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    document["extents_mm"][std::string(firmware::kAxisNames.at(i))] = {extents.least[k], extents.most[k]};
+  }
+  return document;
+}
+
+/// One line on a terminal, rewritten.
+class RunLine {
+ public:
+  RunLine(bool shows, const host::PlannedPath& path) : shows_(shows && ::isatty(STDERR_FILENO) != 0), path_(path) {}
+  ~RunLine() {
+    if (has_line_) fmt::print(stderr, "\r\033[K");
+  }
+
+  void draw(const host::PathProgress& progress, bool is_held) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!shows_ || (has_line_ && now - drawn_ < std::chrono::milliseconds(200))) return;
+    drawn_ = now;
+    has_line_ = true;
+    const auto next = std::ranges::upper_bound(path_.curves, progress.elapsed_s, {}, &host::PlannedCurve::time_s);
+    const std::size_t line = next == path_.curves.begin() ? 0 : (next - 1)->line;
+    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line,
+               100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
+               progress.state.permille / 10.0, is_held ? ", HELD: Ctrl-Z goes on" : "");
+    std::fflush(stderr);
+  }
+
+ private:
+  bool shows_, has_line_ = false;
+  const host::PlannedPath& path_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end) {
+  if (end == PathEnd::fault || end == PathEnd::host_lost)
+    for (const std::size_t axis : axes.scale.axes)
+      host::require_no_fault(board.status(), static_cast<std::uint8_t>(axis));
+  if (end == PathEnd::starved)
+    throw Failure(ExitCode::time_out,
+                  "the program came too slowly for the board, which has stopped on the path: is this computer busy?");
+  if (end != PathEnd::completed)
+    throw Failure(ExitCode::answer_is_no, fmt::format("{} before its end; the axes stand on the path", end_name(end)));
+}
+
+void run(const RunArguments& arguments) {
+  const std::string text = host::read_file(arguments.file);
+  host::BoardClient board = open_board(arguments);
+  board.require_same_table();
+  const firmware::ParameterValues values = board.read_values();
+  const std::size_t axes = std::min<std::size_t>(board.axis_count(), 3);
+  const unsigned metres = arguments.linear.empty() ? 0u : axis_mask(arguments.linear, axes);
+  const host::PathBoard machine = host::path_board(values, axes, metres);
+  const auto mask = static_cast<std::uint8_t>((1u << axes) - 1u);
+
+  Planned planned = plan(text, arguments, machine, standing(board.status(), machine.scale));
+  nlohmann::json document = document_of(arguments, planned, axes);
+  const Extents extents = extents_of(planned.path);
+  if (talks(arguments))
+    fmt::print("{}: {} lines, {:.2f} s, {}\n", arguments.file, planned.program.lines, planned.path.duration_s(),
+               box_text(extents, axes));
+  if (arguments.dry_run) {
+    document["stopped_because"] = "dry run";
+    if (!arguments.json.empty()) write_json(document, arguments.json);
+    return;
+  }
+  const bool relative = arguments.here || !planned.program.is_absolute;
+  for (std::size_t axis = 0; axis < axes && !relative; ++axis)
+    if ((board.status().axis.at(axis).flags & firmware::kAxisHomed) == 0)
+      throw Failure(ExitCode::refused, fmt::format("axis {} does not know where it is: `axistool home {}` first, or "
+                                                   "--here, which takes its present count for its position",
+                                                   firmware::kAxisNames.at(axis), firmware::kAxisNames.at(axis)));
+  require_consent(arguments, fmt::format("Run {}? The axes move within {}.", arguments.file, box_text(extents, axes)));
+  catch_signals();
+  const bool was_enabled = host::are_enabled(board, mask);
+  if (!was_enabled) host::enable_and_wait(board, mask);
+  // From where the references stand, now that the loops are closed.
+  planned = plan(text, arguments, machine, host::path_start(board, machine.scale, relative));
+  host::PathOutcome outcome;
+  {
+    RunLine line(talks(arguments), planned.path);
+    outcome = host::run_path(board, planned.path, machine, relative, true, [&](const host::PathProgress& progress) {
+      line.draw(progress, held);
+      return host::PathWish{held, interrupted, static_cast<int>(std::lround(arguments.feed_percent * 10.0))};
+    });
+  }
+  if (!was_enabled) host::disable_and_wait(board, mask);
+  const std::vector<double> contour_um = host::contour_error_um(outcome.capture, planned.path, machine.scale);
+  const double worst_um = contour_um.empty() ? 0.0 : *std::max_element(contour_um.begin(), contour_um.end());
+  if (!arguments.capture.empty())
+    host::write_record(host::path_record(outcome, machine, contour_um), arguments.capture);
+  const auto end = static_cast<PathEnd>(outcome.state.end);
+  document["duration_s"] = outcome.state.elapsed / machine.scale.rate_Hz;
+  document["planned_s"] = planned.path.duration_s();
+  document["contour_um"] = worst_um;
+  document["stopped_because"] = end_name(end);
+  document["lost_rows"] = outcome.capture.lost;
+  if (!arguments.json.empty()) write_json(document, arguments.json);
+  if (talks(arguments))
+    fmt::print("{}: {:.2f} s, contour error {:.1f} um at most\n", end_name(end), document["duration_s"].get<double>(),
+               worst_um);
+  say_end(board, machine, end);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Run a G-code program on the board's axes");
+  add_input(*command, "FILE", arguments->file, "program (RS274/NGC)")->required();
+  add_output(*command, "--capture", arguments->capture, "record to write (axis-record/1), with the contour error");
+  command->add_option("--feed", arguments->feed_percent, "feed override, %")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 100.0));
+  command->add_option("--linear", arguments->linear, "axes whose parameters stand in metres")->delimiter(',');
+  command->add_flag("--here", arguments->here, "axes that are not homed: their counts are their positions");
+  add_device_options(*command, *arguments);
+  add_change_options(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  axistool run part.ngc --dry-run              # time and extents, against the board's limits\n"
+      "  axistool run part.ngc --capture part.csv\n"
+      "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G54 G61 G64 P G90 G91, F, M0 M2 M30, X Y Z, N, comments;\n"
+      "anything else is an error that names its line. Paths are exact, G61, unless the program says G64; G64 without "
+      "P\n"
+      "keeps within 0.05 mm. On a terminal Ctrl-Z holds the feed and lets it go again, Ctrl-C stops on the path.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

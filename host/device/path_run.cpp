@@ -1,0 +1,329 @@
+#include "host/device/path_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "firmware/core/path/path_follower.hpp"
+#include "host/device/capture_channels.hpp"
+#include "host/exit_codes.hpp"
+
+namespace host {
+
+namespace {
+
+using firmware::Channel;
+using firmware::PathPhase;
+using firmware::PathStatePayload;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kRound{10};       // a tenth of the silence that a board suffers while it moves
+constexpr double kHeadStart_s = 0.5;     // of nodes, before the board sets out
+constexpr double kMostRows_Hz = 1000.0;  // a cable takes so many rows of two axes beside the nodes
+
+firmware::OpenPathRequest open_request(const PathScale& scale, const firmware::PathUnits& units, bool relative) {
+  firmware::OpenPathRequest request;
+  for (const std::size_t axis : scale.axes) request.mask |= static_cast<std::uint8_t>(1u << axis);
+  request.relative = relative ? 1 : 0;
+  request.units = units;
+  return request;
+}
+
+std::vector<BoardPosition> positions(const firmware::OpenPathPayload& opened, const PathScale& scale) {
+  std::vector<BoardPosition> at;
+  for (const std::size_t axis : scale.axes) {
+    const auto& one = opened.axis.at(axis);
+    const auto high = static_cast<std::uint64_t>(static_cast<std::uint32_t>(one.counts_high)) << 32;
+    at.push_back({static_cast<std::int64_t>(high | one.counts_low), std::ldexp(one.fraction, -32)});
+  }
+  return at;
+}
+
+/// In the order of the axes' numbers, as the board reads them.
+std::vector<std::byte> bytes_of(const PathWord& node, bool is_last, const PathScale& scale) {
+  std::vector<std::uint32_t> words{node.duration | (is_last ? firmware::kLastNode : 0u)};
+  std::vector<std::size_t> order(scale.axes.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::sort(order, {}, [&](std::size_t i) { return scale.axes[i]; });
+  for (const std::size_t i : order)
+    for (const std::int32_t word : {node.axis[i].travel, node.axis[i].velocity, node.axis[i].acceleration})
+      words.push_back(static_cast<std::uint32_t>(word));
+  std::vector<std::byte> bytes(4 * words.size());
+  std::memcpy(bytes.data(), words.data(), bytes.size());
+  return bytes;
+}
+
+/// Rows of all axes as they come.
+class Rows {
+ public:
+  Rows(BoardClient& board, const firmware::ParameterValues& values, const PathScale& scale, PathCapture& capture)
+      : board_(board), capture_(capture), unit_mm_(scale.unit_mm) {
+    const bool fixed_point = board.identify().fixed_point != 0;
+    const BoardState status = board.status();
+    capture.mm.resize(scale.axes.size());
+    capture.reference_mm.resize(scale.axes.size());
+    for (std::size_t i = 0; i < scale.axes.size(); ++i) order_.push_back(i);
+    std::ranges::sort(order_, {}, [&](std::size_t i) { return scale.axes[i]; });
+    for (std::size_t i = 0; i < scale.axes.size(); ++i) {
+      const std::size_t axis = scale.axes[i];
+      scales_.emplace_back(values.axis(axis), fixed_point, status.axis.at(axis).counts());
+      request_.channels[axis] =
+          1u << static_cast<unsigned>(Channel::counts) | 1u << static_cast<unsigned>(Channel::reference);
+    }
+    first_ = order_.front();
+    request_.channels[scale.axes[first_]] |= 1u << static_cast<unsigned>(Channel::dac_code);
+    request_.every = static_cast<std::uint16_t>(std::max(1.0, std::ceil(scale.rate_Hz / kMostRows_Hz)));
+    capture.row_period_s = request_.every / scale.rate_Hz;
+  }
+
+  void start() { board_.start_capture(request_); }
+
+  bool fetch(milliseconds patience) {
+    const auto samples = board_.next_samples(patience);
+    if (!samples) return false;
+    const std::size_t words = request_.words();
+    if (samples->words.size() % words != 0)
+      throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
+    for (std::size_t row = 0; row * words < samples->words.size(); ++row) {
+      const std::uint32_t number = samples->first_row + static_cast<std::uint32_t>(row);
+      if (!capture_.number.empty()) capture_.lost += number - capture_.number.back() - 1;
+      capture_.number.push_back(number);
+      const std::uint32_t* word = samples->words.data() + row * words;
+      for (const std::size_t i : order_) {
+        if (i == first_) capture_.u_V.push_back(scales_[i](Channel::dac_code, *word++));
+        capture_.mm[i].push_back(unit_mm_[i] * scales_[i](Channel::counts, *word++));
+        capture_.reference_mm[i].push_back(unit_mm_[i] * scales_[i](Channel::reference, *word++));
+      }
+    }
+    return true;
+  }
+
+ private:
+  BoardClient& board_;
+  PathCapture& capture_;
+  std::vector<double> unit_mm_;
+  firmware::CaptureRequest request_;
+  std::vector<std::size_t> order_;  ///< of the words in a row
+  std::size_t first_ = 0;
+  std::vector<ChannelScale> scales_;
+};
+
+/// Sends nodes as long as the board has room, and hears how far it is.
+class Stream {
+ public:
+  Stream(BoardClient& board, const PathWords& words, const PathScale& scale)
+      : board_(board), words_(words), scale_(scale) {}
+
+  bool is_all_sent() const { return next_ == words_.nodes.size(); }
+  double sent_s() const { return static_cast<double>(sent_) / (1u << firmware::kPathTimeBits) / scale_.rate_Hz; }
+  const PathStatePayload& state() const { return state_; }
+  void ask() { state_ = board_.path_state(); }
+  void set(const PathStatePayload& state) { state_ = state; }
+
+  /// One node; false where there is none to send, or no room.
+  bool send() {
+    if (is_all_sent()) return false;
+    const PathWord& node = words_.nodes[next_];
+    try {
+      if (!board_.path_nodes(bytes_of(node, next_ + 1 == words_.nodes.size(), scale_), state_)) return false;
+    } catch (const Failure& failure) {
+      throw Failure(failure.code, fmt::format("node {} of {}: {}", next_, words_.nodes.size(), failure.what()));
+    }
+    sent_ += node.duration;
+    ++next_;
+    return true;
+  }
+
+ private:
+  BoardClient& board_;
+  const PathWords& words_;
+  const PathScale& scale_;
+  std::size_t next_ = 0;
+  std::uint64_t sent_ = 0;
+  PathStatePayload state_;
+};
+
+}  // namespace
+
+PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, unsigned metres) {
+  PathBoard board;
+  board.scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
+  const double inf = std::numeric_limits<double>::infinity();
+  board.limits = {PathPoint::Constant(inf), PathPoint::Constant(inf), PathPoint::Constant(inf)};
+  board.least = PathPoint::Constant(-inf);
+  board.most = PathPoint::Constant(inf);
+  board.home = PathPoint::Zero();
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    const firmware::AxisValues v = values.axis(axis);
+    if (!v.get<"drive.fitted">())
+      throw Failure(ExitCode::refused, fmt::format("axis {} is not fitted: give it the parameters of a design "
+                                                   "(axistool design, axistool set-params)",
+                                                   firmware::kAxisNames.at(axis)));
+    const auto i = static_cast<Eigen::Index>(axis);
+    const double unit = (metres >> axis & 1u) != 0 ? 1000.0 : 1.0;
+    board.scale.unit_mm.push_back(unit);
+    board.scale.axes.push_back(axis);
+    board.scale.count_mm.push_back(unit * static_cast<double>(v.get<"drive.encoder_resolution">()));
+    board.limits.velocity[i] = unit * static_cast<double>(v.get<"limits.velocity">());
+    board.limits.acceleration[i] = unit * static_cast<double>(v.get<"limits.acceleration">());
+    board.limits.jerk[i] = unit * static_cast<double>(v.get<"limits.jerk">());
+    board.least[i] = unit * static_cast<double>(v.get<"monitor.travel_min">());
+    board.most[i] = unit * static_cast<double>(v.get<"monitor.travel_max">());
+    board.home[i] = unit * static_cast<double>(v.get<"homing.position">());
+  }
+  return board;
+}
+
+std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale, bool relative) {
+  return positions(board.open_path(open_request(scale, {}, relative)), scale);
+}
+
+PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative, bool captures,
+                     const std::function<PathWish(const PathProgress&)>& follow) {
+  PathOutcome outcome;
+  const firmware::PathUnits units = units_of(path, scale.scale);
+  const auto start = positions(board.open_path(open_request(scale.scale, units, relative)), scale.scale);
+  const PathWords words = path_words(path, scale.scale, units, start);
+  Stream stream(board, words, scale.scale);
+  std::optional<Rows> rows;
+  try {
+    while (stream.sent_s() < kHeadStart_s && stream.send()) continue;
+    if (captures) {
+      rows.emplace(board, board.read_values(), scale.scale, outcome.capture);
+      rows->start();
+    }
+    stream.set(board.start_path());
+    PathWish given;
+    auto asked = steady_clock::now();
+    std::size_t rows_asked = 0;
+    for (;;) {
+      const bool sent = stream.send();
+      while (rows && rows->fetch(sent ? milliseconds(0) : milliseconds(2))) continue;
+      if (!sent && !rows) std::this_thread::sleep_for(milliseconds(2));
+      // A simulated board in this process has its own time: rows tell it.
+      const auto now = steady_clock::now();
+      if (now - asked < kRound && outcome.capture.number.size() < rows_asked + 16) continue;
+      asked = now;
+      rows_asked = outcome.capture.number.size();
+      stream.ask();
+      const auto phase = static_cast<PathPhase>(stream.state().phase);
+      if (phase == PathPhase::done || phase == PathPhase::idle) break;
+      const PathWish wish = follow({stream.state(), static_cast<double>(stream.state().elapsed) / scale.scale.rate_Hz});
+      if (wish.stop && !given.stop) stream.set(board.stop_path());
+      if (!wish.stop && (wish.held != given.held || wish.permille != given.permille))
+        stream.set(board.path_rate(
+            {static_cast<std::uint16_t>(wish.permille), static_cast<std::uint8_t>(wish.held ? 1 : 0), 0}));
+      given = wish;
+    }
+    outcome.state = stream.state();
+    if (rows) {
+      for (int k = 0; k < 10; ++k) {
+        rows->fetch(milliseconds(2));
+        board.heartbeat();
+      }
+      outcome.capture.dropped_by_board = board.stop_capture().dropped;
+      while (rows->fetch(milliseconds(50))) continue;
+    }
+  } catch (const Failure&) {
+    try {
+      board.stop_path();
+      if (rows) board.stop_capture();
+    } catch (const Failure&) {  // the board has gone: the first failure says so
+    }
+    throw;
+  }
+  return outcome;
+}
+
+namespace {
+
+/// Where on the plan a reference is: on from where it was, since the board's clock never goes back.
+class PlanPlace {
+ public:
+  explicit PlanPlace(const PlannedPath& path) : path_(path) {}
+
+  double advance(const PathPoint& reference, double most_s) {
+    constexpr int kSteps = 16;
+    double best = std::numeric_limits<double>::infinity(), best_s = time_s_;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double tried_s = std::min(time_s_ + most_s * i / kSteps, path_.duration_s());
+      const double distance = (at(tried_s) - reference).norm();
+      if (distance > best + 1e-6) continue;  // while nothing moves, the latest
+      best = std::min(best, distance);
+      best_s = tried_s;
+    }
+    time_s_ = best_s;
+    return time_s_;
+  }
+
+ private:
+  PathPoint at(double time_s) {
+    while (knot_ + 2 < path_.knots.size() && path_.knots[knot_ + 1].time_s <= time_s_) ++knot_;
+    std::size_t k = knot_;
+    while (k + 2 < path_.knots.size() && path_.knots[k + 1].time_s <= time_s) ++k;
+    return between(path_.knots[k], path_.knots[k + 1], time_s).position;
+  }
+
+  const PlannedPath& path_;
+  double time_s_ = 0.0;
+  std::size_t knot_ = 0;
+};
+
+PathPoint point_of(const std::vector<std::vector<double>>& mm, std::size_t row, const PathPoint& others) {
+  PathPoint point = others;
+  for (std::size_t i = 0; i < mm.size(); ++i) point[static_cast<Eigen::Index>(i)] = mm[i][row];
+  return point;
+}
+
+}  // namespace
+
+std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale) {
+  std::vector<double> error_um;
+  if (path.knots.size() < 2 || path.curves.empty()) return std::vector<double>(capture.number.size(), 0.0);
+  PlanPlace place(path);
+  PathPoint half = PathPoint::Zero();  // the encoder rounds down
+  for (std::size_t i = 0; i < scale.axes.size(); ++i) half[static_cast<Eigen::Index>(i)] = scale.count_mm[i] / 2.0;
+  for (std::size_t k = 0; k < capture.number.size(); ++k) {
+    const std::uint32_t gap = k > 0 ? capture.number[k] - capture.number[k - 1] : 1;
+    const double time_s =
+        place.advance(point_of(capture.reference_mm, k, path.knots.front().position), 2.0 * gap * capture.row_period_s);
+    const PathPoint seen = point_of(capture.mm, k, path.knots.front().position) + half;
+    const auto next = std::ranges::upper_bound(path.curves, time_s, {}, &PlannedCurve::time_s);
+    constexpr std::ptrdiff_t kNear = 3;  // curves to either side
+    const auto first = next - path.curves.begin() > kNear ? next - kNear : path.curves.begin();
+    const auto last = path.curves.end() - next > kNear ? next + kNear : path.curves.end();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (auto one = first; one != last; ++one) nearest = std::min(nearest, one->curve.distance_to(seen));
+    error_um.push_back(1e3 * nearest);
+  }
+  return error_um;
+}
+
+Record path_record(const PathOutcome& outcome, const PathBoard& board, const std::vector<double>& contour_um) {
+  const PathCapture& capture = outcome.capture;
+  Record record;
+  const std::size_t first_axis = board.scale.axes.front();
+  record.drive = firmware::kAxisNames.at(first_axis);
+  record.sample_period_s = capture.row_period_s;
+  record.header["format"] = "axis-record/1";
+  record.header["source"] = "axistool run";
+  for (const std::uint32_t number : capture.number)
+    record.t_s.push_back((number - capture.number.front()) * capture.row_period_s);
+  record.u_V = capture.u_V;
+  record.x = capture.mm.front();
+  record.x_ref = capture.reference_mm.front();
+  for (std::size_t i = 1; i < board.scale.axes.size(); ++i) {
+    const std::string name(firmware::kAxisNames.at(board.scale.axes[i]));
+    record.extra.push_back({name + "_mm", capture.mm[i], {}});
+    record.extra.push_back({name + "_ref_mm", capture.reference_mm[i], {}});
+  }
+  record.extra.push_back({"contour_um", contour_um, {}});
+  return record;
+}
+
+}  // namespace host

@@ -1,0 +1,33 @@
+// G-code (RS274/NGC, NIST IR 6556, as LinuxCNC reads it) as far as a machine of two or three axes without a spindle
+// needs it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/path/path_plan.hpp"
+
+namespace host {
+
+/// What a program may use of the machine.
+struct GcodeMachine {
+  std::size_t axes = 2;                ///< X, Y and, with 3, Z
+  PathPoint home = PathPoint::Zero();  ///< that G28 goes to, mm
+  double rapid_mm_s = 0.0;             ///< above 0: no rapid is faster; limits of axes hold anyway
+};
+
+struct GcodeProgram {
+  std::vector<PathMove> moves;
+  std::size_t lines = 0;     ///< of the text
+  bool is_absolute = false;  ///< it names a position other than by steps from where it began
+};
+
+/// G0 G1 G2 G3 (centre by I J, or R; X Y Z) G4 P G17 G20 G21 G28 G54 G61 G64 [P] G90 G91 F M0 M2 M30 N, comments in
+/// parentheses or behind a semicolon, `%` around it, block delete `/`. Begins with G17 G21 G54 G61 G90 and no feed.
+/// M0, for which nobody is asked, stands still for no time. G64 without P keeps within 0.05 mm. Throws
+/// Failure(bad_input) "NAME:LINE: what" for anything else.
+GcodeProgram read_gcode(std::string_view text, const std::string& name, const PathPoint& start,
+                        const GcodeMachine& machine);
+
+}  // namespace host

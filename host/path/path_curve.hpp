@@ -1,0 +1,56 @@
+// The pieces that a path is made of: lines, arcs (with a rise: helices) and the blends between them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace host {
+
+/// Millimetres, x, y and z.
+using PathPoint = Eigen::Vector3d;
+
+/// Where a curve is at some length of it, and its derivatives by length: unit tangent, and curvature, 1/mm.
+struct CurveState {
+  PathPoint point = PathPoint::Zero(), tangent = PathPoint::Zero(), curvature = PathPoint::Zero();
+};
+
+class PathCurve {
+ public:
+  static PathCurve line(const PathPoint& begin, const PathPoint& end);
+  /// About `centre` in the plane of x and y, by `angle`, rad, positive counter-clockwise; z rises evenly to end_z.
+  static PathCurve arc(const PathPoint& begin, const PathPoint& centre, double angle, double end_z);
+  /// A polynomial of fifth degree that leaves `begin` and reaches `end` with their tangents and curvatures, as fast as
+  /// if it were `reach` long.
+  static PathCurve blend(const CurveState& begin, const CurveState& end, double reach);
+
+  double length() const { return length_; }
+  bool is_line() const { return kind_ == Kind::line; }
+  bool is_blend() const { return kind_ == Kind::blend; }
+  CurveState at(double length) const;
+  PathPoint begin() const { return at(0.0).point; }
+  PathPoint end() const { return at(length_).point; }
+  /// The nearest distance of a point, >= 0; of a blend to within its 64th part.
+  double distance_to(const PathPoint& point) const;
+  /// Of the bend over the whole curve, rad: how much the tangent turns.
+  double turning() const;
+
+  /// What is left between two lengths.
+  PathCurve part(double from, double to) const;
+
+ private:
+  enum class Kind { line, arc, blend };
+  static constexpr std::size_t kParts = 64;  ///< of a blend's table
+
+  CurveState at_share(double share) const;
+  void measure();
+
+  Kind kind_ = Kind::line;
+  double length_ = 0.0;
+  PathPoint begin_ = PathPoint::Zero(), end_ = PathPoint::Zero(), centre_ = PathPoint::Zero();
+  double angle_ = 0.0;
+  std::array<PathPoint, 6> control_{};  ///< Bezier's
+  std::vector<double> lengths_;         ///< at the 64ths of the blend's parameter
+};
+
+}  // namespace host

@@ -1,0 +1,337 @@
+#include "host/path/path_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/exit_codes.hpp"
+#include "host/path/corner_blend.hpp"
+#include "host/path/speed_profile.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kGoesOn_rad = 0.05;   ///< a corner so slight is eased within half a count rather than stopped at
+constexpr double kSharp_rad = 0.6;     ///< beyond, a curve through the corner is no quicker than a stop
+constexpr double kLongest_s = 0.02;    ///< between knots: a board's look ahead counts them
+constexpr double kLargestTurn = 0.15;  ///< rad between knots: the polynomial is then within 1e-9 of the radius
+constexpr int kCheckedPoints = 10;     ///< of a polynomial
+
+struct SpanCurve {
+  PathCurve curve;
+  double feed_mm_s = 0.0;
+  std::size_t line = 0;
+  double begin = 0.0;  ///< along the span
+};
+
+/// What a curve asks of the axes for one of motion along it: first, second and third derivative by length, amounts.
+struct CurveDemand {
+  PathPoint first, second, third;
+};
+
+std::vector<CurveDemand> demands_of(const PathCurve& curve) {
+  const int points = curve.is_line()    ? 1
+                     : curve.is_blend() ? 48
+                                        : std::clamp(static_cast<int>(curve.turning() * 12.0), 5, 80);
+  std::vector<CurveDemand> demands;
+  const double length = curve.length(), step = length * 1e-3;
+  for (int i = 0; i < points; ++i) {
+    const double here = points == 1 ? length / 2.0 : length * i / (points - 1);
+    const CurveState state = curve.at(here);
+    const double a = std::max(here - step, 0.0), b = std::min(here + step, length);
+    const PathPoint third = (curve.at(b).curvature - curve.at(a).curvature) / (b - a);
+    demands.push_back({state.tangent.cwiseAbs(), state.curvature.cwiseAbs(), third.cwiseAbs()});
+  }
+  return demands;
+}
+
+double least_share(const PathPoint& limit, const PathPoint& demand) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i)
+    if (demand[i] > 1e-15) least = std::min(least, limit[i] / demand[i]);
+  return least;
+}
+
+SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits) {
+  SpeedInterval interval;
+  interval.begin = span.begin;
+  interval.end = span.begin + span.curve.length();
+  interval.speed = span.feed_mm_s;
+  const std::vector<CurveDemand> demands = demands_of(span.curve);
+  for (const CurveDemand& d : demands) {
+    interval.speed =
+        std::min({interval.speed, least_share(limits.velocity, d.first),
+                  std::sqrt(least_share(limits.acceleration, d.second)), std::cbrt(least_share(limits.jerk, d.third))});
+  }
+  interval.limits = [demands, limits](double speed) {
+    TangentialLimits found;
+    found.acceleration = std::numeric_limits<double>::infinity();
+    for (const CurveDemand& d : demands)
+      found.acceleration =
+          std::min(found.acceleration, least_share(limits.acceleration - speed * speed * d.second, d.first));
+    // Tangential acceleration on a curve is jerk across it; less of the one leaves more of the other.
+    const double most = found.acceleration;
+    for (const double share : {1.0, 0.75, 0.5, 0.35, 0.2, 0.1}) {
+      found.acceleration = most * share;
+      found.jerk = std::numeric_limits<double>::infinity();
+      double alone = std::numeric_limits<double>::infinity();
+      for (const CurveDemand& d : demands) {
+        const PathPoint left = limits.jerk - speed * (3.0 * found.acceleration * d.second + speed * speed * d.third);
+        found.jerk = std::min(found.jerk, least_share(left, d.first));
+        alone = std::min(alone, least_share(limits.jerk, d.first));
+      }
+      if (found.jerk > 0.3 * alone) break;
+    }
+    return found;
+  };
+  return interval;
+}
+
+/// A way from rest to rest.
+class Span {
+ public:
+  Span(std::vector<SpanCurve> curves, const PlanOptions& options) : curves_(std::move(curves)), options_(options) {
+    double length = 0.0;
+    std::vector<SpeedInterval> intervals;
+    for (SpanCurve& one : curves_) {
+      one.begin = length;
+      length += one.curve.length();
+      intervals.push_back(interval_of(one, options_.limits));
+    }
+    phases_ = speed_profile(intervals);
+    states_.push_back({});
+    times_.push_back(0.0);
+    for (const SpeedPhase& phase : phases_) {
+      states_.push_back(after(states_.back(), phase.duration_s, phase.jerk));
+      times_.push_back(times_.back() + phase.duration_s);
+    }
+  }
+
+  void add_to(PlannedPath& path) const {
+    const std::size_t first = path.knots.size() - 1;
+    const double from_s = path.knots.back().time_s;
+    for (const double time_s : knot_times()) path.knots.push_back(knot_at(time_s));
+    PathKnot& last = path.knots.back();
+    last.position = curves_.back().curve.end();
+    last.velocity = last.acceleration = PathPoint::Zero();
+    const PathKnot* begin = path.knots.data() + first;
+    const LimitUse use = limit_use(begin, path.knots.data() + path.knots.size(), options_.limits);
+    const double factor =
+        std::max({1.0, use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)}) * (1.0 + 1e-6);
+    path.stretched = std::max(path.stretched, factor);
+    for (std::size_t k = first + 1; k < path.knots.size(); ++k) {
+      PathKnot& knot = path.knots[k];
+      knot.time_s = from_s + knot.time_s * factor;
+      knot.velocity /= factor;
+      knot.acceleration /= factor * factor;
+    }
+    for (const SpanCurve& one : curves_)
+      path.curves.push_back({one.curve, from_s + factor * time_at(one.begin), one.line});
+  }
+
+ private:
+  SpeedState state_at(double time_s) const {
+    const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, time_s);
+    const auto k = static_cast<std::size_t>(next - times_.begin()) - 1;
+    return after(states_[k], time_s - times_[k], phases_[k].jerk);
+  }
+
+  double time_at(double length) const {
+    double low = 0.0, high = times_.back();
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (low + high) / 2.0;
+      (state_at(middle).length < length ? low : high) = middle;
+    }
+    return high;
+  }
+
+  const SpanCurve& curve_at(double length) const {
+    const auto next = std::partition_point(curves_.begin() + 1, curves_.end(),
+                                           [&](const SpanCurve& one) { return one.begin <= length; });
+    return *(next - 1);
+  }
+
+  PathKnot knot_at(double time_s) const {
+    const SpeedState s = state_at(time_s);
+    const SpanCurve& span = curve_at(s.length);
+    const CurveState q = span.curve.at(std::min(s.length - span.begin, span.curve.length()));
+    return {time_s, q.point, s.speed * q.tangent, s.speed * s.speed * q.curvature + s.acceleration * q.tangent};
+  }
+
+  struct Wanted {
+    double time_s;
+    int weight;
+  };
+
+  /// Where the jerk changes, where curves meet, and in between as often as the curve needs.
+  std::vector<double> knot_times() const {
+    std::vector<Wanted> wanted;
+    for (const double time_s : times_) wanted.push_back({time_s, 2});
+    for (std::size_t i = 1; i < curves_.size(); ++i) wanted.push_back({time_at(curves_[i].begin), 1});
+    std::ranges::sort(wanted, {}, &Wanted::time_s);
+    const std::size_t events = wanted.size();
+    for (std::size_t i = 0; i + 1 < events; ++i) {
+      const double from = wanted[i].time_s, time = wanted[i + 1].time_s - from;
+      const SpeedState middle = state_at(from + time / 2.0);
+      const SpanCurve& span = curve_at(middle.length);
+      const double turning = span.curve.at(middle.length - span.begin).curvature.norm() * middle.speed * time;
+      double parts = std::max(time / kLongest_s, turning / kLargestTurn);
+      if (span.curve.is_blend()) parts = std::max(parts, 8.0 * middle.speed * time / span.curve.length());
+      const auto count = static_cast<int>(std::ceil(std::min(parts, time / options_.shortest_s)));
+      for (int k = 1; k < count; ++k) wanted.push_back({from + time * k / count, 0});
+    }
+    std::ranges::sort(wanted, {}, &Wanted::time_s);
+    std::vector<Wanted> kept{{0.0, 3}};
+    for (const Wanted& one : wanted) {
+      if (one.time_s - kept.back().time_s >= options_.shortest_s * 0.999)
+        kept.push_back(one);
+      else if (one.weight > kept.back().weight &&
+               (kept.size() < 2 || one.time_s - kept[kept.size() - 2].time_s >= options_.shortest_s))
+        kept.back() = one;
+    }
+    if (kept.size() > 1 && times_.back() - kept.back().time_s < options_.shortest_s) kept.pop_back();
+    std::vector<double> times;
+    for (std::size_t k = 1; k < kept.size(); ++k) times.push_back(kept[k].time_s);
+    times.push_back(std::max(times_.back(), options_.shortest_s));
+    return times;
+  }
+
+  std::vector<SpanCurve> curves_;
+  const PlanOptions& options_;
+  std::vector<SpeedPhase> phases_;
+  std::vector<SpeedState> states_;
+  std::vector<double> times_;
+};
+
+/// Joins moves to spans: with blends where the path may be left a little, and stops where it may not.
+class Joiner {
+ public:
+  Joiner(PlannedPath& path, const PlanOptions& options) : path_(path), options_(options) {}
+
+  void add(const PathMove& move) {
+    if (move.kind == PathMoveKind::dwell) {
+      end_span();
+      dwell(move);
+      return;
+    }
+    if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
+    if (!(move.curve.length() > 0.0)) return;
+    if (!span_.empty()) join(move);
+    tolerance_mm_ = move.tolerance_mm;
+    span_.push_back({move.curve, move.feed_mm_s, move.line, 0.0});
+    whole_mm_ = move.curve.length();
+    begin_mm_ = taken_mm_;
+    taken_mm_ = 0.0;
+  }
+
+  void end_span() {
+    if (span_.empty()) return;
+    cut_last(0.0);
+    Span(std::move(span_), options_).add_to(path_);
+    span_.clear();
+  }
+
+ private:
+  void join(const PathMove& next) {
+    const PathCurve& before = span_.back().curve;
+    if (is_smooth(before, next.curve)) return cut_last(0.0);
+    const bool is_slight = corner_angle(before, next.curve) <= kGoesOn_rad;
+    if (corner_angle(before, next.curve) > kSharp_rad || (tolerance_mm_ <= 0.0 && !is_slight)) return end_span();
+    const auto blend = blend_corner(before, next.curve, std::max(tolerance_mm_, options_.count_mm / 2.0),
+                                    std::min(whole_mm_, next.curve.length()) / 2.0);
+    if (!blend || !is_worthwhile(*blend)) return end_span();
+    const SpanCurve last = span_.back();
+    cut_last(blend->taken);
+    span_.push_back({blend->curve, std::min(last.feed_mm_s, next.feed_mm_s), next.line, 0.0});
+    taken_mm_ = blend->taken;
+  }
+
+  /// Against a stop, which takes this time at least for the way that the blend replaces.
+  bool is_worthwhile(const CornerBlend& blend) const {
+    const SpeedInterval passed =
+        interval_of({blend.curve, std::numeric_limits<double>::infinity(), 0, 0.0}, options_.limits);
+    return blend.curve.length() / passed.speed < 2.0 * std::cbrt(6.0 * blend.taken / options_.limits.jerk.minCoeff());
+  }
+
+  /// Of the newest curve, what blends took at its begin, and take at its end.
+  void cut_last(double end_mm) {
+    const double to = whole_mm_ - end_mm;
+    if (to - begin_mm_ <= whole_mm_ * 1e-9)
+      span_.pop_back();
+    else if (begin_mm_ > 0.0 || end_mm > 0.0)
+      span_.back().curve = span_.back().curve.part(begin_mm_, to);
+    begin_mm_ = 0.0;
+  }
+
+  void dwell(const PathMove& move) {
+    if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
+    constexpr double kLongestPiece_s = 0.5;  // within what a node can say at any rate
+    const auto parts = static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s));
+    for (int k = 0; k < parts; ++k) {
+      PathKnot knot = path_.knots.back();
+      knot.time_s += std::max(move.dwell_s / parts, options_.shortest_s);
+      path_.knots.push_back(knot);
+    }
+  }
+
+  PlannedPath& path_;
+  const PlanOptions& options_;
+  std::vector<SpanCurve> span_;
+  double tolerance_mm_ = 0.0;  ///< of the corner that comes
+  double whole_mm_ = 0.0;      ///< of the newest curve before it was cut
+  double begin_mm_ = 0.0;      ///< that the blend before it took
+  double taken_mm_ = 0.0;      ///< that the newest blend takes of the curve that comes
+};
+
+}  // namespace
+
+PathKnot between(const PathKnot& a, const PathKnot& b, double time_s) {
+  const double T = b.time_s - a.time_s, u = (time_s - a.time_s) / T;
+  const PathPoint way = b.position - a.position, v0 = T * a.velocity, v1 = T * b.velocity;
+  const PathPoint a0 = T * T * a.acceleration, a1 = T * T * b.acceleration;
+  const PathPoint c2 = a0 / 2.0, c3 = 10.0 * way - 6.0 * v0 - 4.0 * v1 - (3.0 * a0 - a1) / 2.0;
+  const PathPoint c4 = -15.0 * way + 8.0 * v0 + 7.0 * v1 + (3.0 * a0 - 2.0 * a1) / 2.0;
+  const PathPoint c5 = 6.0 * way - 3.0 * (v0 + v1) - (a0 - a1) / 2.0;
+  return {time_s, a.position + u * (v0 + u * (c2 + u * (c3 + u * (c4 + u * c5)))),
+          (v0 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / T,
+          (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (T * T)};
+}
+
+LimitUse limit_use(const PathKnot* begin, const PathKnot* end, const AxisLimits& limits) {
+  LimitUse use;
+  const auto share = [](const PathPoint& value, const PathPoint& limit) {
+    return value.cwiseAbs().cwiseQuotient(limit).maxCoeff();
+  };
+  for (const PathKnot* knot = begin; knot + 1 < end; ++knot) {
+    const double time = knot[1].time_s - knot->time_s;
+    PathPoint last = knot->acceleration;
+    for (int i = 1; i <= kCheckedPoints; ++i) {
+      const PathKnot here = between(knot[0], knot[1], knot->time_s + time * i / kCheckedPoints);
+      use.velocity = std::max(use.velocity, share(here.velocity, limits.velocity));
+      use.acceleration = std::max(use.acceleration, share(here.acceleration, limits.acceleration));
+      use.jerk = std::max(use.jerk, share((here.acceleration - last) * (kCheckedPoints / time), limits.jerk));
+      last = here.acceleration;
+    }
+  }
+  return use;
+}
+
+PlannedPath plan_path(const std::vector<PathMove>& moves, const PlanOptions& options) {
+  for (const PathPoint& limit : {options.limits.velocity, options.limits.acceleration, options.limits.jerk})
+    if (!(limit.minCoeff() > 0.0))
+      throw Failure(ExitCode::bad_input, "a path needs velocity, acceleration and jerk limits above 0 of every axis");
+  PlannedPath path;
+  Joiner joiner(path, options);
+  for (const PathMove& move : moves) {
+    if (move.kind == PathMoveKind::motion && !(move.feed_mm_s > 0.0))
+      throw Failure(ExitCode::bad_input, fmt::format("line {}: a feed above 0 is needed", move.line));
+    joiner.add(move);
+  }
+  joiner.end_span();
+  return path;
+}
+
+}  // namespace host

@@ -1,0 +1,204 @@
+// The board's follower of paths, with axes that only add up what they are led.
+#include "firmware/core/path/path_follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/firmware/circle_in_counts.hpp"
+
+namespace {
+
+using firmware::CountPosition;
+using firmware::Increment;
+using firmware::kOneCount;
+using firmware::NodeProblem;
+using firmware::PathEnd;
+using firmware::PathPhase;
+
+constexpr std::size_t kAxes = 2;
+using Follower = firmware::PathFollower<kAxes, 64>;
+
+struct LedAxis {
+  firmware::SupervisorState held = firmware::SupervisorState::enabled;
+  CountPosition at{};
+  Increment increment = 0;
+  bool is_led = false;
+
+  firmware::SupervisorState state() const { return held; }
+  void lead(Increment wanted) {
+    increment = wanted;
+    is_led = true;
+    at.advance(wanted);
+  }
+  double counts() const { return static_cast<double>(at.counts) + std::ldexp(static_cast<double>(at.fraction), -48); }
+};
+struct LedGroup {
+  std::array<LedAxis, kAxes> axis;
+  LedAxis& operator[](std::size_t i) { return axis[i]; }
+};
+
+class Followed : public testing::Test {
+ protected:
+  static constexpr firmware::PathUnits kUnits{16, 24, 32};
+  static constexpr double kSpeed = 50.0, kAcceleration = 0.8, kJerk = 0.02;  ///< of the axes, counts and samples
+  static Increment increment(double counts) {
+    return static_cast<Increment>(std::llround(std::ldexp(counts, firmware::kFractionBits)));
+  }
+
+  void open(CountPosition start = {}) {
+    for (LedAxis& axis : group_.axis) axis.at = start;
+    follower_.open(3, kUnits, {start, start}, {increment(kAcceleration), increment(kAcceleration)},
+                   increment(kAcceleration / kSpeed), increment(kJerk / kSpeed));
+    follower_.hold(false);
+    follower_.override_rate(kOneCount);
+    given_ = {};
+    pushed_ = 0;
+  }
+
+  static constexpr double kPiece = 10.0;  ///< samples
+  bool push_next(bool last) {
+    std::array<std::int64_t, kAxes> given = given_;
+    const auto node = circle_.node(kPiece * (pushed_ + 1), kPiece, kUnits, last, given);
+    const NodeProblem problem = follower_.push(node, last, [](std::size_t, std::int64_t) { return true; });
+    if (problem == NodeProblem::no_room) return false;
+    EXPECT_EQ(problem, NodeProblem::none);
+    given_ = given;
+    ++pushed_;
+    return true;
+  }
+  /// The host's and the background's turn, then the control interrupt's. `most`: nodes that the host sends in all.
+  void step(int most) {
+    while (follower_.phase() < PathPhase::stopping && pushed_ < most && push_next(pushed_ + 1 == pieces())) continue;
+    follower_.prepare();
+    for (LedAxis& axis : group_.axis) axis.is_led = false;
+    if (follower_.phase() == PathPhase::open) {
+      EXPECT_TRUE(follower_.start());
+    }
+    const std::array<Increment, kAxes> before{group_[0].increment, group_[1].increment};
+    if (follower_.is_moving()) follower_.before_step(group_);
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      const double change = std::ldexp(static_cast<double>(group_[i].increment - before[i]), -48);
+      hardest_ = std::max(hardest_, std::abs(change) / kAcceleration);
+    }
+    off_ = std::max(off_, circle_.off(group_[0].counts(), group_[1].counts()));
+  }
+  int pieces() const { return static_cast<int>(circle_.samples / kPiece); }
+  int run(int most, int samples = 100'000) {
+    int k = 0;
+    for (; k < samples && (k == 0 || follower_.is_moving()); ++k) step(most);
+    return k;
+  }
+
+  firmware_test::Circle circle_{8000.0, 2000.0};
+  Follower follower_;
+  LedGroup group_;
+  std::array<std::int64_t, kAxes> given_{};
+  int pushed_ = 0;
+  double off_ = 0.0, hardest_ = 0.0;
+};
+
+/// Catches a clock that loses time between pieces, wrong coefficients, a sum of roundings, and an end that is missed.
+TEST_F(Followed, IsOnThePathAtEverySampleAndExactAtItsEnd) {
+  open();
+  EXPECT_EQ(run(pieces()), circle_.samples) << "no time is lost";
+  EXPECT_EQ(follower_.end(), PathEnd::completed);
+  EXPECT_EQ(group_[0].at, CountPosition::at(0));
+  EXPECT_EQ(group_[1].at, CountPosition::at(0));
+  EXPECT_LT(off_, 1e-3) << "counts off the circle";
+  EXPECT_LT(hardest_, 1.0);
+}
+
+/// A reference may stand between two counts; the path's end is exact all the same.
+TEST_F(Followed, BeginsAnywhereAndEndsOnItsGrid) {
+  open({5, (Increment{1} << 47) + 12345});
+  run(pieces());
+  EXPECT_EQ(group_[0].at, (CountPosition{5, Increment{1} << 47}));
+}
+
+TEST_F(Followed, HoldStopsOnThePathAndGoesOn) {
+  open();
+  for (int k = 0; k < 900; ++k) step(pieces());
+  follower_.hold(true);
+  int until_rest = 0;
+  for (; until_rest < 1000 && follower_.rate() > 0; ++until_rest) step(pieces());
+  EXPECT_LT(until_rest, 200) << "V / A and A / J are 63 and 40 samples";
+  const auto stands = group_[0].at;
+  for (int k = 0; k < 500; ++k) step(pieces());
+  EXPECT_EQ(group_[0].at, stands);
+  EXPECT_TRUE(follower_.is_moving()) << "a hold is no end, however little is buffered";
+  follower_.hold(false);
+  run(pieces());
+  EXPECT_EQ(follower_.end(), PathEnd::completed);
+  EXPECT_EQ(group_[1].at, CountPosition::at(0));
+  EXPECT_LT(off_, 1e-3);
+  EXPECT_LT(hardest_, 1.25) << "share of the acceleration limit, path and clock together";
+}
+
+TEST_F(Followed, OverrideStretchesTimeAlone) {
+  open();
+  follower_.override_rate(kOneCount / 4);
+  const int samples = run(pieces());
+  EXPECT_NEAR(samples, 4 * circle_.samples, 200);
+  EXPECT_LT(off_, 1e-3);
+}
+
+/// A host that dies in the middle: the axes stand on the path, before its last node, and slow down gently.
+TEST_F(Followed, StandsOnThePathWhenNodesFailToCome) {
+  for (const int sent : {5, 40, 100, 163}) {
+    open();
+    off_ = hardest_ = 0.0;
+    run(sent);
+    EXPECT_EQ(follower_.end(), PathEnd::starved) << sent;
+    EXPECT_LE(follower_.elapsed(), kPiece * sent);
+    EXPECT_LT(off_, 1e-3) << sent;
+    EXPECT_LT(hardest_, 1.35) << sent;
+    EXPECT_EQ(follower_.rate(), 0);
+  }
+}
+
+TEST_F(Followed, StopsOnThePathWhereItIsAsked) {
+  open();
+  for (int k = 0; k < 1000; ++k) step(pieces());
+  follower_.stop();
+  const int samples = run(pieces());
+  EXPECT_EQ(follower_.end(), PathEnd::asked);
+  EXPECT_LT(samples, 200);
+  EXPECT_LT(off_, 1e-3);
+}
+
+/// The others of a group hear of an axis's fault in their next step, and stop from the speed that they have in it.
+TEST_F(Followed, LeadsOnForOneSampleWhenAnAxisLeaves) {
+  open();
+  for (int k = 0; k < 1000; ++k) step(pieces());
+  const Increment speed = group_[1].increment;
+  group_[0].held = firmware::SupervisorState::fault;
+  step(pieces());
+  EXPECT_EQ(follower_.end(), PathEnd::fault);
+  EXPECT_TRUE(group_[1].is_led);
+  EXPECT_EQ(group_[1].increment, speed);
+}
+
+TEST_F(Followed, RefusesWhatCannotBeRight) {
+  const auto anywhere = [](std::size_t, std::int64_t) { return true; };
+  firmware::PathNode<kAxes> node;
+  node.duration = firmware::kShortestPiece;
+  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::not_open);
+  open();
+  EXPECT_FALSE(follower_.start()) << "nothing to follow";
+  node.duration = firmware::kShortestPiece - 1;
+  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::too_fast);
+  node.duration = firmware::kLongestPiece;
+  node.axis[0].acceleration = std::numeric_limits<std::int32_t>::max();
+  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::too_fast)
+      << "half a count a sample^2, for 2^14 samples";
+  node.duration = 10 * firmware::kShortestPiece;
+  EXPECT_EQ(follower_.push(node, true, anywhere), NodeProblem::ends_in_motion);
+  EXPECT_EQ(follower_.push(node, false, [](std::size_t, std::int64_t) { return false; }), NodeProblem::outside_travel);
+  for (std::size_t i = 0; i < Follower::kNodes; ++i)
+    ASSERT_EQ(follower_.push(node, false, anywhere), NodeProblem::none);
+  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::no_room);
+}
+
+}  // namespace

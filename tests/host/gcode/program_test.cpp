@@ -1,0 +1,119 @@
+// G-code programs, against what geometry by hand says of them.
+#include "host/gcode/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "host/exit_codes.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::filesystem::path> programs(bool bad) {
+  std::vector<std::filesystem::path> found;
+  for (const auto& one : std::filesystem::directory_iterator(AXIS_TEST_DATA "/gcode"))
+    if (one.path().extension() == ".ngc" && one.path().filename().string().starts_with("bad-") == bad)
+      found.push_back(one.path());
+  std::ranges::sort(found);
+  return found;
+}
+std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
+  std::string name = info.param.stem().string();
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+host::GcodeProgram read(const std::string& text, std::size_t axes = 2) {
+  host::GcodeMachine machine;
+  machine.axes = axes;
+  return host::read_gcode(text, "part.ngc", host::PathPoint::Zero(), machine);
+}
+std::string refusal(const std::string& text, std::size_t axes = 2) {
+  try {
+    read(text, axes);
+  } catch (const host::Failure& failure) {
+    EXPECT_EQ(failure.code, host::ExitCode::bad_input);
+    return failure.what();
+  }
+  return "taken";
+}
+
+class Program : public testing::TestWithParam<std::filesystem::path> {};
+INSTANTIATE_TEST_SUITE_P(Good, Program, testing::ValuesIn(programs(false)), name_of);
+
+/// Catches an arc on the wrong side or the wrong way round, a forgotten unit, and steps taken as positions.
+TEST_P(Program, EndsWhereGeometrySaysAndIsAsLong) {
+  const std::string text = text_of(GetParam());
+  std::istringstream header(text);
+  std::string semicolon, word;
+  host::PathPoint end;
+  double length = 0.0;
+  ASSERT_TRUE(header >> semicolon >> word >> end.x() >> end.y() >> end.z() && word == "end");
+  ASSERT_TRUE(header >> semicolon >> word >> length && word == "length");
+  const host::GcodeProgram program = read(text);
+  double sum = 0.0;
+  host::PathPoint at = host::PathPoint::Zero();
+  for (const host::PathMove& move : program.moves) {
+    if (move.kind != host::PathMoveKind::motion) continue;
+    EXPECT_LT((move.curve.begin() - at).norm(), 1e-9) << "a jump before line " << move.line;
+    at = move.curve.end();
+    sum += move.curve.length();
+  }
+  EXPECT_LT((at - end).norm(), 1e-5) << at.transpose();
+  EXPECT_NEAR(sum, length, 2e-3 + 1e-6 * length);
+}
+
+class BadProgram : public testing::TestWithParam<std::filesystem::path> {};
+INSTANTIATE_TEST_SUITE_P(Bad, BadProgram, testing::ValuesIn(programs(true)), name_of);
+
+TEST_P(BadProgram, IsRefusedWithItsLine) {
+  const std::string text = text_of(GetParam());
+  std::istringstream header(text);
+  std::string semicolon, error, word;
+  std::size_t line = 0;
+  ASSERT_TRUE(header >> semicolon >> error >> line && std::getline(header >> std::ws, word));
+  EXPECT_THAT(refusal(text), HasSubstr("part.ngc:" + std::to_string(line) + ": "));
+  EXPECT_THAT(refusal(text), HasSubstr(word));
+}
+
+TEST(Gcode, HasFeedsInUnitsAMinute) {
+  EXPECT_NEAR(read("F600 G1 X1").moves.at(0).feed_mm_s, 10.0, 1e-12);
+  EXPECT_NEAR(read("G20 F60 G1 X1").moves.at(0).feed_mm_s, 25.4, 1e-12);
+  EXPECT_NEAR(read("G1 F60 X1\nX2 F120").moves.at(1).feed_mm_s, 2.0, 1e-12);
+}
+
+TEST(Gcode, ToleranceIsOfTheMovesThatFollowIt) {
+  const auto moves = read("G1 F60 X1\nG64 P0.02\nX2\nG64\nX3\nG61\nX4\nG20 G64 P0.001\nX5").moves;
+  ASSERT_EQ(moves.size(), 5u);
+  EXPECT_EQ(moves[0].tolerance_mm, 0.0);
+  EXPECT_EQ(moves[1].tolerance_mm, 0.02);
+  EXPECT_EQ(moves[2].tolerance_mm, 0.05);
+  EXPECT_EQ(moves[3].tolerance_mm, 0.0);
+  EXPECT_NEAR(moves[4].tolerance_mm, 0.0254, 1e-12);
+}
+
+TEST(Gcode, HelixRisesEvenlyWhereThereIsAThirdAxis) {
+  const auto moves = read("F600 G3 X0 Y20 Z6 I0 J10", 3).moves;
+  ASSERT_EQ(moves.size(), 1u);
+  EXPECT_NEAR(moves[0].curve.length(), std::hypot(10.0 * std::numbers::pi, 6.0), 1e-9);
+  EXPECT_NEAR(moves[0].curve.at(moves[0].curve.length() / 2).point.z(), 3.0, 1e-9);
+}
+
+TEST(Gcode, SaysWhetherItNeedsToKnowWhereItIs) {
+  EXPECT_FALSE(read("G91 G1 F60 X1 Y1\nG2 X1 Y1 I1").is_absolute);
+  EXPECT_TRUE(read("G1 F60 X1").is_absolute);
+  EXPECT_TRUE(read("G91 G28").is_absolute);
+}
+
+}  // namespace
