@@ -42,6 +42,12 @@ TEST_F(CostOfAStep, ExperimentsKeepTheirBudget) {
   EXPECT_LE(costs["captured_row"].worst, 200) << "four channels";
 }
 
+TEST_F(CostOfAStep, PathsKeepTheirBudget) {
+  auto costs = count_instructions("cost-float-m4");
+  EXPECT_LE(costs["both_axes_on_path"].mean, 1500);
+  EXPECT_GT(costs["both_axes_on_path"].mean, costs["both_axes"].mean + 50) << "nothing was followed";
+}
+
 TEST_F(CostOfAStep, FixedPointTakesAtMostTwoAndAHalfTimesFloat) {
   auto in_float = count_instructions("cost-float-m4");
   for (const char* image : {"cost-fixed-m4", "cost-fixed-m3"}) {

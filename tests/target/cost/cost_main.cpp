@@ -41,6 +41,8 @@ void print_laws() {
       fmt::print("{:<28}both axes, x excited by {} lines: {}, {} at worst; a captured row of four channels: {}, {}\n",
                  "", firmware::kExcitationEntries, costs["both_axes_excited"].mean, costs["both_axes_excited"].worst,
                  costs["captured_row"].mean, costs["captured_row"].worst);
+      fmt::print("{:<28}both axes on a path: {}, {} at worst\n", "", costs["both_axes_on_path"].mean,
+                 costs["both_axes_on_path"].worst);
     }
   }
 }

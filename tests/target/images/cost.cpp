@@ -7,6 +7,7 @@
 #include "firmware/boards/pil/value_axis.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
 #include "firmware/core/fixed_units.hpp"
+#include "firmware/core/path/path_follower.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
 #include "hal/axis_count.hpp"
 #include "tests/firmware/paper_axes.hpp"
@@ -224,6 +225,53 @@ void count_experiments() {
   report("captured_row", captured);
 }
 
+firmware::PathFollower<Axes::kAxes, 32> path;
+
+[[gnu::noinline]] void step_both_on_path() {
+  path.before_step(axes);
+  step_both();
+}
+
+/// Back and forth in pieces of ten samples, each from speed to speed, and a feed hold on the way: every step of the
+/// clock.
+void count_path() {
+  excitation.stop();
+  for (int period = 0; period < 2000; ++period) {
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    if (excitation.is_active()) excitation.before_step(axes[0]);
+    step_both();
+  }
+  constexpr firmware::PathUnits kUnits{16, 24, 32};
+  const firmware::Increment acceleration = firmware::motion_limits(kParameters[0]).acceleration;
+  path.open(3, kUnits, {axes[0].leading(), axes[1].leading()}, {acceleration, acceleration}, firmware::kOneCount / 125,
+            firmware::kOneCount / 5000);
+  constexpr std::int32_t kPeriod = 64, kSpeed = 40;  // pieces, counts a sample
+  Cost cost;
+  std::int32_t piece = 0, speed = 0;
+  for (int period = 0; period < 3000; ++period) {
+    while (path.room() > 0) {
+      // A triangle of speeds: constant acceleration but for its corners, of which the nodes know nothing.
+      const std::int32_t phase = (piece + kPeriod / 4) % kPeriod;
+      const std::int32_t next =
+          (phase < kPeriod / 2 ? phase - kPeriod / 4 : 3 * kPeriod / 4 - phase) * kSpeed * 4 / kPeriod;
+      firmware::PathNode<Axes::kAxes> node;
+      node.duration = 10 * firmware::kShortestPiece;
+      for (auto& axis : node.axis) axis = {(speed + next) * 5 << 16, next << 24, 0};
+      if (path.push(node, false, [](std::size_t, std::int64_t) { return true; }) != firmware::NodeProblem::none) break;
+      speed = next;
+      ++piece;
+    }
+    path.prepare();
+    if (period == 0) path.start();
+    if (period == 1500) path.hold(true);
+    if (period == 2000) path.hold(false);
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    cost.add(count([] { step_both_on_path(); }));
+  }
+  if (!path.is_moving()) hal::qemu::exit_emulator(2);
+  report("both_axes_on_path", cost);
+}
+
 }  // namespace
 
 extern "C" [[noreturn]] void run_board() {
@@ -239,6 +287,7 @@ extern "C" [[noreturn]] void run_board() {
   count_estimator_and_feedback();
   count_steps();
   count_experiments();
+  count_path();
   const bool ran = axes[0].telemetry().enabled && axes[1].telemetry().enabled;
   hal::qemu::exit_emulator(ran ? 0 : 1);
 }
