@@ -128,6 +128,7 @@ Planned plan(const std::string& text, const RunArguments& arguments, const host:
   options.limits = board.limits;
   options.count_mm = *std::min_element(board.scale.count_mm.begin(), board.scale.count_mm.end());
   options.shortest_s = std::max(options.shortest_s, 2.0 / board.scale.rate_Hz);
+  options.time_unit_s = 1.0 / board.scale.rate_Hz / (1u << firmware::kPathTimeBits);
   planned.path = host::plan_path(planned.program.moves, options);
   if (planned.path.knots.size() < 2)
     throw Failure(ExitCode::bad_input, fmt::format("{}: nothing in it moves", arguments.file));

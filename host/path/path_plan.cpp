@@ -14,11 +14,13 @@ namespace host {
 
 namespace {
 
-constexpr double kGoesOn_rad = 0.05;   ///< a corner so slight is eased within half a count rather than stopped at
-constexpr double kSharp_rad = 0.6;     ///< beyond, a curve through the corner is no quicker than a stop
-constexpr double kLongest_s = 0.02;    ///< between knots: a board's look ahead counts them
-constexpr double kLargestTurn = 0.15;  ///< rad between knots: the polynomial is then within 1e-9 of the radius
-constexpr int kCheckedPoints = 10;     ///< of a polynomial
+constexpr double kGoesOn_rad = 0.05;  ///< a corner so slight is eased within half a count rather than stopped at
+constexpr double kSharp_rad =
+    0.6;  ///< beyond, stopping on the one leg while starting on the other is quicker than a curve
+constexpr double kLongest_s = 0.02;     ///< between knots: a board's look ahead counts them
+constexpr double kLargestTurn = 0.15;   ///< rad between knots: the polynomial is then within 1e-9 of the radius
+constexpr double kMargin = 1.0 + 1e-4;  ///< for what lies between the points that are checked
+constexpr int kCheckedPoints = 16;      ///< of a polynomial
 
 struct SpanCurve {
   PathCurve curve;
@@ -110,26 +112,52 @@ class Span {
     }
   }
 
-  void add_to(PlannedPath& path) const {
-    const std::size_t first = path.knots.size() - 1;
-    const double from_s = path.knots.back().time_s;
-    for (const double time_s : knot_times()) path.knots.push_back(knot_at(time_s));
-    PathKnot& last = path.knots.back();
-    last.position = curves_.back().curve.end();
-    last.velocity = last.acceleration = PathPoint::Zero();
-    const PathKnot* begin = path.knots.data() + first;
-    const LimitUse use = limit_use(begin, path.knots.data() + path.knots.size(), options_.limits);
-    const double factor =
-        std::max({1.0, use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)}) * (1.0 + 1e-6);
-    path.stretched = std::max(path.stretched, factor);
-    for (std::size_t k = first + 1; k < path.knots.size(); ++k) {
-      PathKnot& knot = path.knots[k];
-      knot.time_s = from_s + knot.time_s * factor;
-      knot.velocity /= factor;
-      knot.acceleration /= factor * factor;
+  double duration_s() const { return times_.back() * factor_; }
+  const std::vector<SpanCurve>& curves() const { return curves_; }
+  const PathCurve& first() const { return curves_.front().curve; }
+  const PathCurve& last() const { return curves_.back().curve; }
+  double first_ends_s() const { return factor_ * (curves_.size() > 1 ? time_at(curves_[1].begin) : times_.back()); }
+  double last_begins_s() const { return factor_ * time_at(curves_.back().begin); }
+  double begins_s(const SpanCurve& one) const { return factor_ * time_at(one.begin); }
+
+  /// Slows the whole way down by a factor.
+  void stretch(double factor) { factor_ *= factor; }
+  double stretched() const { return factor_; }
+
+  /// At rest before and afterwards.
+  PathKnot at(double time_s) const {
+    if (time_s <= 0.0) return {time_s, first().begin(), PathPoint::Zero(), PathPoint::Zero()};
+    if (time_s >= duration_s()) return {time_s, last().end(), PathPoint::Zero(), PathPoint::Zero()};
+    PathKnot knot = knot_at(time_s / factor_);
+    knot.time_s = time_s;
+    knot.velocity /= factor_;
+    knot.acceleration /= factor_ * factor_;
+    return knot;
+  }
+
+  struct Wanted {
+    double time_s;
+    int weight;
+  };
+  /// Where the jerk changes, where curves meet, and in between as often as the curve needs; not at the ends.
+  std::vector<Wanted> knot_times() const {
+    std::vector<Wanted> wanted;
+    for (const double time_s : times_) wanted.push_back({time_s, 2});
+    for (std::size_t i = 1; i < curves_.size(); ++i) wanted.push_back({time_at(curves_[i].begin), 1});
+    std::ranges::sort(wanted, {}, &Wanted::time_s);
+    const std::size_t events = wanted.size();
+    for (std::size_t i = 0; i + 1 < events; ++i) {
+      const double from = wanted[i].time_s, time = wanted[i + 1].time_s - from;
+      const SpeedState middle = state_at(from + time / 2.0);
+      const SpanCurve& span = curve_at(middle.length);
+      const double turning = span.curve.at(middle.length - span.begin).curvature.norm() * middle.speed * time;
+      double parts = std::max(time / kLongest_s, turning / kLargestTurn);
+      if (span.curve.is_blend()) parts = std::max(parts, 8.0 * middle.speed * time / span.curve.length());
+      const auto count = static_cast<int>(std::ceil(std::min(parts, time / options_.shortest_s)));
+      for (int k = 1; k < count; ++k) wanted.push_back({from + time * k / count, 0});
     }
-    for (const SpanCurve& one : curves_)
-      path.curves.push_back({one.curve, from_s + factor * time_at(one.begin), one.line});
+    for (Wanted& one : wanted) one.time_s *= factor_;
+    return wanted;
   }
 
  private:
@@ -161,49 +189,148 @@ class Span {
     return {time_s, q.point, s.speed * q.tangent, s.speed * s.speed * q.curvature + s.acceleration * q.tangent};
   }
 
-  struct Wanted {
-    double time_s;
-    int weight;
-  };
+  std::vector<SpanCurve> curves_;
+  const PlanOptions& options_;
+  std::vector<SpeedPhase> phases_;
+  std::vector<SpeedState> states_;
+  std::vector<double> times_;
+  double factor_ = 1.0;
+};
 
-  /// Where the jerk changes, where curves meet, and in between as often as the curve needs.
-  std::vector<double> knot_times() const {
-    std::vector<Wanted> wanted;
-    for (const double time_s : times_) wanted.push_back({time_s, 2});
-    for (std::size_t i = 1; i < curves_.size(); ++i) wanted.push_back({time_at(curves_[i].begin), 1});
-    std::ranges::sort(wanted, {}, &Wanted::time_s);
-    const std::size_t events = wanted.size();
-    for (std::size_t i = 0; i + 1 < events; ++i) {
-      const double from = wanted[i].time_s, time = wanted[i + 1].time_s - from;
-      const SpeedState middle = state_at(from + time / 2.0);
-      const SpanCurve& span = curve_at(middle.length);
-      const double turning = span.curve.at(middle.length - span.begin).curvature.norm() * middle.speed * time;
-      double parts = std::max(time / kLongest_s, turning / kLargestTurn);
-      if (span.curve.is_blend()) parts = std::max(parts, 8.0 * middle.speed * time / span.curve.length());
-      const auto count = static_cast<int>(std::ceil(std::min(parts, time / options_.shortest_s)));
-      for (int k = 1; k < count; ++k) wanted.push_back({from + time * k / count, 0});
+/// Spans that begin before the one before them has ended, where the path may be left a little: each slows down and
+/// speeds up as its own limits have it, and while one stops the next one starts.
+class Chain {
+ public:
+  explicit Chain(const PlanOptions& options) : options_(options) {}
+
+  bool is_empty() const { return spans_.empty(); }
+
+  /// `tolerance_mm`: of the corner at its begin, against the span before.
+  void add(Span span, double tolerance_mm) {
+    const std::vector<Span> alone{span};
+    span.stretch(excess(alone, {0.0}));
+    double begin_s = 0.0;
+    if (!spans_.empty()) {
+      begin_s = begins_.back() + spans_.back().duration_s();
+      begin_s -= overlap(spans_.back(), span, tolerance_mm);
     }
-    std::ranges::sort(wanted, {}, &Wanted::time_s);
-    std::vector<Wanted> kept{{0.0, 3}};
-    for (const Wanted& one : wanted) {
+    spans_.push_back(std::move(span));
+    begins_.push_back(begin_s);
+  }
+
+  void add_to(PlannedPath& path) {
+    if (spans_.empty()) return;
+    // Knots lie elsewhere afterwards, and what is between them differs a little: once more, or twice.
+    constexpr int kRounds = 4;
+    for (int k = 0; k < kRounds; ++k) {
+      const double more = excess(spans_, begins_);
+      if (more == 1.0) break;
+      for (Span& span : spans_) span.stretch(more);
+      for (double& begin_s : begins_) begin_s *= more;
+    }
+    for (const Span& span : spans_) path.stretched = std::max(path.stretched, span.stretched());
+    const double from_s = path.knots.back().time_s;
+    const std::vector<PathKnot> knots = knots_of(spans_, begins_);
+    for (std::size_t k = 1; k < knots.size(); ++k) {
+      path.knots.push_back(knots[k]);
+      path.knots.back().time_s += from_s;
+    }
+    for (std::size_t i = 0; i < spans_.size(); ++i)
+      for (const SpanCurve& one : spans_[i].curves())
+        path.curves.push_back({one.curve, from_s + begins_[i] + spans_[i].begins_s(one), one.line});
+    spans_.clear();
+    begins_.clear();
+  }
+
+ private:
+  /// All of them at one time: each from its begin, as far as it has got.
+  static PathKnot at(const std::vector<Span>& spans, const std::vector<double>& begins, double time_s) {
+    const auto next = std::ranges::upper_bound(begins, time_s);
+    const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - begins.begin() - 1, 0));
+    PathKnot knot = spans[k].at(time_s - begins[k]);
+    knot.time_s = time_s;
+    if (k == 0 || time_s >= begins[k - 1] + spans[k - 1].duration_s()) return knot;
+    const PathKnot before = spans[k - 1].at(time_s - begins[k - 1]);  // the windows of two corners do not meet
+    knot.position += before.position - spans[k - 1].last().end();
+    knot.velocity += before.velocity;
+    knot.acceleration += before.acceleration;
+    return knot;
+  }
+
+  std::vector<PathKnot> knots_of(const std::vector<Span>& spans, const std::vector<double>& begins) const {
+    std::vector<Span::Wanted> wanted;
+    for (std::size_t i = 0; i < spans.size(); ++i)
+      for (const Span::Wanted& one : spans[i].knot_times()) wanted.push_back({begins[i] + one.time_s, one.weight});
+    std::ranges::sort(wanted, {}, &Span::Wanted::time_s);
+    std::vector<Span::Wanted> kept{{0.0, 3}};
+    for (const Span::Wanted& one : wanted) {
       if (one.time_s - kept.back().time_s >= options_.shortest_s * 0.999)
         kept.push_back(one);
       else if (one.weight > kept.back().weight &&
                (kept.size() < 2 || one.time_s - kept[kept.size() - 2].time_s >= options_.shortest_s))
         kept.back() = one;
     }
-    if (kept.size() > 1 && times_.back() - kept.back().time_s < options_.shortest_s) kept.pop_back();
-    std::vector<double> times;
-    for (std::size_t k = 1; k < kept.size(); ++k) times.push_back(kept[k].time_s);
-    times.push_back(std::max(times_.back(), options_.shortest_s));
-    return times;
+    const double end_s = begins.back() + spans.back().duration_s();
+    while (kept.size() > 1 && end_s - kept.back().time_s < options_.shortest_s) kept.pop_back();
+    std::vector<PathKnot> knots;
+    const double unit_s = options_.time_unit_s;
+    for (const Span::Wanted& one : kept) knots.push_back(at(spans, begins, std::round(one.time_s / unit_s) * unit_s));
+    knots.push_back(spans.back().at(end_s));
+    knots.back().time_s =
+        std::ceil(std::max(end_s, knots[knots.size() - 2].time_s + options_.shortest_s) / unit_s) * unit_s;
+    return knots;
   }
 
-  std::vector<SpanCurve> curves_;
+  /// By which factor they must be slowed down to hold the limits: 1 where they do.
+  double excess(const std::vector<Span>& spans, const std::vector<double>& begins) const {
+    const std::vector<PathKnot> knots = knots_of(spans, begins);
+    const LimitUse use = limit_use(knots.data(), knots.data() + knots.size(), options_.limits);
+    const double factor = std::max({1.0, use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
+    return factor > 1.0 ? factor * kMargin : 1.0;
+  }
+
+  /// The longest time by which the next span may begin early: within the tolerance of the corner, and the limits.
+  double overlap(const Span& before, const Span& next, double tolerance_mm) const {
+    if (!(tolerance_mm > 0.0)) return 0.0;
+    double most = std::min({before.duration_s() / 2.0, next.duration_s() / 2.0,
+                            before.duration_s() - before.last_begins_s(), next.first_ends_s()});
+    double fits = 0.0;
+    for (int k = 0; k < 24 && most - fits > 1e-4; ++k) {
+      const double tried = k == 0 ? most : (fits + most) / 2.0;
+      (may_overlap(before, next, tried, tolerance_mm) ? fits : most) = tried;
+      if (k == 0 && fits > 0.0) return fits;
+    }
+    return fits;
+  }
+
+  bool may_overlap(const Span& before, const Span& next, double time_s, double tolerance_mm) const {
+    constexpr int kPoints = 24;
+    constexpr double kRounding = 1.0 + 1e-9;
+    const PathPoint corner = before.last().end();
+    const double from_s = before.duration_s() - time_s;
+    double nearest = std::numeric_limits<double>::infinity();
+    PathPoint last = PathPoint::Zero();
+    for (int i = 0; i <= kPoints; ++i) {
+      const double at_s = time_s * i / kPoints;
+      const PathKnot a = before.at(from_s + at_s), b = next.at(at_s);
+      const PathPoint point = a.position + b.position - corner;
+      nearest = std::min(nearest, (point - corner).norm());
+      if (std::min(before.last().distance_to(point), next.first().distance_to(point)) > tolerance_mm) return false;
+      const PathPoint acceleration = a.acceleration + b.acceleration;
+      const auto is_within = [&](const PathPoint& value, const PathPoint& limit) {
+        return (value.cwiseAbs().array() <= kRounding * limit.array()).all();
+      };
+      if (!is_within(a.velocity + b.velocity, options_.limits.velocity)) return false;
+      if (!is_within(acceleration, options_.limits.acceleration)) return false;
+      if (i > 0 && !is_within((acceleration - last) * (kPoints / time_s), options_.limits.jerk)) return false;
+      last = acceleration;
+    }
+    return nearest <= tolerance_mm;
+  }
+
   const PlanOptions& options_;
-  std::vector<SpeedPhase> phases_;
-  std::vector<SpeedState> states_;
-  std::vector<double> times_;
+  std::vector<Span> spans_;
+  std::vector<double> begins_;
 };
 
 /// Joins moves to spans: with blends where the path may be left a little, and stops where it may not.
@@ -213,7 +340,7 @@ class Joiner {
 
   void add(const PathMove& move) {
     if (move.kind == PathMoveKind::dwell) {
-      end_span();
+      stop();
       dwell(move);
       return;
     }
@@ -227,19 +354,27 @@ class Joiner {
     taken_mm_ = 0.0;
   }
 
-  void end_span() {
-    if (span_.empty()) return;
-    cut_last(0.0);
-    Span(std::move(span_), options_).add_to(path_);
-    span_.clear();
+  /// The axes stand afterwards.
+  void stop() {
+    end_span();
+    chain_.add_to(path_);
   }
 
  private:
+  void end_span() {
+    if (span_.empty()) return;
+    cut_last(0.0);
+    chain_.add(Span(std::move(span_), options_), entry_mm_);
+    entry_mm_ = tolerance_mm_;
+    span_.clear();
+  }
+
   void join(const PathMove& next) {
     const PathCurve& before = span_.back().curve;
     if (is_smooth(before, next.curve)) return cut_last(0.0);
     const bool is_slight = corner_angle(before, next.curve) <= kGoesOn_rad;
-    if (corner_angle(before, next.curve) > kSharp_rad || (tolerance_mm_ <= 0.0 && !is_slight)) return end_span();
+    if (tolerance_mm_ <= 0.0 && !is_slight) return stop();
+    if (corner_angle(before, next.curve) > kSharp_rad) return end_span();
     const auto blend = blend_corner(before, next.curve, std::max(tolerance_mm_, options_.count_mm / 2.0),
                                     std::min(whole_mm_, next.curve.length()) / 2.0);
     if (!blend || !is_worthwhile(*blend)) return end_span();
@@ -272,14 +407,17 @@ class Joiner {
     const auto parts = static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s));
     for (int k = 0; k < parts; ++k) {
       PathKnot knot = path_.knots.back();
-      knot.time_s += std::max(move.dwell_s / parts, options_.shortest_s);
+      const double wanted_s = std::max(move.dwell_s / parts, options_.shortest_s);
+      knot.time_s += std::ceil(wanted_s / options_.time_unit_s) * options_.time_unit_s;
       path_.knots.push_back(knot);
     }
   }
 
   PlannedPath& path_;
   const PlanOptions& options_;
+  Chain chain_{options_};
   std::vector<SpanCurve> span_;
+  double entry_mm_ = 0.0;      ///< tolerance of the corner where the span began
   double tolerance_mm_ = 0.0;  ///< of the corner that comes
   double whole_mm_ = 0.0;      ///< of the newest curve before it was cut
   double begin_mm_ = 0.0;      ///< that the blend before it took
@@ -330,7 +468,7 @@ PlannedPath plan_path(const std::vector<PathMove>& moves, const PlanOptions& opt
       throw Failure(ExitCode::bad_input, fmt::format("line {}: a feed above 0 is needed", move.line));
     joiner.add(move);
   }
-  joiner.end_span();
+  joiner.stop();
   return path;
 }
 

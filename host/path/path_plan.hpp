@@ -46,8 +46,9 @@ struct PlannedPath {
 
 struct PlanOptions {
   AxisLimits limits;
-  double count_mm = 0.001;    ///< the finest encoder step: half of it is the tolerance of an exact path
-  double shortest_s = 0.002;  ///< between knots
+  double count_mm = 0.001;              ///< the finest encoder step: half of it is the tolerance of an exact path
+  double shortest_s = 0.002;            ///< between knots
+  double time_unit_s = 0.001 / 4096.0;  ///< in which a board has the time between them
 };
 
 /// Within the limits of each axis, as quickly as the planner can. Corners are stopped at where their tolerance is 0 and
