@@ -164,6 +164,11 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
   return fit_model(best.model, affordable(last, best.model, kLastWord), kLastWord).model;
 }
 
+ShareDone part_of(const ShareDone& progress, double from, double to) {
+  if (!progress) return {};
+  return [progress, from, to](double share) { progress(from + share * (to - from)); };
+}
+
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
                  const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation) {
   Candidate candidate{kinds, model, {}, {}, HUGE_VAL};

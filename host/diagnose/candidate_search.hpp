@@ -24,6 +24,9 @@ struct Candidate {
 /// Called with the share of the work that is done, 0..1, from any thread.
 using ShareDone = std::function<void(double)>;
 
+/// One part of several that follow one another.
+ShareDone part_of(const ShareDone& progress, double from, double to);
+
 /// Windows for a first look, for a serious fit and for the last word.
 struct SearchEffort {
   std::size_t coarse_windows = 80;

@@ -8,26 +8,16 @@
 #include <optional>
 #include <utility>
 
-#include "host/diagnose/claim.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/diagnose/model_fit.hpp"
+#include "host/diagnose/search_by_steps.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/identify/inverse_model.hpp"
 
 namespace host {
-
-namespace {
-
-/// Splits one progress into parts that follow one another.
-ShareDone part(const ShareDone& progress, double from, double to) {
-  if (!progress) return {};
-  return [progress, from, to](double share) { progress(from + share * (to - from)); };
-}
-
-}  // namespace
 
 namespace {
 
@@ -79,27 +69,8 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   if (progress) progress(0.05);
   SearchEffort effort = SearchEffort{}.over(result.window_s);
   effort.nominal = &model;
-  effort.absent = &result.absent;
   effort.cut_short = &result.not_searched;
-  Findings found;
-  found.singles =
-      search_candidates(result.base, {}, result.training, result.validation, part(progress, 0.05, 0.5), effort);
-  if (!found.singles.empty()) {
-    renew_floors(result.training, found.singles.front().model);
-    renew_floors(result.validation, found.singles.front().model);
-    // What only helps at the end of its physical range makes up for something else: nothing stands on it.
-    const auto is_physical = [](const Candidate& candidate) {
-      return parameters_on_bound(candidate.model, candidate.kinds).empty();
-    };
-    std::vector<std::string> excluded = result.absent;
-    for (const Candidate& candidate : found.singles)
-      if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
-    effort.absent = &excluded;
-    const auto best = std::ranges::find_if(found.singles, is_physical);
-    if (best != found.singles.end() && error_of(sim::Drive(best->model), result.validation).combined > kExplained)
-      found.pairs = search_candidates(best->model, best->kinds, result.training, result.validation,
-                                      part(progress, 0.5, 0.95), effort);
-  }
+  const Findings found = search_by_steps(result, part_of(progress, 0.05, 0.95), effort);
   judge(result, model, found);
   if (progress) progress(1.0);
   return result;

@@ -59,6 +59,7 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
 }
 
 const sim::DriveDescription& best_found(const sim::DriveDescription& base, const Findings& findings) {
+  if (!findings.triples.empty()) return findings.triples.front().model;
   if (!findings.pairs.empty()) return findings.pairs.front().model;
   return findings.singles.empty() ? base : findings.singles.front().model;
 }
@@ -70,8 +71,8 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
   renew_floors(training, reference);
   renew_floors(validation, reference);
   const SetError before = error_of(sim::Drive(diagnosis.base), validation);
-  diagnosis.tried = findings.singles.size() + findings.pairs.size();
-  for (const std::vector<Candidate>* list : {&findings.singles, &findings.pairs})
+  diagnosis.tried = findings.singles.size() + findings.pairs.size() + findings.triples.size();
+  for (const std::vector<Candidate>* list : {&findings.singles, &findings.pairs, &findings.triples})
     for (const Candidate& candidate : *list)
       diagnosis.candidates.push_back(judge_candidate(candidate, training, validation, before, diagnosis.tried));
   std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);

@@ -5,14 +5,9 @@
 
 #include "host/diagnose/candidate_search.hpp"
 #include "host/diagnose/diagnosis.hpp"
+#include "host/diagnose/search_by_steps.hpp"
 
 namespace host {
-
-/// What a search found on a diagnosis' sets, each list best first.
-struct Findings {
-  std::vector<Candidate> singles;  ///< one effect added to the base
-  std::vector<Candidate> pairs;    ///< a second one added to the best single
-};
 
 /// A candidate on validation data, against the base's error there, as the best of `tried`.
 JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& training, const RecordSet& validation,

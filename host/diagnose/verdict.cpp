@@ -180,19 +180,26 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const JudgedCandidate* single = best_of_size(diagnosis, 1);
   const JudgedCandidate* pair = best_of_size(diagnosis, 2);
   if (single != nullptr) single = simplest_near(single, diagnosis);
+  const JudgedCandidate* triple = best_of_size(diagnosis, 3);
+  const auto gains_on = [](const JudgedCandidate* more, const JudgedCandidate* less) {
+    return more->after < (1.0 - kLeastFurtherGain) * less->after &&
+           more->train_after < (1.0 - kLeastFurtherGain) * less->train_after;
+  };
   const bool pair_stands = pair != nullptr && single != nullptr && earns_its_place(*pair, diagnosis) &&
-                           pair->after < (1.0 - kLeastFurtherGain) * single->after &&
-                           pair->train_after < (1.0 - kLeastFurtherGain) * single->train_after &&
+                           gains_on(pair, single) &&
                            (explained_share(single->after, pair->after) >= kLeastFurtherShare ||
                             (diagnosis.rough && need_each_other(*pair, diagnosis)));
-  const JudgedCandidate* chosen = pair_stands ? pair : single;
+  const bool triple_stands = triple != nullptr && pair != nullptr && earns_its_place(*triple, diagnosis) &&
+                             gains_on(triple, pair) &&
+                             explained_share(pair->after, triple->after) >= kLeastFurtherShare;
+  const JudgedCandidate* chosen = triple_stands ? triple : pair_stands ? pair : single;
   const double before = diagnosis.before_validate;
 
   if (chosen != nullptr && earns_its_place(*chosen, diagnosis)) {
     verdict.effects = chosen->kinds;
     verdict.status = Status::missing;
     const sim::EffectInfo& first = *sim::find_effect(chosen->kinds.front());
-    if (!pair_stands) {
+    if (chosen->kinds.size() == 1) {
       const std::vector<std::string> tied = ties_of(*chosen, diagnosis);
       if (!tied.empty()) {
         verdict.status = Status::ambiguous;

@@ -1,0 +1,82 @@
+#include "host/diagnose/search_by_steps.hpp"
+
+#include <algorithm>
+
+#include "host/diagnose/claim.hpp"
+#include "host/diagnose/model_fit.hpp"
+#include "host/diagnose/verdict.hpp"
+
+namespace host {
+
+namespace {
+
+/// What only helps at the end of its physical range makes up for something else: nothing stands on it.
+bool is_physical(const Candidate& candidate) { return parameters_on_bound(candidate.model, candidate.kinds).empty(); }
+
+struct Errors {
+  double training, validation;
+
+  Errors(const sim::DriveDescription& model, const PreparedSets& sets)
+      : training(error_of(sim::Drive(model), sets.training).combined),
+        validation(error_of(sim::Drive(model), sets.validation).combined) {}
+};
+
+/// A pair that takes most of what there is, and leaves more than a complete model does, is part of something.
+bool promises_a_third(const Errors& base, const Errors& pair) {
+  constexpr double kMost = 0.6;
+  return pair.validation > kExplained && explained_share(base.training, pair.training) > kMost &&
+         explained_share(base.validation, pair.validation) > kMost;
+}
+
+/// A triple without each of its first two effects in turn: the third may have made one of them needless.
+std::vector<Candidate> without_what_is_needless(const Candidate& triple, const PreparedSets& sets) {
+  constexpr double kAsGood = 1.1;
+  constexpr FitOptions kFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
+  std::vector<Candidate> found;
+  for (std::size_t k = 0; k + 1 < triple.kinds.size(); ++k) {
+    sim::DriveDescription model = triple.model;
+    std::vector<std::string> kinds = triple.kinds;
+    std::erase_if(model.effects, [&](const sim::EffectEntry& entry) { return entry.kind == triple.kinds[k]; });
+    kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(k));
+    model = fit_model(model, sets.training, kFit).model;
+    const Errors without(model, sets), with(triple.model, sets);
+    if (without.training < kAsGood * with.training && without.validation < kAsGood * with.validation)
+      found.push_back(judged(kinds, model, sets.base, sets.training, sets.validation));
+  }
+  return found;
+}
+
+}  // namespace
+
+Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEffort effort) {
+  Findings found;
+  std::vector<std::string> excluded = sets.absent;
+  effort.absent = &excluded;
+  const auto on_top_of = [&](const Candidate& first, double from, double to) {
+    return search_candidates(first.model, first.kinds, sets.training, sets.validation, part_of(progress, from, to),
+                             effort);
+  };
+  const auto renew = [&sets](const sim::DriveDescription& model) {
+    renew_floors(sets.training, model);
+    renew_floors(sets.validation, model);
+  };
+  found.singles = search_candidates(sets.base, {}, sets.training, sets.validation, part_of(progress, 0.0, 0.5), effort);
+  if (found.singles.empty()) return found;
+  renew(found.singles.front().model);
+  for (const Candidate& candidate : found.singles)
+    if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
+  const auto single = std::ranges::find_if(found.singles, is_physical);
+  if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
+  found.pairs = on_top_of(*single, 0.5, 0.8);
+  const auto pair = std::ranges::find_if(found.pairs, is_physical);
+  if (pair == found.pairs.end()) return found;
+  renew(pair->model);
+  if (!promises_a_third(Errors(sets.base, sets), Errors(pair->model, sets))) return found;
+  found.triples = on_top_of(*pair, 0.8, 1.0);
+  const auto triple = std::ranges::find_if(found.triples, is_physical);
+  if (triple == found.triples.end()) return found;
+  for (Candidate& shorter : without_what_is_needless(*triple, sets)) found.triples.push_back(std::move(shorter));
+  return found;
+}
+
+}  // namespace host
