@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "firmware/core/axis_fault.hpp"
 #include "host/commission/steps.hpp"
 #include "host/exit_codes.hpp"
 
@@ -25,12 +26,27 @@ void give_back(CommissionSession& session) noexcept {
   }
 }
 
+constexpr std::size_t kControl = 2, kLastInLoop = 6;  // places of control, validate
+static_assert(kCommissionSteps[kControl].name == "control" && kCommissionSteps[kLastInLoop].name == "validate");
+
+/// A step whose motions the first controller makes.
+bool is_in_loop(std::size_t step) { return step > kControl && step <= kLastInLoop; }
+
+/// The axis has stopped with a fault that too lively a controller may have made.
+bool is_swinging(CommissionSession& session) {
+  const auto fault = static_cast<firmware::AxisFault>(session.board().status().axis.at(session.options().axis).fault);
+  return fault == firmware::AxisFault::limit_cycle || fault == firmware::AxisFault::following_error ||
+         fault == firmware::AxisFault::saturation_too_long;
+}
+
 }  // namespace
 
 void commission_axis(BoardClient& board, const CommissionOptions& options, const CommissionTalk& talk,
                      CommissionFolder& folder, std::size_t from, std::size_t to) {
   board.require_same_table();
   folder.begin_at(from);
+  if (from <= kControl) folder.put("halvings", 0);
+  if (from == 0) folder.put("motion_s", 0.0);
   CommissionSession session(board, options, talk, folder);
   if (from > 0) session.give_scales();
   for (std::size_t step = from; step <= to; ++step) {
@@ -40,6 +56,11 @@ void commission_axis(BoardClient& board, const CommissionOptions& options, const
       folder.finish(step, result.files, result.said);
       talk.tell("  " + result.said);
     } catch (const Failure& failure) {
+      if (failure.code == ExitCode::device_fault && is_swinging(session) && is_in_loop(step) && session.calm_down()) {
+        talk.tell(fmt::format("  The loop swings: {}. Again with half the bandwidth.", failure.what()));
+        step = kControl - 1;
+        continue;
+      }
       give_back(session);
       const std::string how = fmt::format(
           "{}. The axis stands, disabled; {} steps are in the folder. When that is mended, "

@@ -194,7 +194,9 @@ firmware::ParameterValues CommissionSession::with_planned_limits(firmware::Param
 
 firmware::ParameterValues CommissionSession::design(const sim::DriveDescription& model, const std::string& file) {
   DesignOptions wanted;
-  wanted.bandwidth_Hz = options_.bandwidth_Hz;
+  const int halvings = folder_.document().value("halvings", 0);
+  wanted.bandwidth_Hz = std::ldexp(options_.bandwidth_Hz, -halvings);
+  wanted.disturbance_variance = std::ldexp(wanted.disturbance_variance, -4 * halvings);
   const std::string text = board_parameters_toml(model, design_axis(model, wanted)) + compensation_toml(model);
   firmware::ParameterValues values = board_.read_values();
   for (const Assignment& one : parse_parameter_text(text, file, options_.axis_name)) put(values, one);
@@ -209,6 +211,17 @@ firmware::ParameterValues CommissionSession::design(const sim::DriveDescription&
   }
   write_file_atomically(folder_.path(file), kept);
   return values;
+}
+
+bool CommissionSession::calm_down() {
+  constexpr int kMost = 3;
+  const int halvings = folder_.document().value("halvings", 0);
+  if (halvings == kMost) return false;
+  disable();
+  board_.clear_faults();
+  board_.wait(kToRest);  // a self-test follows
+  folder_.put("halvings", halvings + 1);
+  return true;
 }
 
 void CommissionSession::give_scales() {

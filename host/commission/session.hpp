@@ -20,7 +20,7 @@ struct CommissionOptions {
   /// Travel about where the axis stands when the command begins; volts in open loop, and what motions in closed loop
   /// are planned for; time of all motion together.
   ExcitationLimits box;
-  double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of resonances
+  double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of delays yet
   bool save = false;           ///< the better set, in the board's flash
 };
 
@@ -75,6 +75,10 @@ class CommissionSession {
   /// folder. Throws Failure(refused) where friction takes all of the box's volts.
   void plan_limits(const sim::DriveDescription& model);
   firmware::ParameterValues with_planned_limits(firmware::ParameterValues values) const;
+
+  /// After a fault of a loop that swings: the next design has half the bandwidth, and an estimator that trusts the
+  /// model more. False where it has been as calm as it can be.
+  bool calm_down();
 
   /// The axis stands and is disabled; whatever fails meanwhile is not said.
   void leave_standing() noexcept;

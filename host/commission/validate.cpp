@@ -26,8 +26,12 @@ CommissionStepResult record_validation(CommissionSession& session) {
                   {{}, {{"amplitude", 0.2 * box.volts}, {"from", 2.0}, {"to", 80.0}, {"ride", 0.2 * top}}},
                   "output",
                   8.0});
-  const double stroke = std::max(box.travel / 100.0, 100.0 * count);
-  session.record({"reversals.csv", "reversals", {{}, {{"amplitude", stroke}, {"speed", 3.0 * stroke}}}, "", 5.0});
+  // A triangle's reference holds 1000 counts, and turns as sharply as the board lets a path turn.
+  const double stroke = std::min(std::max(box.travel / 100.0, 100.0 * count), 900.0 * count);
+  const double sharpest = 3.0 * session.folder().document().at("limits").at("acceleration").get<double>() *
+                          session.options().sheet.data.sample_period_s;
+  const double slow = std::min(3.0 * stroke, sharpest);
+  session.record({"reversals.csv", "reversals", {{}, {{"amplitude", stroke}, {"speed", slow}}}, "", 5.0});
   session.record(
       {"dwell.csv", "dwell", {{0.05, 0.15, 0.4, 1.0, 2.0}, {{"speed", 0.1 * top}, {"hold", 0.25}}}, "", 6.0});
   session.record(judging_jogs(session, "judge-jogs.csv"));

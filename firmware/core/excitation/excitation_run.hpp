@@ -49,8 +49,9 @@ class ExcitationRun {
     phase_ = ExcitationPhase::opening;
     end_ = ExcitationEnd::none;
     elapsed_ = waited_ = longest_silence_ = 0;
-    still_samples_ = still_before_ = 0;
-    moved_by_ = Scalar(0);
+    still_samples_ = still_before_ = still_at_ = rest_at_ = 0;
+    woken_by_ = Scalar(0);
+    moved_forward_by_ = moved_backward_by_ = Scalar(0);
     farthest_ = fastest_ = 0;
     sum_of_effects_ = 0;
     last_value_ = ride_ = last_ride_ = unseen_ = Scalar(0);
@@ -97,7 +98,10 @@ class ExcitationRun {
  private:
   using Traits = ScalarTraits<Scalar>;
   static constexpr std::uint32_t kLongestOpening = 1000;  ///< samples
-  static constexpr std::int32_t kStill = 20;              ///< samples without a count
+  static constexpr std::int32_t kStill = 20;              ///< samples of a standstill
+  static constexpr Scalar kUneven{0.6f};                  ///< breakaway in one place above that in another
+  static constexpr int kSlipShift = 6;                    ///< slip: less than this part, 2^-n, of the window's half
+  static constexpr std::int32_t kFlicker = 2;             ///< counts of an axis that stands, on an encoder's edge
 
   template <typename Axis>
   constexpr void open(Axis& axis, bool is_on) {
@@ -124,8 +128,10 @@ class ExcitationRun {
   template <typename Telemetry>
   constexpr void see(const Telemetry& seen) {
     way_ = static_cast<std::int32_t>(seen.encoder_counts - start_);
+    const bool is_still = magnitude(way_ - still_at_) <= kFlicker;
     still_before_ = still_samples_;
-    still_samples_ = seen.encoder_travel != 0 ? 0 : still_samples_ + 1;
+    still_samples_ = is_still ? still_samples_ + 1 : 0;
+    if (!is_still) still_at_ = way_;
     const std::int32_t last_speed = speed_;
     const std::int32_t middle = seen_[(place_ + kSpeedSamples) % seen_.size()];
     speed_ = way_ - middle;
@@ -161,21 +167,30 @@ class ExcitationRun {
       return leave(ExcitationEnd::speed);
     if (is_blind(seen)) return leave(ExcitationEnd::blind);
     if (plan_->input != ExcitationInput::open_loop) return;
-    if (does_nothing(seen.encoder_travel)) leave(ExcitationEnd::no_motion);
+    if (does_nothing()) leave(ExcitationEnd::no_motion);
   }
 
-  /// A command near the largest, or well above what has moved the axis before, and no count: for as long as the plan
-  /// says, or, once the axis has moved, for four times the longest such silence until then.
-  constexpr bool does_nothing(std::int32_t travel) {
+  /// A command near the largest, or well above what has moved the axis this way before, and no more than a flicker of
+  /// the encoder: for as long as the plan says, or, once the axis has moved, for four times the longest such silence
+  /// until then. Weight, cogging and friction differ by direction.
+  constexpr bool does_nothing() {
     const Scalar command = Traits::magnitude(last_value_);
-    const bool is_large = command >= plan_->amplitude * Scalar(0.9f) ||
-                          (moved_by_ > Scalar(0) && command > moved_by_ + moved_by_ * Scalar(0.25f));
-    if (travel == 0) {
+    Scalar& moved_by = last_value_ > Scalar(0) ? moved_forward_by_ : moved_backward_by_;
+    const bool is_large =
+        command >= plan_->amplitude * Scalar(0.9f) || (moved_by > Scalar(0) && command > moved_by + moved_by * kUneven);
+    if (still_samples_ > 0) {
       if (is_large) ++waited_;
       const std::uint32_t patience = 4 * longest_silence_ + kStill;
-      return waited_ > (moved_by_ > Scalar(0) && patience < plan_->stall_samples ? patience : plan_->stall_samples);
+      return waited_ > (moved_by > Scalar(0) && patience < plan_->stall_samples ? patience : plan_->stall_samples);
     }
-    if (still_before_ >= kStill && command > moved_by_) moved_by_ = command;
+    if (still_before_ >= kStill) {
+      rest_at_ = way_;
+      woken_by_ = last_value_;
+    }
+    // Elastic slip and the gap of a gear are no breakaway.
+    const bool is_away = magnitude(way_ - rest_at_) > plan_->box.travel_counts >> kSlipShift;
+    if (is_away && (woken_by_ > Scalar(0)) == (last_value_ > Scalar(0)) && Traits::magnitude(woken_by_) > moved_by)
+      moved_by = Traits::magnitude(woken_by_);
     if (waited_ > longest_silence_) longest_silence_ = waited_;
     waited_ = 0;
     return false;
@@ -207,8 +222,9 @@ class ExcitationRun {
     waited_ = 0;
   }
 
-  /// On its way out, so far that it must turn round now; or nearly as fast as it may be.
-  constexpr bool must_turn() {
+  /// On its way out, so far that it must turn round now; or nearly as fast as it may be. `is_turning`: what acts now
+  /// slows it down already, and what comes next might not.
+  constexpr bool must_turn(bool is_turning) {
     const bool is_outward = way_ > 0 ? speed_ > 0 : speed_ < 0;
     const std::int32_t taken = magnitude(way_ - turned_at_);
     const std::int32_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
@@ -220,18 +236,23 @@ class ExcitationRun {
     if (speed < slowest_) slowest_ = speed;
     // What turned it round still slows it down, until it goes the other way or gains speed again.
     if (is_forward_ != turned_forward_ || speed > slowest_ + slowest_ / 4 + kSpeedSamples) may_turn_ = true;
-    if (!may_turn_ || !(is_far || is_fast)) return false;
+    if (!may_turn_ || is_turning || !(is_far || is_fast)) return false;
     may_turn_ = false;
     turned_forward_ = is_forward_;
     slowest_ = speed;
     return true;
   }
 
+  constexpr bool is_against_motion(Scalar command) const {
+    if (sum_of_effects_ == 0 || command == Scalar(0)) return false;
+    return ((command > Scalar(0)) == (sum_of_effects_ > 0)) != (speed_ > 0);
+  }
+
   template <typename Axis>
   constexpr void drive_open(Axis& axis) {
     Scalar value{};
     if (phase_ == ExcitationPhase::running)
-      value = within(generator_.next(must_turn()), plan_->box.volts);
+      value = within(generator_.next(must_turn(is_against_motion(last_value_))), plan_->box.volts);
     else
       value = brake();
     axis.excite(value);
@@ -252,12 +273,12 @@ class ExcitationRun {
   template <typename Axis>
   constexpr void drive_closed(Axis& axis) {
     if (plan_->input == ExcitationInput::jog) {
-      follow(axis, phase_ == ExcitationPhase::running ? generator_.next(must_turn()) : Scalar(0));
+      follow(axis, phase_ == ExcitationPhase::running ? generator_.next(must_turn(jogs_back(ride_))) : Scalar(0));
       return;
     }
     if (plan_->ride != Scalar(0)) {
       if (last_ride_ == Scalar(0)) last_ride_ = plan_->ride;
-      if (must_turn()) last_ride_ = Scalar(0) - last_ride_;
+      if (must_turn(jogs_back(last_ride_))) last_ride_ = Scalar(0) - last_ride_;
       follow(axis, phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0));
     }
     const Scalar value = generator_.next(false);
@@ -268,6 +289,10 @@ class ExcitationRun {
     const Increment reference = Traits::to_increment(value);
     axis.lead(reference - last_reference_);
     last_reference_ = reference;
+  }
+
+  constexpr bool jogs_back(Scalar velocity) const {
+    return velocity != Scalar(0) && (velocity > Scalar(0)) != (speed_ > 0);
   }
 
   /// A jog is told only what is new to it.
@@ -300,8 +325,11 @@ class ExcitationRun {
   std::uint32_t elapsed_ = 0;                           ///< samples of the excitation
   std::uint32_t waited_ = 0;                            ///< samples: for the enable, for a first count, of braking
   std::uint32_t longest_silence_ = 0;                   ///< under a large command, samples
-  std::int32_t still_samples_ = 0, still_before_ = 0;   ///< without a count: now, and a sample ago
-  Scalar moved_by_{};                                   ///< largest command that has ended a standstill
+  std::int32_t still_samples_ = 0, still_before_ = 0;   ///< with no more than a flicker: now, and a sample ago
+  std::int32_t still_at_ = 0;                           ///< where
+  std::int32_t rest_at_ = 0;                            ///< where a longer standstill ended
+  Scalar woken_by_{};                                   ///< the command that ended it
+  Scalar moved_forward_by_{}, moved_backward_by_{};     ///< largest command that has ended a standstill
   std::int64_t start_ = 0;                              ///< counts
   std::int32_t turned_at_ = 0;                          ///< where the axis last went the other way
   std::int32_t way_ = 0;                                ///< from the start
