@@ -162,6 +162,13 @@ plan-bench: ## Plan, run and decide on machines made by independent code, pair b
 	ninja -C $(BUILD) -j $(JOBS) axis_plan_bench
 	$(BUILD)/bin/axis_plan_bench $(or $(CASES),tests/data/drive-cases)
 
+.PHONY: commission-bench
+commission-bench: ## axistool commission on twenty machines whose hidden effects it is not told (ONLY="01-cogging …")
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	python3 tests/commission/bench.py $(BUILD)/bin/axistool tests/commission/machines.json $(if $(ONLY),--only $(ONLY))
+
 .PHONY: mutants
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
 	$(NEED) build test

@@ -1,0 +1,138 @@
+// What may go wrong on the way: the axis stands, the folder can be used, the message says what to do.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <random>
+
+#include "tests/host/commission/own_machine.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+using host::ExitCode;
+using testing::HasSubstr;
+
+/// The folder opens, and what it says is done can be gone on from.
+void expect_usable(const std::string& name) {
+  const host::CommissionFolder folder(name);
+  EXPECT_EQ(folder.document().at("format"), "axis-commission/1");
+}
+
+/// An axis that its controller holds where it stands may stay enabled when the host goes.
+void expect_standing(OwnBoard& board) {
+  board.link->wait(std::chrono::seconds(2));
+  const double there = board.machine->position();
+  board.link->wait(std::chrono::seconds(1));
+  EXPECT_NEAR(board.machine->position(), there, 0.005);
+}
+
+TEST(CommissioningGoesWrong, WhereTheEncoderCountsBackward) {
+  const TemporaryFolder folder;
+  OwnBoard board;
+  board.machine->counts_backward = true;
+  const auto [code, words] = commission(board, folder.path("x"), "look", "identify");
+  EXPECT_EQ(code, ExitCode::refused);
+  EXPECT_THAT(words, HasSubstr("swap the encoder's two channels"));
+  EXPECT_THAT(words, HasSubstr("--from look"));
+  expect_standing(board);
+  expect_usable(folder.path("x"));
+}
+
+TEST(CommissioningGoesWrong, WhereALimitSwitchIsHit) {
+  const TemporaryFolder folder;
+  hal::pc::AxisWiring wiring;
+  wiring.positive_end = 3.0;
+  OwnBoard board(wiring);
+  const auto [code, words] = commission(board, folder.path("x"), "look", "identify");
+  EXPECT_EQ(code, ExitCode::device_fault);
+  EXPECT_THAT(words, HasSubstr("limit_switch_positive"));
+  expect_standing(board);
+  expect_usable(folder.path("x"));
+}
+
+TEST(CommissioningGoesWrong, WhereTheUserSaysNo) {
+  const TemporaryFolder folder;
+  OwnBoard board;
+  host::CommissionTalk talk;
+  int asked = 0;
+  talk.consents = [&](const std::string&) { return ++asked < 2; };
+  const auto [code, words] = commission(board, folder.path("x"), "look", "ladder", talk);
+  EXPECT_EQ(code, ExitCode::refused);
+  EXPECT_THAT(words, HasSubstr("identify: not done, as you wished"));
+  EXPECT_EQ(commission(board, folder.path("x"), "identify", "control").first, ExitCode::done);
+}
+
+TEST(CommissioningGoesWrong, WhereTheUserInterruptsAndCanGoOn) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 10; ++trial) {
+    const TemporaryFolder folder;
+    OwnBoard board;
+    host::CommissionTalk talk;
+    long asked = std::uniform_int_distribution<long>(1, 3000)(random);
+    talk.stop = [&] { return --asked <= 0; };
+    const auto [code, words] = commission(board, folder.path("x"), "look", "ladder", talk);
+    expect_standing(board);
+    if (code == ExitCode::done) continue;
+    EXPECT_EQ(code, ExitCode::refused) << words;
+    EXPECT_THAT(words, HasSubstr("interrupted"));
+    const auto next = host::CommissionFolder(folder.path("x")).first_undone();
+    ASSERT_TRUE(next.has_value());
+    EXPECT_EQ(commission(board, folder.path("x"), host::kCommissionSteps[*next].name.data(), "ladder").first,
+              ExitCode::done);
+  }
+}
+
+/// The program dies, or its cable is pulled: nobody tells the board to stop, and it does.
+TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
+  std::mt19937 random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    const TemporaryFolder folder;
+    OwnBoard board;
+    board.reports_left = std::uniform_int_distribution<long>(1, 4000)(random);
+    const auto [code, words] = commission(board, folder.path("x"), "look", "ladder");
+    expect_standing(board);
+    expect_usable(folder.path("x"));
+    if (code == ExitCode::done) continue;
+    EXPECT_EQ(code, ExitCode::no_such_device) << words;
+    if (trial % 10 != 0) continue;
+    board.reports_left = -1;
+    {
+      host::BoardClient client = board.client();
+      client.clear_faults();
+      client.wait(std::chrono::milliseconds(500));
+    }
+    const auto next = host::CommissionFolder(folder.path("x")).first_undone();
+    const auto again = commission(board, folder.path("x"), host::kCommissionSteps[*next].name.data(), "ladder");
+    EXPECT_EQ(again.first, ExitCode::done) << again.second;
+  }
+}
+
+TEST(CommissioningGoesWrong, WhereTheDiskIsFull) {
+  const TemporaryFolder folder;
+  OwnBoard board;
+  ASSERT_EQ(commission(board, folder.path("x"), "look", "look").first, ExitCode::done);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, before.rlim_max};  // a record does not fit
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  const auto [code, words] = commission(board, folder.path("x"), "identify", "ladder");
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_NE(code, ExitCode::done);
+  EXPECT_THAT(words, HasSubstr("steps.csv"));
+  expect_standing(board);
+  expect_usable(folder.path("x"));
+  EXPECT_EQ(commission(board, folder.path("x"), "identify", "ladder").first, ExitCode::done);
+}
+
+TEST(CommissioningGoesWrong, WhereAFileOfAnEarlierStepIsMissing) {
+  const TemporaryFolder folder;
+  OwnBoard board;
+  const auto [code, words] = commission(board, folder.path("x"), "friction", "friction");
+  EXPECT_EQ(code, ExitCode::usage);
+  EXPECT_THAT(words, HasSubstr("go on --from identify"));
+}
+
+}  // namespace

@@ -1,0 +1,114 @@
+// A machine that shares no code with the simulator, behind the simulated board and its protocol.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <utility>
+
+#include "host/commission/commission.hpp"
+#include "host/exit_codes.hpp"
+#include "host/simulated_board/simulated_link.hpp"
+
+/// A mass with Coulomb friction on a screw, in Nm, kg m^2, rad/s and mm.
+class OwnMachine : public sim::ForeignMotion {
+ public:
+  bool counts_backward = false;
+
+  void command(std::optional<double> u_V) override { u_V_ = u_V; }
+  void advance(double duration_s) override {
+    constexpr int kSteps = 20;
+    for (int step = 0; step < kSteps; ++step) move(duration_s / kSteps);
+  }
+  sim::ForeignReading reading() const override {
+    return {counts_backward ? -x_ : x_, noisy_ + (counts_backward ? -w_ : w_)};
+  }
+
+  double position() const { return x_; }
+
+ private:
+  void move(double dt) {
+    constexpr double kEffort = 3.0, kInertia = 0.008, kFriction = 2.0, kLead = 1.6;
+    const double drive = kEffort * u_V_.value_or(0.0);
+    if (w_ == 0.0 && std::abs(drive) <= kFriction) return;
+    const double way = w_ != 0.0 ? std::copysign(1.0, w_) : std::copysign(1.0, drive);
+    const double w = w_ + dt / kInertia * (drive - 0.03 * w_ - kFriction * way);
+    x_ += kLead * dt * (w_ + w) / 2.0;
+    w_ = w_ * w < 0.0 ? 0.0 : w;
+    noisy_ = 0.1 * normal_(random_);
+  }
+
+  std::optional<double> u_V_;
+  double x_ = 0.0, w_ = 0.0, noisy_ = 0.0;
+  std::mt19937 random_{7};
+  std::normal_distribution<double> normal_;
+};
+
+/// The data sheet of it, 5 % off.
+inline sim::DriveDescription own_sheet() {
+  sim::DataSheet data;
+  data.amplifier_gain_A_per_V = 6.3;
+  data.torque_constant_Nm_per_A = 0.5;
+  data.lead = 1.6;
+  data.dac_resolution_V = 20.0 / 65536.0;
+  data.encoder_resolution = 0.001;
+  data.tach_noise_variance = 0.01;
+  return {"own", data, {}};
+}
+
+/// A board that outlives the program that talks to it; its way may break after so many reports.
+struct OwnBoard {
+  std::shared_ptr<OwnMachine> machine = std::make_shared<OwnMachine>();
+  std::shared_ptr<host::SimulatedLink> link;
+  long reports_left = -1;  ///< below 0: it does not break
+
+  explicit OwnBoard(hal::pc::AxisWiring wiring = {}) {
+    sim::DriveDescription hollow = own_sheet();
+    hollow.effects.push_back({"inertia", {{"J", 1.0}}, {}, {}});
+    link = std::make_shared<host::SimulatedLink>(host::SimulatedDeviceOptions{{{hollow, wiring, machine}}, "", 1});
+  }
+
+  class Way : public host::ReportLink {
+   public:
+    explicit Way(OwnBoard& board) : board_(board) {}
+    void send(const hal::HidReport& report) override {
+      if (board_.reports_left == 0) throw host::Failure(host::ExitCode::no_such_device, "the board is gone");
+      if (board_.reports_left > 0) --board_.reports_left;
+      board_.link->send(report);
+    }
+    std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) override {
+      return board_.link->receive(limit);
+    }
+    std::chrono::steady_clock::time_point now() const override { return board_.link->now(); }
+    void wait(std::chrono::milliseconds duration) override { board_.link->wait(duration); }
+    std::string name() const override { return "own"; }
+
+   private:
+    OwnBoard& board_;
+  };
+
+  host::BoardClient client() { return host::BoardClient(std::make_unique<Way>(*this)); }
+};
+
+inline host::CommissionOptions own_options() {
+  host::CommissionOptions options;
+  options.axis_name = "x";
+  options.sheet = own_sheet();
+  options.box = {80.0, 150.0, 4.0, 600.0};
+  return options;
+}
+
+/// Runs steps by name. Returns the failure's code and words, or done.
+inline std::pair<host::ExitCode, std::string> commission(OwnBoard& board, const std::string& folder_name,
+                                                         const char* from, const char* to,
+                                                         const host::CommissionTalk& talk = {}) {
+  try {
+    host::CommissionFolder folder(folder_name);
+    host::BoardClient client = board.client();
+    host::commission_axis(client, own_options(), talk, folder, host::commission_step(from), host::commission_step(to));
+    return {host::ExitCode::done, ""};
+  } catch (const host::Failure& failure) {
+    return {failure.code, failure.what()};
+  }
+}
