@@ -27,7 +27,7 @@ constexpr auto kValues = [] {
 /// exp(-z) for any z, within 1e-11 relative for 0 <= z < 37 and 0 beyond: the nearest value of the table times four
 /// terms of the series, whose first missing one is (1/64)^5/120.
 inline double decay(double z) {
-  using namespace decay_table;
+  using decay_table::kEnd, decay_table::kPerUnit, decay_table::kValues;
   if (!(z < kEnd)) return z >= kEnd ? 0.0 : z;  // not a number stays so
   if (z < 0.0) return std::exp(-z);
   // Adding 1.5 * 2^52 rounds to a whole number, which then stands in the lowest bits.

@@ -24,7 +24,7 @@ struct CaptureArguments : DeviceArguments {
   std::string output, axis = "x", trigger, drive;
   std::vector<std::string> channels, jogs;
   std::string before;
-  double duration_s = 0.0, patience_s = 60.0;
+  double duration_s = 0.0, wait_s = 60.0;
   unsigned every = 1;
   bool linear = false, wide = false, last = false;
 };
@@ -69,7 +69,7 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
   settings.channels.erase(std::unique(settings.channels.begin(), settings.channels.end()), settings.channels.end());
   settings.every = static_cast<std::uint16_t>(arguments.every);
   settings.before_s = seconds_of(arguments.before);
-  settings.patience_s = arguments.patience_s;
+  settings.patience_s = arguments.wait_s;
   for (const std::string& jog : arguments.jogs) settings.jogs.push_back(parse_jog(jog));
   settings.duration_s = arguments.duration_s > 0.0 || !settings.jogs.empty() ? arguments.duration_s : 1.0;
   return settings;
@@ -174,7 +174,7 @@ void add_capture(CLI::App& app) {
   command->add_option("--pre", arguments->before, "time to keep from before the trigger: 0.1, 50ms");
   command->add_flag("--wide", arguments->wide, "in the board's memory: all digits of speeds, errors and voltages");
   command->add_flag("--last", arguments->last, "what the board's memory holds, also from before its last reset");
-  command->add_option("--wait", arguments->patience_s, "seconds to wait for the trigger")->capture_default_str();
+  command->add_option("--wait", arguments->wait_s, "seconds to wait for the trigger")->capture_default_str();
   command->add_option("--jog", arguments->jogs, "SPEED:SECONDS, one after the other, meanwhile; the axis is enabled")
       ->delimiter(',');
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");

@@ -247,7 +247,7 @@ Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   std::vector<std::vector<long>> ranks;
   for (const ComparedRecord& compared : set.records) {
     const std::vector<bool>& standing = compared.prepared.motion().standing;
-    std::vector<long>& rank = ranks.emplace_back(standing.size(), 1);
+    std::vector<long> rank(standing.size(), 1);
     double rest_s = 0.0, moved_s = kStart_s;
     for (std::size_t k = 0; k < standing.size(); ++k) {
       if (standing[k]) {
@@ -261,6 +261,7 @@ Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
       const auto edge = std::ranges::upper_bound(kEdges_s, rest_s) - std::begin(kEdges_s);
       rank[k] = 1 + static_cast<long>(edge);
     }
+    ranks.push_back(std::move(rank));
   }
   for (const ErrorRow& row : rows) partition.add(ranks[row.record][row.row], row.square);
   return partition;

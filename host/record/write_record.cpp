@@ -11,7 +11,6 @@ namespace host {
 namespace {
 
 void append_header(const Record& record, std::string& text) {
-  const auto out = std::back_inserter(text);
   fmt::format_to(out, "# format: axis-record/1\n");
   if (!record.drive.empty()) fmt::format_to(out, "# drive: {}\n", record.drive);
   fmt::format_to(out, "# sample_period_s: {}\n", record.sample_period_s);
@@ -33,16 +32,15 @@ std::string format_record(const Record& record) {
   }
   for (const ExtraChannel& extra : record.extra) text += "," + extra.name;
   text += '\n';
-  const auto out = std::back_inserter(text);
   for (std::size_t k = 0; k < record.size(); ++k) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (c > 0) text += ',';
-      fmt::format_to(out, "{}", (*channels[c])[k]);
+      fmt::format_to(std::back_inserter(text), "{}", (*channels[c])[k]);
     }
     for (const ExtraChannel& extra : record.extra) {
       text += ',';
       if (extra.text.empty())
-        fmt::format_to(out, "{}", extra.values[k]);
+        fmt::format_to(std::back_inserter(text), "{}", extra.values[k]);
       else
         text += extra.text[k];
     }
