@@ -7,6 +7,7 @@
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
 #include "firmware/core/compensation/drive_compensation.hpp"
+#include "firmware/core/control_filter.hpp"
 #include "firmware/core/dac_conversion.hpp"
 #include "firmware/core/friction_feedforward.hpp"
 #include "firmware/core/kalman_estimator.hpp"
@@ -24,6 +25,8 @@ namespace firmware {
 ///        + friction(wref(k+1))                                                     if switched on, (19)
 ///        + what compensation/ adds to it                                           if switched on
 ///        + d_hat(k)                                                                if switched on
+///
+/// Behind all of it but friction stand notch and low-pass (control_filter.hpp), each if switched on.
 ///
 /// The estimator is given what the converter really put out, less the friction feed-forward: d_hat is the disturbance
 /// that feed-forward left over, so that cancelling it on top does not count friction twice. Friction takes wref(k+1),
@@ -51,6 +54,7 @@ class Axis {
     compensation_.configure(parameters.compensation, parameters.friction_feedforward_on, parameters.friction,
                             parameters.sample_period_s);
     backlash_.configure(parameters.compensation.backlash);
+    filters_.configure(parameters.filters);
     generator_.configure(limits_);
     stopping_.configure(limits_);
     const auto longest_run_out = static_cast<std::int32_t>(limits_.acceleration / limits_.jerk) + 1 + kPreviewSamples;
@@ -276,6 +280,10 @@ class Axis {
     Scalar control_V = parameters_.Kc[0] * telemetry_.position_error - parameters_.Kc[1] * estimate.velocity + added_V +
                        telemetry_.friction_V;
     if (parameters_.disturbance_cancellation_on) control_V = control_V + estimate.disturbance;
+    if (filters_.is_on()) {
+      const Scalar beside = excitation_V_ + telemetry_.friction_V;
+      control_V = filters_.next(control_V - beside) + beside;
+    }
     telemetry_.control_V = control_V;
     if (!dac_.is_within(control_V) && Traits::is_nan(control_V)) {
       fail(Traits::is_nan(estimate.offset + estimate.velocity + estimate.disturbance)
@@ -295,6 +303,7 @@ class Axis {
   constexpr void hold_reference_here() {
     generator_.reset();
     compensation_.reset();
+    filters_.reset();
     preview_.reset(CountPosition::at(telemetry_.encoder_counts));
     telemetry_.reference = preview_.position();
     telemetry_.reference_velocity = Scalar(0);
@@ -348,6 +357,7 @@ class Axis {
   bool is_closed_loop_ = false;  ///< enabled, and not in open loop
   Scalar excitation_V_{};
   BacklashCrossing backlash_;
+  ControlFilters<Scalar> filters_;
   DriveCompensation<Scalar> compensation_;
   FrictionFeedforward<Scalar> friction_;  // its tables last, so that one load reaches each of the others
 };

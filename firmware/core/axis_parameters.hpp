@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/compensation/compensation_parameters.hpp"
+#include "firmware/core/control_filter.hpp"
 #include "firmware/core/discrete_drive.hpp"
 #include "firmware/core/friction_feedforward.hpp"
 #include "firmware/core/homing.hpp"
@@ -49,6 +50,7 @@ struct AxisParameters {
   /// a few steps for a jerk limit. Zero: made of the scalars.
   MotionLimits motion{};
 
+  FilterParameters<Scalar> filters{};             ///< notch, low-pass; of the feedback and of reference feed-forward
   CompensationParameters<Scalar> compensation{};  ///< last: no control period reads it here
 };
 
@@ -87,6 +89,7 @@ enum class ParameterError : std::uint8_t {
   homing = 31,                 ///< not by an operator, and a velocity 0, creep or a way not above 0
   amplifier_ready = 32,        ///< the ready input on, and no time for it; or a time below 0
   index_spacing = 33,          ///< below 0
+  filters = 34,                ///< on, and not below 0.45 of the rate; or the loop with them does not settle
 };
 
 }  // namespace firmware

@@ -82,6 +82,10 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.compensation.presliding = {c.presliding.on, fixed(c.presliding.stiffness_V_per_rad * gain_velocity * unit.time_s),
                                fixed(c.presliding.damping_V_s_per_rad * gain_velocity)};
   q.compensation.backlash = c.backlash;
+  for (std::size_t i = 0; i < kControlFilters; ++i) {
+    const BiquadParameters<Real>& f = p.filters[i];
+    q.filters[i] = {f.on, f.is_low_pass, fixed(f.a1), fixed(f.a2), fixed(f.a3), fixed(f.of_band)};
+  }
   q.friction_feedforward_on = p.friction_feedforward_on;
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
   q.zero_phase_feedforward_on = p.zero_phase_feedforward_on;

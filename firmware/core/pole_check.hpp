@@ -114,10 +114,53 @@ constexpr PoleProblem loop_problem(const AxisParameters<Scalar>& p) {
   return poles::check(poles::of_loop(p), poles::real(p.monitors.load_share) * (kLoadTime_s / kLongestMode_s));
 }
 
+/// The loop with its filters, let go from where it was held, the estimate being right: within ten times as long as the
+/// loop without them takes to come to a twentieth it must be there, and what is left must go on shrinking. In the
+/// axis's own arithmetic, whose rounding is forgiven.
+template <typename Scalar>
+[[gnu::noinline]] constexpr bool settles_with_filters(const AxisParameters<Scalar>& p) {
+  constexpr float kTimes = 60.0f;  // ten times ln 20, of modes that lose half of 1 - z1 z2 a sample
+  constexpr std::int32_t kLongest = 1 << 16;
+  const poles::Quadratic loop = poles::of_loop(p);
+  const float wanted = kTimes / (loop.linear - loop.constant);
+  const std::int32_t quarter =
+      (wanted < static_cast<float>(kLongest) ? static_cast<std::int32_t>(wanted) : kLongest) / 4;
+  ControlFilters<Scalar> filters;
+  filters.configure(p.filters);
+  constexpr Scalar kStart = Scalar(64), kShrinks = Scalar(0.8f), kRounding = Scalar(0.004f);
+  Scalar position = kStart, velocity{}, before{}, peak = kStart;
+  for (int part = 0; part < 4; ++part) {
+    before = peak;
+    peak = Scalar(0);
+    for (std::int32_t k = 0; k <= quarter; ++k) {
+      const Scalar u = filters.next(Scalar(0) - p.Kc[0] * position - p.Kc[1] * velocity);
+      position = position + p.drive.Ad12 * velocity + p.drive.Bd1 * u;
+      velocity = p.drive.Ad22 * velocity + p.drive.Bd2 * u;
+      const Scalar away = ScalarTraits<Scalar>::magnitude(position);
+      if (!(away <= peak)) peak = away;
+    }
+  }
+  return peak < Scalar(kStart * Scalar(0.05f)) && peak < before * kShrinks + kRounding;
+}
+
+/// A filter that is switched on makes sense, and the loop stands it.
+template <typename Scalar>
+constexpr bool are_filters_sound(const AxisParameters<Scalar>& p) {
+  bool is_on = false;
+  for (const BiquadParameters<Scalar>& filter : p.filters) {
+    if (!filter.on) continue;
+    is_on = true;
+    if (!(filter.a1 > Scalar(0) && filter.a3 > Scalar(0) && ScalarTraits<Scalar>::is_finite(filter.of_band)))
+      return false;
+  }
+  return !is_on || settles_with_filters(p);
+}
+
 template <typename Scalar>
 constexpr ParameterError check_poles(const AxisParameters<Scalar>& p) {
   if (estimator_problem(p) != PoleProblem::none) return ParameterError::estimator_poles;
-  return loop_problem(p) == PoleProblem::none ? ParameterError::none : ParameterError::loop_poles;
+  if (loop_problem(p) != PoleProblem::none) return ParameterError::loop_poles;
+  return are_filters_sound(p) ? ParameterError::none : ParameterError::filters;
 }
 
 }  // namespace firmware

@@ -73,6 +73,9 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
     case ParameterError::loop_poles:
       return fmt::format("with feedback.k1 and feedback.k2 the loop is {}; its poles are {}. Design the gains again",
                          words(firmware::loop_problem(p)), loop_poles_text(p));
+    case ParameterError::filters:
+      return "with notch and low_pass as they are the loop would not settle, or one of them is not below 0.45 of the "
+             "control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
     case ParameterError::following_error:
       return following_error_relation(p);
     case ParameterError::disagreement:

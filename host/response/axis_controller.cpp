@@ -1,11 +1,12 @@
 #include "host/response/axis_controller.hpp"
 
+#include <cmath>
 #include <numbers>
 
 namespace host {
 
 AxisController::AxisController(const firmware::AxisParameters<float>& p)
-    : period_s_(static_cast<double>(p.sample_period_s)), uses_speed_(p.tachometer_fitted) {
+    : period_s_(static_cast<double>(p.sample_period_s)), uses_speed_(p.tachometer_fitted), filters_(p.filters) {
   const auto real = [](float value) { return static_cast<double>(value); };
   A_ << 1.0, real(p.drive.Ad12), -real(p.drive.Bd1), 0.0, real(p.drive.Ad22), -real(p.drive.Bd2), 0.0, 0.0, 1.0;
   B_ << real(p.drive.Bd1), real(p.drive.Bd2), 0.0;
@@ -19,14 +20,29 @@ AxisController::AxisController(const firmware::AxisParameters<float>& p)
   gain_ << real(p.Kc[0]), real(p.Kc[1]), p.disturbance_cancellation_on ? -1.0 : 0.0;
 }
 
+/// Of the coefficients: s / w is (z - 1) / (g (z + 1)), 2 damping what a1 leaves of g.
+std::complex<double> AxisController::filter(double f_Hz) const {
+  using Complex = std::complex<double>;
+  const Complex s = Complex(0.0, std::tan(std::numbers::pi * f_Hz * period_s_));  // w = g here
+  Complex product = 1.0;
+  for (const firmware::BiquadParameters<float>& one : filters_) {
+    if (!one.on) continue;
+    const double a1 = static_cast<double>(one.a1), g = static_cast<double>(one.a2) / a1;
+    const double twice_damping = (1.0 / a1 - 1.0) / g - g;
+    const Complex poles = s * s + twice_damping * g * s + g * g;
+    product *= one.is_low_pass ? g * g / poles : 1.0 + static_cast<double>(one.of_band) * g * s / poles;
+  }
+  return product;
+}
+
 AxisController::Parts AxisController::parts(double f_Hz) const {
   using Complex = std::complex<double>;
   const Complex delay = std::polar(1.0, -2.0 * std::numbers::pi * f_Hz * period_s_);
   // z_hat(k) = (I - Kobs C)(A z_hat(k-1) + B u(k-1)) + Kobs y(k), eq. (43).
   const Eigen::Matrix3cd memory = Eigen::Matrix3cd::Identity() - delay * (rest_ * A_).cast<Complex>();
   const Eigen::PartialPivLU<Eigen::Matrix3cd> solved(memory);
-  return {delay * (gain_.cast<Complex>() * solved.solve((rest_ * B_).cast<Complex>()))(0),
-          gain_.cast<Complex>() * solved.solve(Kobs_.cast<Complex>())};
+  const Eigen::RowVector3cd gain = filter(f_Hz) * gain_.cast<Complex>();
+  return {delay * (gain * solved.solve((rest_ * B_).cast<Complex>()))(0), gain * solved.solve(Kobs_.cast<Complex>())};
 }
 
 Eigen::RowVector2cd AxisController::at(double f_Hz) const {

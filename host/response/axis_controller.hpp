@@ -24,6 +24,7 @@ class AxisController {
   bool uses_speed() const { return uses_speed_; }
 
  private:
+  std::complex<double> filter(double f_Hz) const;
   struct Parts {
     std::complex<double> of_command;  ///< from the command to the controller's output, negative
     Eigen::RowVector2cd of_answer;
@@ -36,6 +37,7 @@ class AxisController {
   Eigen::Vector3d B_;
   Eigen::Matrix<double, 3, 2> Kobs_;
   Eigen::RowVector3d gain_;  ///< of the estimated state
+  firmware::FilterParameters<float> filters_;
 };
 
 }  // namespace host

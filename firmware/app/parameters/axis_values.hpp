@@ -95,6 +95,36 @@ constexpr CompensationParameters<float> compensation(const AxisValues& v, float 
   return c;
 }
 
+/// Within 1e-6 below 0.45 pi: Lambert's continued fraction.
+constexpr float tangent(float x) {
+  float rest = 0.0F;
+  for (float odd = 13.0F; odd > 0.5F; odd -= 2.0F) rest = x * x / (odd - rest);
+  return rest / x;
+}
+
+/// `share`: frequency over control rate. An a1 of 0, which no filter has, where that is out of reach.
+[[gnu::noinline]] constexpr BiquadParameters<float> biquad(bool on, float share, float damping) {
+  BiquadParameters<float> f;
+  f.on = on;
+  if (!(share < 0.45F)) return f;
+  const float g = tangent(3.14159265F * share);
+  f.a1 = 1.0F / (1.0F + g * (g + 2.0F * damping));
+  f.a2 = g * f.a1;
+  f.a3 = g * f.a2;
+  return f;
+}
+
+constexpr FilterParameters<float> filters(const AxisValues& v) {
+  const float period_s = v.get<"drive.sample_period">();
+  const float damping = v.get<"notch.damping">();
+  FilterParameters<float> f = {
+      biquad(v.get<"notch.on">(), v.get<"notch.frequency">() * period_s, damping),
+      biquad(v.get<"low_pass.on">(), v.get<"low_pass.frequency">() * period_s, v.get<"low_pass.damping">())};
+  f[0].of_band = 2.0F * damping * (v.get<"notch.depth">() - 1.0F);
+  f[1].is_low_pass = true;
+  return f;
+}
+
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   const float effort_per_volt = v.get<"drive.effort_per_volt">();
   const float volts_per_effort = 1.0F / effort_per_volt;
@@ -123,6 +153,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
                          v.get<"friction.omega2_negative">()};
   p.friction.blend_velocity_rad_s = v.get<"friction.blend">();
   p.compensation = compensation(v, volts_per_effort);
+  p.filters = filters(v);
   p.friction_feedforward_on = v.get<"feedforward.friction">();
   p.disturbance_cancellation_on = v.get<"feedback.cancel_disturbance">();
   p.zero_phase_feedforward_on = v.get<"feedforward.zero_phase">();

@@ -96,6 +96,8 @@ constexpr std::uint16_t id_behind(ParameterError error) {
       return id_of<"amplifier.ready_time">();
     case ParameterError::index_spacing:
       return id_of<"encoder.index_spacing">();
+    case ParameterError::filters:
+      return id_of<"notch.frequency">();
     case ParameterError::none:
     case ParameterError::sample_period:
     case ParameterError::controller_is_enabled:

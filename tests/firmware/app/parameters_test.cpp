@@ -78,7 +78,7 @@ TYPED_TEST_SUITE(Parameters, Scalars);
 
 /// Every part of the compensation on, each large enough to show within the travel of behaviour().
 void compensate(ParameterValues& values) {
-  for (const char* part : {"cogging", "presliding", "position_friction", "backlash"})
+  for (const char* part : {"cogging", "presliding", "position_friction", "backlash", "notch", "low_pass"})
     set(values, std::string("x.") + part + ".on", 1);
   for (const char* harmonic : {"_1", "_2", "_3"}) {
     set(values, std::string("x.cogging.cosine") + harmonic, 0.3);
