@@ -126,6 +126,13 @@ soak: ## A day of motion with sparks, jitter and drift, 10000 random paths, and 
 	AXIS_PATH_PROGRAMS=10000 $(BUILD)/bin/test_host_path --gtest_filter='*RandomPrograms*'
 	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
 
+.PHONY: response
+response: ## How often measured frequency responses lie within their own bands, over 200 seeds (SEEDS=n)
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) test_host_response
+	AXIS_COVERAGE_SEEDS=$(or $(SEEDS),200) $(BUILD)/bin/test_host_response --gtest_filter='TwoMasses.*'
+
 .PHONY: hidden-effect
 hidden-effect: ## Worked example: a circle spoilt by an effect that the model lacks; find it, compensate it, run again
 	$(NEED) build

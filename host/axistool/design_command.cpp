@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdlib>
 #include <memory>
 
 #include "host/atomic_file.hpp"
@@ -12,6 +13,10 @@
 #include "host/model/model_file.hpp"
 #include "host/parameters/board_parameters.hpp"
 #include "host/parameters/compensation_parameters.hpp"
+#include "host/parameters/control_filters.hpp"
+#include "host/record/read_record.hpp"
+#include "host/response/loop_design.hpp"
+#include "host/response/response_report.hpp"
 
 namespace axistool {
 
@@ -21,7 +26,74 @@ struct DesignArguments {
   std::string model, output, json;
   std::vector<std::string> accepted;
   host::DesignOptions options;
+  std::vector<std::string> response;
+  std::string report, notch, low_pass;
+  std::optional<double> margin, crossover_Hz;
 };
+
+/// "110", "110,0.5", "110,0.5,0.1": up to three numbers above 0.
+std::vector<double> numbers_of(const std::string& option, const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& word : CLI::detail::split(text, ',')) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(word.c_str(), &end));
+    if (word.empty() || *end != '\0' || !(numbers.back() > 0.0) || numbers.size() > 3)
+      throw host::Failure(
+          host::ExitCode::usage,
+          fmt::format("{} {}: write its frequency in Hz, and behind commas damping and depth", option, text));
+  }
+  return numbers;
+}
+
+/// What is asked of the loop beyond `options`.
+host::LoopAim aim_of(const DesignArguments& arguments) {
+  host::LoopAim aim;
+  aim.modulus = arguments.margin;
+  aim.crossover_Hz = arguments.crossover_Hz;
+  aim.seek_notch = arguments.notch == "auto";
+  if (!arguments.notch.empty() && !aim.seek_notch) {
+    const std::vector<double> n = numbers_of("--notch", arguments.notch);
+    aim.filters.notch = host::Notch{n[0]};
+    if (n.size() > 1) aim.filters.notch->damping = n[1];
+    if (n.size() > 2) aim.filters.notch->depth = n[2];
+  }
+  if (!arguments.low_pass.empty()) {
+    const std::vector<double> n = numbers_of("--low-pass", arguments.low_pass);
+    aim.filters.low_pass = host::LowPass{n[0]};
+    if (n.size() > 1) aim.filters.low_pass->damping = n[1];
+  }
+  if (arguments.response.empty() && (aim.modulus || aim.crossover_Hz || aim.seek_notch))
+    throw host::Failure(host::ExitCode::usage,
+                        "--margin, --bandwidth and --notch auto look at a measured response: give --response with what "
+                        "`axistool bode --json` wrote, or with records");
+  return aim;
+}
+
+host::AxisResponse measured_response(const std::vector<std::string>& files) {
+  if (files.size() == 1 && files.front().ends_with(".json")) return host::read_response(files.front());
+  std::vector<host::Record> records;
+  for (const std::string& path : files) records.push_back(host::read_record(path));
+  return host::analyse_response(records, nullptr);
+}
+
+std::string filter_text(const host::ControlFilterChoice& filters) {
+  std::string text;
+  if (filters.notch)
+    text += fmt::format("notch at {:.4g} Hz, damping {:g}, depth {:g}", filters.notch->f_Hz, filters.notch->damping,
+                        filters.notch->depth);
+  if (filters.low_pass) text += fmt::format("{}low-pass at {:g} Hz", text.empty() ? "" : "; ", filters.low_pass->f_Hz);
+  return text;
+}
+
+nlohmann::json filter_json(const host::ControlFilterChoice& filters) {
+  nlohmann::json document = {{"notch", nullptr}, {"low_pass", nullptr}};
+  if (filters.notch)
+    document["notch"] = {
+        {"f_Hz", filters.notch->f_Hz}, {"damping", filters.notch->damping}, {"depth", filters.notch->depth}};
+  if (filters.low_pass)
+    document["low_pass"] = {{"f_Hz", filters.low_pass->f_Hz}, {"damping", filters.low_pass->damping}};
+  return document;
+}
 
 void print_table(const sim::DriveDescription& model, const host::AxisDesign& design) {
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
@@ -58,15 +130,41 @@ void print_compensation(const sim::DriveDescription& model) {
 void run(const DesignArguments& arguments) {
   const sim::DriveDescription model = host::read_model(arguments.model, host::Bounds::examined_later);
   host::require_plausible(model, arguments.accepted);
-  const host::AxisDesign design = host::design_axis(model, arguments.options);
+  const host::LoopAim aim = aim_of(arguments);
+  std::optional<host::LoopDesign> loop;
+  if (!arguments.response.empty())
+    loop = host::design_loop(model, arguments.options, aim, measured_response(arguments.response));
+  const host::AxisDesign design = loop ? loop->design : host::design_axis(model, arguments.options);
+  const host::ControlFilterChoice filters = loop ? loop->filters : aim.filters;
+  host::core_filters(filters, model.data.sample_period_s);  // in their ranges
+  if (loop && loop->after.margins && !loop->after.margins->is_stable)
+    throw host::Failure(host::ExitCode::refused,
+                        "the measured drive would oscillate with this controller; nothing was written. --margin 0.5 "
+                        "finds the bandwidth that it allows");
   if (!arguments.output.empty()) {
-    host::write_file_atomically(arguments.output,
-                                host::board_parameters_toml(model, design) + host::compensation_toml(model));
+    host::write_file_atomically(arguments.output, host::board_parameters_toml(model, design) +
+                                                      host::compensation_toml(model) +
+                                                      host::filter_toml(model, filters));
   }
-  if (!arguments.json.empty()) write_json(host::design_json(design), arguments.json);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::design_json(design);
+    document["filters"] = filter_json(filters);
+    if (loop) {
+      document["before"] = host::response_json(loop->before)["margins"];
+      document["after"] = host::response_json(loop->after)["margins"];
+    }
+    write_json(document, arguments.json);
+  }
+  if (loop && !arguments.report.empty())
+    host::response_report(loop->after, "axis " + model.name + ", designed", &loop->before).write(arguments.report);
   if (arguments.json == "-") return;
   print_table(model, design);
   print_compensation(model);
+  if (filters.notch || filters.low_pass) fmt::print("filters                   {}\n", filter_text(filters));
+  if (loop)
+    fmt::print("\nOn the measured response, --fc {:g} without filters before, as designed after:\n{}",
+               arguments.options.bandwidth_Hz,
+               host::margins_text(loop->after, &loop->before, host::terminal_of(stdout)));
   if (!arguments.output.empty()) fmt::print("\nboard parameters written to {}\n", arguments.output);
 }
 
@@ -89,11 +187,23 @@ void add_design(CLI::App& app) {
   command->add_option("--accept", arguments->accepted,
                       "design although the values of this effect (inertia, viscous, coulomb, …) are none that a drive "
                       "has or that its records determine");
+  add_input(*command, "--response", arguments->response,
+            "what `bode --json` wrote of this axis, or records of it: the design is shown on it, and --margin, "
+            "--bandwidth and --notch auto are sought on it");
+  command->add_option("--margin", arguments->margin, "raise --fc as far as this modulus margin allows (0.5 is usual)")
+      ->check(CLI::Range(0.05, 0.95));
+  command->add_option("--bandwidth", arguments->crossover_Hz, "but the open loop's crossover no higher than this, Hz")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--notch", arguments->notch,
+                      "HZ[,DAMPING[,DEPTH]] (0.5, 0.1), or auto: on the measured resonance where it gains most");
+  command->add_option("--low-pass", arguments->low_pass, "HZ[,DAMPING] (0.7)");
+  add_output(*command, "--report", arguments->report, "with --response: page of the loop before and after");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
       "  axistool design x.toml -o x-params.toml\n"
       "  axistool design x.toml --fc 40 --zeta 0.8 --json -\n"
+      "  axistool design x.toml --response bode.json --margin 0.5 --notch auto -o x-params.toml\n"
       "Larger --rwd: the disturbance estimate follows faster and is noisier. Larger --fc: stiffer, until noise or a\n"
       "resonance limits it; keep it well below the observer's fn. The file also switches on what the board can\n"
       "compensate of the model's effects (cogging, presliding, friction along the travel, backlash, tachometer): "

@@ -27,8 +27,12 @@ sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint
 
 firmware::AxisParameters<float> contouring_parameters(const sim::DriveDescription& model,
                                                       const CompensationSwitches& switches,
-                                                      const ReferenceLimits& limits) {
-  auto parameters = axis_parameters(model, design_axis(model, {}), hal::pc::AxisWiring{}.tachometer_resolution, limits);
+                                                      const ReferenceLimits& limits, const LoopTuning& tuning) {
+  DesignOptions options;
+  options.bandwidth_Hz = tuning.bandwidth_Hz;
+  auto parameters =
+      axis_parameters(model, design_axis(model, options), hal::pc::AxisWiring{}.tachometer_resolution, limits);
+  parameters.filters = core_filters(tuning.filters, model.data.sample_period_s);
   parameters.zero_phase_feedforward_on = true;
   parameters.friction_feedforward_on = switches.friction;
   parameters.disturbance_cancellation_on = switches.cancellation;

@@ -5,6 +5,7 @@
 
 #include "firmware/core/axis_parameters.hpp"
 #include "host/parameters/axis_parameters.hpp"
+#include "host/parameters/control_filters.hpp"
 #include "host/record/record.hpp"
 #include "sim/drive_description.hpp"
 
@@ -23,9 +24,16 @@ struct CompensationSwitches {
   bool effects = true;  ///< what else the board can compensate of the model's effects
 };
 
+/// What a design may choose otherwise than the paper did.
+struct LoopTuning {
+  double bandwidth_Hz = DesignOptions{}.bandwidth_Hz;
+  ControlFilterChoice filters;
+};
+
 /// Board parameters from a model: pole placement and Kalman filter with the paper's values, ZPETC on.
 firmware::AxisParameters<float> contouring_parameters(const sim::DriveDescription& model,
                                                       const CompensationSwitches& switches,
-                                                      const ReferenceLimits& limits = {});
+                                                      const ReferenceLimits& limits = {},
+                                                      const LoopTuning& tuning = {});
 
 }  // namespace host

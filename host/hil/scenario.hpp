@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/hil/commissioning.hpp"
 #include "host/hil/injection.hpp"
 #include "host/hil/path.hpp"
 #include "host/parameters/axis_parameters.hpp"
@@ -31,6 +32,7 @@ struct ScenarioAxis {
   bool disturbance_cancellation = false;
   bool compensation = true;  ///< of further effects that are known
   ReferenceLimits limits;
+  LoopTuning tuning;
   hal::pc::AxisWiring wiring;
 };
 

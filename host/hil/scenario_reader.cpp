@@ -103,9 +103,24 @@ class ScenarioReader {
     axis.limits.velocity = from.positive("velocity_limit_mm_s", axis.limits.velocity);
     axis.limits.acceleration = from.positive("acceleration_limit_mm_s2", axis.limits.acceleration);
     axis.limits.jerk = from.positive("jerk_limit_mm_s3", axis.limits.jerk);
+    axis.tuning = read_tuning(from);
     axis.wiring.positive_end = from.number("positive_switch_mm", axis.wiring.positive_end);
     axis.wiring.negative_end = from.number("negative_switch_mm", axis.wiring.negative_end);
     from.refuse_rest();
+  }
+
+  static LoopTuning read_tuning(TomlFields& from) {
+    LoopTuning tuning;
+    tuning.bandwidth_Hz = from.positive("bandwidth_Hz", tuning.bandwidth_Hz);
+    if (from.has("notch_Hz")) {
+      Notch notch;
+      notch.f_Hz = from.positive("notch_Hz", 0.0);
+      notch.damping = from.positive("notch_damping", notch.damping);
+      notch.depth = from.positive("notch_depth", notch.depth);
+      tuning.filters.notch = notch;
+    }
+    if (from.has("low_pass_Hz")) tuning.filters.low_pass = LowPass{from.positive("low_pass_Hz", 0.0)};
+    return tuning;
   }
 
   void read_effect(const toml::table& table, sim::DriveDescription& drive) const {

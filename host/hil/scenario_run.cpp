@@ -34,7 +34,7 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
                                           {.friction = axis.friction_feedforward,
                                            .cancellation = axis.disturbance_cancellation,
                                            .effects = axis.compensation},
-                                          axis.limits);
+                                          axis.limits, axis.tuning);
   parameters.zero_phase_feedforward_on = axis.zero_phase;
   return {axis.drive, parameters, axis.wiring};
 }

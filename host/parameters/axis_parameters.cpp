@@ -26,9 +26,12 @@ firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& mod
   return firmware::axis_parameters<float>(values.axis(0));
 }
 
-firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design) {
-  return firmware::axis_parameters<float>(
-      values_of(model, design, ReferenceLimits::usual_for(model.data.kind)).axis(0));
+firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
+                                                    const ControlFilterChoice& filters) {
+  auto parameters =
+      firmware::axis_parameters<float>(values_of(model, design, ReferenceLimits::usual_for(model.data.kind)).axis(0));
+  parameters.filters = core_filters(filters, model.data.sample_period_s);
+  return parameters;
 }
 
 }  // namespace host

@@ -3,6 +3,7 @@
 
 #include "firmware/core/axis_parameters.hpp"
 #include "host/parameters/board_parameters.hpp"
+#include "host/parameters/control_filters.hpp"
 
 namespace host {
 
@@ -13,6 +14,7 @@ firmware::AxisParameters<float> axis_parameters(const sim::DriveDescription& mod
                                                 double tachometer_resolution, const ReferenceLimits& limits = {});
 
 /// The same as a board runs them after `design` and `set-params`: with the switches as board_parameters() has them.
-firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design);
+firmware::AxisParameters<float> designed_parameters(const sim::DriveDescription& model, const AxisDesign& design,
+                                                    const ControlFilterChoice& filters = {});
 
 }  // namespace host

@@ -108,9 +108,13 @@ Parameters compensation_parameters(const sim::DriveDescription& model) {
 }
 
 std::string compensation_toml(const sim::DriveDescription& model) {
+  return parameter_tables(model, compensation_parameters(model));
+}
+
+std::string parameter_tables(const sim::DriveDescription& model, const Parameters& list) {
   const std::string axis = as_key(model.name.empty() ? "x" : model.name);
   std::string text, table;
-  for (const CompensationParameter& parameter : compensation_parameters(model)) {
+  for (const CompensationParameter& parameter : list) {
     const firmware::ParameterInfo& info = info_at(require_place("x." + parameter.name));
     const std::size_t dot = parameter.name.find('.');
     if (const std::string group = parameter.name.substr(0, dot); group != table) {

@@ -18,6 +18,9 @@ struct CompensationParameter {
 /// Of several coggings the largest are taken, as many as the board has harmonics.
 std::vector<CompensationParameter> compensation_parameters(const sim::DriveDescription& model);
 
+/// TOML tables, one a group, with units and meaning as the model's kind of drive has them.
+std::string parameter_tables(const sim::DriveDescription& model, const std::vector<CompensationParameter>& list);
+
 /// The same as TOML tables, one a group, to be appended to host::board_parameters_toml() of the same model.
 std::string compensation_toml(const sim::DriveDescription& model);
 

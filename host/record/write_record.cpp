@@ -11,6 +11,7 @@ namespace host {
 namespace {
 
 void append_header(const Record& record, std::string& text) {
+  const auto out = std::back_inserter(text);
   fmt::format_to(out, "# format: axis-record/1\n");
   if (!record.drive.empty()) fmt::format_to(out, "# drive: {}\n", record.drive);
   fmt::format_to(out, "# sample_period_s: {}\n", record.sample_period_s);

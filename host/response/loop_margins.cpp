@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -54,6 +55,22 @@ Smoother smoother_at(double f, const std::vector<double>& lines, const std::vect
   return found;
 }
 
+/// From the first to the last line evenly over the logarithm, denser about resonances.
+std::vector<double> fine_frequencies(const std::vector<double>& lines, const PlantFit& fit) {
+  const double low = std::log(lines.front()), high = std::log(lines.back());
+  std::vector<double> f;
+  for (std::size_t i = 0; i < kFinePoints; ++i)
+    f.push_back(std::exp(low + (high - low) * static_cast<double>(i) / static_cast<double>(kFinePoints - 1)));
+  for (const Resonance& mode : fit.resonances)
+    for (int i = 0; i < kPerResonance; ++i) {
+      const double away = 5.0 * (2.0 * i / (kPerResonance - 1.0) - 1.0);
+      const double at = mode.f_Hz.value * (1.0 + away * mode.damping.value);
+      if (at > lines.front() && at < lines.back()) f.push_back(at);
+    }
+  std::ranges::sort(f);
+  return f;
+}
+
 /// Everything that repetitions share.
 class FineLoop {
  public:
@@ -75,7 +92,7 @@ class FineLoop {
       ratio_.push_back(L / fitted);
       spread_.push_back(loop_.half_width.back() / (kNormal95 * std::abs(fitted)) + 1e-6);
     }
-    put_frequencies(fit);
+    loop_.fine_f_Hz = fine_frequencies(loop_.f_Hz, fit);
     for (const double f : loop_.fine_f_Hz) {
       carrier_.push_back((controller.at(f) * fit.at(f))(0));
       smoothers_.push_back(smoother_at(f, loop_.f_Hz, spread_));
@@ -93,20 +110,6 @@ class FineLoop {
   }
 
  private:
-  void put_frequencies(const PlantFit& fit) {
-    const double low = std::log(loop_.f_Hz.front()), high = std::log(loop_.f_Hz.back());
-    std::vector<double>& f = loop_.fine_f_Hz;
-    for (std::size_t i = 0; i < kFinePoints; ++i)
-      f.push_back(std::exp(low + (high - low) * static_cast<double>(i) / static_cast<double>(kFinePoints - 1)));
-    for (const Resonance& mode : fit.resonances)
-      for (int i = 0; i < kPerResonance; ++i) {
-        const double away = 5.0 * (2.0 * i / (kPerResonance - 1.0) - 1.0);
-        const double at = mode.f_Hz.value * (1.0 + away * mode.damping.value);
-        if (at > f.front() && at < std::exp(high)) f.push_back(at);
-      }
-    std::ranges::sort(f);
-  }
-
   std::vector<Complex> along(const std::vector<Complex>& ratio) const {
     std::vector<Complex> L(carrier_.size());
     for (std::size_t i = 0; i < L.size(); ++i) {
@@ -187,6 +190,47 @@ std::optional<Interval95> interval(double value, const std::vector<Values>& repe
 
 OpenLoop open_loop(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller) {
   return FineLoop(response, fit, controller).loop();
+}
+
+FinePlant fine_plant(const FrequencyResponse& response, const PlantFit& fit) {
+  std::vector<double> lines;
+  for (const ResponseLine& line : response.lines) lines.push_back(line.f_Hz);
+  FinePlant fine{fine_frequencies(lines, fit), {}};
+  std::vector<Eigen::Vector2cd> ratio;
+  std::array<std::vector<double>, 2> spread;
+  for (const ResponseLine& line : response.lines) {
+    const Eigen::Vector2cd fitted = fit.at(line.f_Hz);
+    ratio.emplace_back(line.plant.cwiseQuotient(fitted));
+    for (Eigen::Index channel = 0; channel < 2; ++channel)
+      spread[static_cast<std::size_t>(channel)].push_back(
+          half_width_95(line, Eigen::Vector2cd::Unit(channel)) / (kNormal95 * std::abs(fitted(channel))) + 1e-6);
+  }
+  for (const double f : fine.f_Hz) {
+    Eigen::Vector2cd plant = fit.at(f);
+    for (Eigen::Index channel = 0; channel < 2; ++channel) {
+      const Smoother smoother = smoother_at(f, lines, spread[static_cast<std::size_t>(channel)]);
+      Complex sum = 0.0;
+      for (std::size_t k = 0; k < smoother.weight.size(); ++k)
+        sum += smoother.weight[k] * ratio[smoother.first + k](channel);
+      plant(channel) *= sum;
+    }
+    fine.plant.push_back(plant);
+  }
+  return fine;
+}
+
+LoopMargins quick_margins(const FinePlant& drive, const AxisController& controller) {
+  std::vector<Complex> L;
+  for (std::size_t i = 0; i < drive.f_Hz.size(); ++i) L.push_back((controller.at(drive.f_Hz[i]) * drive.plant[i])(0));
+  const Values found = values_of(drive.f_Hz, L);
+  LoopMargins margins;
+  margins.is_stable = found.is_stable;
+  margins.gain_dB = interval(found.gain_dB, {}, &Values::gain_dB);
+  margins.phase_deg = interval(found.phase_deg, {}, &Values::phase_deg);
+  margins.modulus = interval(found.modulus, {}, &Values::modulus);
+  margins.crossover_Hz = interval(found.crossover_Hz, {}, &Values::crossover_Hz);
+  margins.modulus_at_Hz = found.modulus_at_Hz;
+  return margins;
 }
 
 LoopMargins margins_of(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller) {

@@ -36,6 +36,16 @@ struct LoopMargins {
 /// tachometer whose speed the records lack.
 OpenLoop open_loop(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller);
 
+/// The drive between its lines: the fit, times the measured lines' smoothed ratio to it.
+struct FinePlant {
+  std::vector<double> f_Hz;
+  std::vector<Eigen::Vector2cd> plant;
+};
+FinePlant fine_plant(const FrequencyResponse& response, const PlantFit& fit);
+
+/// Margins whose intervals have no width, for a search among controllers.
+LoopMargins quick_margins(const FinePlant& drive, const AxisController& controller);
+
 /// Intervals come from 200 repetitions with the lines' own uncertainty.
 LoopMargins margins_of(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller);
 

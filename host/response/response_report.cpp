@@ -252,6 +252,13 @@ Table resonances_table(const PlantFit& fit) {
   return table;
 }
 
+/// Not the same measurement with another controller.
+bool is_measured_again(const AxisResponse& axis, const AxisResponse& before) {
+  const auto& a = axis.response.lines;
+  const auto& b = before.response.lines;
+  return !b.empty() && (a.size() != b.size() || a.front().plant != b.front().plant);
+}
+
 Verdict verdict_of(const AxisResponse& axis) {
   Verdict verdict;
   if (!axis.margins) {
@@ -296,7 +303,7 @@ Report response_report(const AxisResponse& axis, const std::string& subtitle, co
   if (axis.margins) report.add(margins_table(axis, before));
   if (axis.fit && !axis.fit->resonances.empty()) report.add(resonances_table(*axis.fit));
   if (axis.loop) add_loop(report, axis, before);
-  add_plant(report, axis, before != nullptr && before->response.lines.size() > 1 ? before : nullptr);
+  add_plant(report, axis, before != nullptr && is_measured_again(axis, *before) ? before : nullptr);
   report.section("Measurement");
   const FrequencyResponse& response = axis.response;
   const bool is_periodic = response.method == FrequencyResponse::Method::periodic;
@@ -320,9 +327,13 @@ Report response_report(const AxisResponse& axis, const std::string& subtitle, co
   return report;
 }
 
+std::string margins_text(const AxisResponse& axis, const AxisResponse* before, const Terminal& terminal) {
+  return axis.margins ? terminal_table(margins_table(axis, before), terminal) : "";
+}
+
 std::string response_text(const AxisResponse& axis, const Terminal& terminal) {
   std::string text = terminal_verdict(verdict_of(axis), terminal);
-  if (axis.margins) text += "\n" + terminal_table(margins_table(axis, nullptr), terminal);
+  if (axis.margins) text += "\n" + margins_text(axis, nullptr, terminal);
   if (axis.fit && !axis.fit->resonances.empty()) text += "\n" + terminal_table(resonances_table(*axis.fit), terminal);
   return text;
 }

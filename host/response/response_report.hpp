@@ -13,6 +13,9 @@ namespace host {
 /// another state of the axis, drawn beside it; nullptr: none.
 Report response_report(const AxisResponse& axis, const std::string& subtitle, const AxisResponse* before = nullptr);
 
+/// The margins of both, in columns.
+std::string margins_text(const AxisResponse& axis, const AxisResponse* before, const Terminal& terminal);
+
 std::string response_text(const AxisResponse& axis, const Terminal& terminal);
 
 }  // namespace host

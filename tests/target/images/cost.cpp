@@ -120,6 +120,24 @@ void count_estimator_and_feedback() {
   report("estimator_and_feedback", cost);
 }
 
+[[gnu::noinline]] Scalar filtered(firmware::ControlFilters<Scalar>& filters, Scalar value) {
+  return filters.next(value);
+}
+
+/// Notch and low-pass, which a step calls where they are on.
+void count_filters() {
+  firmware::ControlFilters<Scalar> filters;
+  const firmware::BiquadParameters<Scalar> notch{
+      true, false, Scalar(0.56526f), Scalar(0.288f), Scalar(0.14674f), Scalar(-0.8f)};
+  filters.configure({notch, {true, true, Scalar(0.20741f), Scalar(0.28548f), Scalar(0.39293f), Scalar(0)}});
+  Cost cost;
+  for (int k = 0; k < 1000; ++k) {
+    const Scalar value = firmware::ScalarTraits<Scalar>::times(random_code(), Scalar(0.01f));
+    cost.add(count([&] { filtered(filters, value); }));
+  }
+  report("control_filters", cost);
+}
+
 void start_motion() {
   for (std::size_t i = 0; i < Axes::kAxes; ++i) axes[i].configure(kParameters[i]);
   for (int period = 0; period <= firmware::kSelfTestSamples; ++period) {
@@ -285,6 +303,7 @@ extern "C" [[noreturn]] void run_board() {
   nops.add(block);
   report("100_nops", nops);
   count_estimator_and_feedback();
+  count_filters();
   count_steps();
   count_experiments();
   count_path();
