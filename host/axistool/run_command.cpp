@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <memory>
+#include <optional>
 
 #include "firmware/core/path/path_follower.hpp"
 #include "host/axistool/commands.hpp"
@@ -15,6 +16,8 @@
 #include "host/device/motion.hpp"
 #include "host/device/path_run.hpp"
 #include "host/gcode/program.hpp"
+#include "host/parameters/parameter_file.hpp"
+#include "host/path/path_extents.hpp"
 #include "host/read_file.hpp"
 #include "host/record/read_record.hpp"
 
@@ -28,7 +31,7 @@ using host::Failure;
 
 struct RunArguments : DeviceArguments {
   std::string file, capture;
-  std::vector<std::string> linear;
+  std::vector<std::string> linear, params;
   double feed_percent = 100.0;
   bool here = false;
 };
@@ -40,44 +43,6 @@ void catch_signals() {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   std::signal(SIGTSTP, [](int) { held = !held; });
-}
-
-struct Extents {
-  host::PathPoint least, most;
-};
-
-Extents extents_of(const host::PlannedPath& path) {
-  Extents found{path.knots.front().position, path.knots.front().position};
-  for (std::size_t k = 0; k + 1 < path.knots.size(); ++k) {
-    constexpr int kParts = 4;
-    for (int i = 1; i <= kParts; ++i) {
-      const double time_s = path.knots[k].time_s + (path.knots[k + 1].time_s - path.knots[k].time_s) * i / kParts;
-      const host::PathPoint point = host::between(path.knots[k], path.knots[k + 1], time_s).position;
-      found.least = found.least.cwiseMin(point);
-      found.most = found.most.cwiseMax(point);
-    }
-  }
-  return found;
-}
-
-/// Before anything moves: the first place of the program that lies beyond a soft limit.
-void require_inside(const host::PlannedPath& path, const host::PathBoard& board, const std::string& name) {
-  for (const host::PlannedCurve& one : path.curves) {
-    const auto parts = std::max(2, static_cast<int>(one.curve.turning() * 32.0));
-    for (int i = 0; i <= parts; ++i) {
-      const host::PathPoint point = one.curve.at(one.curve.length() * i / parts).point;
-      for (std::size_t axis = 0; axis < board.scale.axes.size(); ++axis) {
-        const auto k = static_cast<Eigen::Index>(axis);
-        if (point[k] >= board.least[k] && point[k] <= board.most[k]) continue;
-        throw Failure(
-            ExitCode::refused,
-            fmt::format("{}:{}: {} = {:.4f} mm is beyond its travel, {:g} to {:g} mm: nothing has moved. Move "
-                        "the program, or monitor.travel_min and travel_max where the machine has the room",
-                        name, one.line, firmware::kAxisNames.at(board.scale.axes[axis]), point[k], board.least[k],
-                        board.most[k]));
-      }
-    }
-  }
 }
 
 std::string_view end_name(PathEnd end) {
@@ -132,11 +97,11 @@ Planned plan(const std::string& text, const RunArguments& arguments, const host:
   planned.path = host::plan_path(planned.program.moves, options);
   if (planned.path.knots.size() < 2)
     throw Failure(ExitCode::bad_input, fmt::format("{}: nothing in it moves", arguments.file));
-  require_inside(planned.path, board, arguments.file);
+  host::require_inside(planned.path, {board.least, board.most}, board.scale.axes.size(), arguments.file);
   return planned;
 }
 
-std::string box_text(const Extents& extents, std::size_t axes) {
+std::string box_text(const host::PathExtents& extents, std::size_t axes) {
   std::string text;
   for (std::size_t i = 0; i < axes; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -147,7 +112,7 @@ std::string box_text(const Extents& extents, std::size_t axes) {
 }
 
 nlohmann::json document_of(const RunArguments& arguments, const Planned& planned, std::size_t axes) {
-  const Extents extents = extents_of(planned.path);
+  const host::PathExtents extents = host::extents_of(planned.path);
   nlohmann::json document = {{"format", "axis-run/1"},
                              {"file", arguments.file},
                              {"lines", planned.program.lines},
@@ -160,6 +125,28 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
   }
   return document;
 }
+
+/// While one lives, signals wait until they are asked for: in the middle of a report they would look like a lost board.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigemptyset(&signals_);
+    for (const int one : {SIGINT, SIGTERM, SIGTSTP}) sigaddset(&signals_, one);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr); }
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+  /// Those that have come act now.
+  void let_in() {
+    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+
+ private:
+  sigset_t signals_{};
+};
 
 /// One line on a terminal, rewritten.
 class RunLine {
@@ -199,19 +186,51 @@ void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end)
     throw Failure(ExitCode::answer_is_no, fmt::format("{} before its end; the axes stand on the path", end_name(end)));
 }
 
+/// A program that cannot be right is said so before anybody asks for a machine.
+void require_program(const std::string& text, const RunArguments& arguments) {
+  host::GcodeMachine any;
+  any.axes = 3;
+  any.begins_anywhere = true;
+  host::read_gcode(text, arguments.file, host::PathPoint::Zero(), any);
+}
+
+/// Nothing where a dry run does without: limits come from files then, or are a new board's.
+std::optional<host::BoardClient> board_of(const RunArguments& arguments) {
+  if (arguments.dry_run && !arguments.params.empty()) return {};
+  try {
+    return open_board(arguments);
+  } catch (const Failure& failure) {
+    if (!arguments.dry_run || !arguments.device.empty() || failure.code != ExitCode::no_such_device) throw;
+    return {};
+  }
+}
+
+firmware::ParameterValues values_without_board(const RunArguments& arguments) {
+  firmware::ParameterValues values{hal::kAxisCount};
+  for (const std::string& file : arguments.params)
+    for (const host::Assignment& one : host::read_parameter_file(file)) host::put(values, one);
+  if (talks(arguments))
+    fmt::print("no board asked: {}\n", arguments.params.empty()
+                                           ? "against the limits that a new board has; --params FILE gives others"
+                                           : "against the limits of the files");
+  return values;
+}
+
 void run(const RunArguments& arguments) {
   const std::string text = host::read_file(arguments.file);
-  host::BoardClient board = open_board(arguments);
-  board.require_same_table();
-  const firmware::ParameterValues values = board.read_values();
-  const std::size_t axes = std::min<std::size_t>(board.axis_count(), 3);
+  require_program(text, arguments);
+  std::optional<host::BoardClient> asked = board_of(arguments);
+  if (asked) asked->require_same_table();
+  const firmware::ParameterValues values = asked ? asked->read_values() : values_without_board(arguments);
+  const std::size_t axes = std::min<std::size_t>(asked ? asked->axis_count() : hal::kAxisCount, 3);
   const unsigned metres = arguments.linear.empty() ? 0u : axis_mask(arguments.linear, axes);
-  const host::PathBoard machine = host::path_board(values, axes, metres);
+  const host::PathBoard machine = host::path_board(values, axes, metres, !arguments.dry_run);
   const auto mask = static_cast<std::uint8_t>((1u << axes) - 1u);
 
-  Planned planned = plan(text, arguments, machine, standing(board.status(), machine.scale));
+  Planned planned = plan(text, arguments, machine,
+                         asked ? standing(asked->status(), machine.scale) : std::vector<host::BoardPosition>(axes));
   nlohmann::json document = document_of(arguments, planned, axes);
-  const Extents extents = extents_of(planned.path);
+  const host::PathExtents extents = host::extents_of(planned.path);
   if (talks(arguments))
     fmt::print("{}: {} lines, {:.2f} s, {}\n", arguments.file, planned.program.lines, planned.path.duration_s(),
                box_text(extents, axes));
@@ -220,6 +239,7 @@ void run(const RunArguments& arguments) {
     if (!arguments.json.empty()) write_json(document, arguments.json);
     return;
   }
+  host::BoardClient& board = *asked;
   const bool relative = arguments.here || !planned.program.is_absolute;
   for (std::size_t axis = 0; axis < axes && !relative; ++axis)
     if ((board.status().axis.at(axis).flags & firmware::kAxisHomed) == 0)
@@ -235,7 +255,9 @@ void run(const RunArguments& arguments) {
   host::PathOutcome outcome;
   {
     RunLine line(talks(arguments), planned.path);
+    SignalsWait signals;
     outcome = host::run_path(board, planned.path, machine, relative, true, [&](const host::PathProgress& progress) {
+      signals.let_in();
       line.draw(progress, held);
       return host::PathWish{held, interrupted, static_cast<int>(std::lround(arguments.feed_percent * 10.0))};
     });
@@ -270,6 +292,7 @@ void add_run(CLI::App& app) {
       ->check(CLI::Range(1.0, 100.0));
   command->add_option("--linear", arguments->linear, "axes whose parameters stand in metres")->delimiter(',');
   command->add_flag("--here", arguments->here, "axes that are not homed: their counts are their positions");
+  add_input(*command, "--params", arguments->params, "with --dry-run: limits from these files, and no board");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(

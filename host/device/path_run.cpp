@@ -132,6 +132,12 @@ class Stream {
     try {
       if (!board_.path_nodes(bytes_of(node, next_ + 1 == words_.nodes.size(), scale_), state_)) return false;
     } catch (const Failure& failure) {
+      // A path that stops takes no more, whoever stopped it.
+      state_ = board_.path_state();
+      if (static_cast<PathPhase>(state_.phase) >= PathPhase::stopping) {
+        next_ = words_.nodes.size();
+        return false;
+      }
       throw Failure(failure.code, fmt::format("node {} of {}: {}", next_, words_.nodes.size(), failure.what()));
     }
     sent_ += node.duration;
@@ -150,7 +156,7 @@ class Stream {
 
 }  // namespace
 
-PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, unsigned metres) {
+PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, unsigned metres, bool needs_fitted) {
   PathBoard board;
   board.scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
   const double inf = std::numeric_limits<double>::infinity();
@@ -160,7 +166,7 @@ PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, 
   board.home = PathPoint::Zero();
   for (std::size_t axis = 0; axis < axes; ++axis) {
     const firmware::AxisValues v = values.axis(axis);
-    if (!v.get<"drive.fitted">())
+    if (needs_fitted && !v.get<"drive.fitted">())
       throw Failure(ExitCode::refused, fmt::format("axis {} is not fitted: give it the parameters of a design "
                                                    "(axistool design, axistool set-params)",
                                                    firmware::kAxisNames.at(axis)));
@@ -247,12 +253,19 @@ class PlanPlace {
  public:
   explicit PlanPlace(const PlannedPath& path) : path_(path) {}
 
+  PathPoint position(double time_s) const {
+    const double inside_s = std::clamp(time_s, 0.0, path_.duration_s());
+    const auto next =
+        std::ranges::upper_bound(path_.knots.begin() + 1, path_.knots.end() - 1, inside_s, {}, &PathKnot::time_s);
+    return between(*(next - 1), *next, inside_s).position;
+  }
+
   double advance(const PathPoint& reference, double most_s) {
     constexpr int kSteps = 16;
     double best = std::numeric_limits<double>::infinity(), best_s = time_s_;
     for (int i = 0; i <= kSteps; ++i) {
       const double tried_s = std::min(time_s_ + most_s * i / kSteps, path_.duration_s());
-      const double distance = (at(tried_s) - reference).norm();
+      const double distance = (position(tried_s) - reference).norm();
       if (distance > best + 1e-6) continue;  // while nothing moves, the latest
       best = std::min(best, distance);
       best_s = tried_s;
@@ -262,16 +275,8 @@ class PlanPlace {
   }
 
  private:
-  PathPoint at(double time_s) {
-    while (knot_ + 2 < path_.knots.size() && path_.knots[knot_ + 1].time_s <= time_s_) ++knot_;
-    std::size_t k = knot_;
-    while (k + 2 < path_.knots.size() && path_.knots[k + 1].time_s <= time_s) ++k;
-    return between(path_.knots[k], path_.knots[k + 1], time_s).position;
-  }
-
   const PlannedPath& path_;
   double time_s_ = 0.0;
-  std::size_t knot_ = 0;
 };
 
 PathPoint point_of(const std::vector<std::vector<double>>& mm, std::size_t row, const PathPoint& others) {
@@ -284,7 +289,7 @@ PathPoint point_of(const std::vector<std::vector<double>>& mm, std::size_t row, 
 
 std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPath& path, const PathScale& scale) {
   std::vector<double> error_um;
-  if (path.knots.size() < 2 || path.curves.empty()) return std::vector<double>(capture.number.size(), 0.0);
+  if (path.knots.size() < 2) return std::vector<double>(capture.number.size(), 0.0);
   PlanPlace place(path);
   PathPoint half = PathPoint::Zero();  // the encoder rounds down
   for (std::size_t i = 0; i < scale.axes.size(); ++i) half[static_cast<Eigen::Index>(i)] = scale.count_mm[i] / 2.0;
@@ -293,12 +298,15 @@ std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPa
     const double time_s =
         place.advance(point_of(capture.reference_mm, k, path.knots.front().position), 2.0 * gap * capture.row_period_s);
     const PathPoint seen = point_of(capture.mm, k, path.knots.front().position) + half;
-    const auto next = std::ranges::upper_bound(path.curves, time_s, {}, &PlannedCurve::time_s);
-    constexpr std::ptrdiff_t kNear = 3;  // curves to either side
-    const auto first = next - path.curves.begin() > kNear ? next - kNear : path.curves.begin();
-    const auto last = path.curves.end() - next > kNear ? next + kNear : path.curves.end();
+    // Against the motion as it was planned, tolerances of corners included, a while to either side.
+    constexpr double kWhile_s = 0.02, kStep_s = 0.001;
     double nearest = std::numeric_limits<double>::infinity();
-    for (auto one = first; one != last; ++one) nearest = std::min(nearest, one->curve.distance_to(seen));
+    PathPoint last = place.position(time_s - kWhile_s);
+    for (double at_s = time_s - kWhile_s + kStep_s; at_s <= time_s + kWhile_s; at_s += kStep_s) {
+      const PathPoint here = place.position(at_s);
+      nearest = std::min(nearest, PathCurve::line(last, here).distance_to(seen));
+      last = here;
+    }
     error_um.push_back(1e3 * nearest);
   }
   return error_um;

@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// What a board's parameters say of some of its axes. Throws Failure(refused) where one is not fitted.
+/// What a board's parameters say of some of its axes. Throws Failure(refused) where one is not fitted, and must be.
 struct PathBoard {
   PathScale scale;
   AxisLimits limits;
@@ -19,7 +19,8 @@ struct PathBoard {
   PathPoint home;         ///< homing.position, mm
 };
 /// `metres`: axes whose parameters stand in m, as a linear drive's do.
-PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, unsigned metres = 0);
+PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, unsigned metres = 0,
+                     bool needs_fitted = true);
 
 /// What the person at the machine wants, asked for some fifty times a second.
 struct PathWish {

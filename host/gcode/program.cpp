@@ -29,7 +29,9 @@ struct Word {
 class Reader {
  public:
   Reader(std::string_view text, const std::string& name, const PathPoint& start, const GcodeMachine& machine)
-      : text_(text), name_(name), machine_(machine), at_(start) {}
+      : text_(text), name_(name), machine_(machine), at_(start) {
+    is_known_.fill(!machine.begins_anywhere);
+  }
 
   GcodeProgram read() {
     for (std::size_t begin = 0; begin <= text_.size() && !has_ended_;) {
@@ -238,7 +240,7 @@ class Reader {
       const auto axis = static_cast<Eigen::Index>(i);
       if (!block_.axis[i]) continue;
       to[axis] = *block_.axis[i] * unit_mm_ + (is_relative_ ? at_[axis] : 0.0);
-      if (!is_relative_) program_.is_absolute = true;
+      if (!is_relative_) program_.is_absolute = is_known_[i] = true;
       if (!(std::abs(to[axis]) < kFarthest_mm)) fail("farther than any machine reaches");
     }
     return to;
@@ -264,9 +266,11 @@ class Reader {
     add(PathCurve::line(by, home), true);
     at_ = home;
     program_.is_absolute = true;
+    is_known_ = {true, true, true};
   }
 
   void move() {
+    const bool begins_somewhere = is_known_[0] && is_known_[1];
     const PathPoint to = target();
     switch (motion_) {
       case Motion::none:
@@ -277,14 +281,15 @@ class Reader {
         add(PathCurve::line(at_, to), motion_ == Motion::rapid);
         break;
       default:
-        arc(to);
+        arc(to, begins_somewhere);
     }
     at_ = to;
   }
 
-  void arc(const PathPoint& to) {
+  void arc(const PathPoint& to, bool begins_somewhere) {
     const bool by_radius = block_.radius.has_value(), by_centre = block_.centre[0] || block_.centre[1];
     if (by_radius == by_centre) fail("an arc needs either R, or I and J");
+    if (!begins_somewhere && !is_relative_) return add(PathCurve::line(at_, to), false);
     const PathPoint centre = by_radius ? centre_by_radius(to) : centre_by_offset(to);
     const double sense = motion_ == Motion::clockwise ? -1.0 : 1.0;
     const double begin = std::atan2(at_.y() - centre.y(), at_.x() - centre.x());
@@ -366,6 +371,7 @@ class Reader {
   PathPoint at_;
   Motion motion_ = Motion::none;
   double unit_mm_ = 1.0, feed_mm_s_ = 0.0, tolerance_mm_ = 0.0;
+  std::array<bool, 3> is_known_{};  ///< where the axis stands
   bool is_relative_ = false, has_ended_ = false;
 };
 

@@ -1,0 +1,117 @@
+// axistool run on a simulated board in a process of its own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "host/record/read_record.hpp"
+#include "tests/host/axistool/run_axistool.hpp"
+#include "tests/host/axistool/simulated_board.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kModel = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml";
+const std::string kPrograms = AXIS_TEST_DATA "/gcode/";
+
+class RunCommand : public testing::Test {
+ protected:
+  std::string file(const char* name) const { return folder_.path(name); }
+  std::string written(const char* name, const std::string& text) const {
+    std::ofstream(file(name)) << text;
+    return file(name);
+  }
+  ProgramRun run(const std::string& command, const std::string& streams = "2>&1") const {
+    return board_.run(command, streams);
+  }
+
+  /// Both axes are the same drive, with a design for it. The board is patient: a loaded computer is no lost host.
+  void fit() const {
+    ASSERT_EQ(run_axistool("design " + kModel + " -o " + file("x.toml")).exit_code, 0);
+    std::ifstream in(file("x.toml"));
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    for (std::size_t at = 0; (at = text.find("[x.", at)) != std::string::npos;) text[at + 1] = 'y';
+    ASSERT_EQ(run("set-params " + file("x.toml") +
+                  " host.timeout=5 x.monitor.travel_min=-90 x.monitor.travel_max=90 "
+                  "y.monitor.travel_min=-90 y.monitor.travel_max=90")
+                  .exit_code,
+              0);
+    ASSERT_EQ(run("set-params " + written("y.toml", text)).exit_code, 0);
+    for (const char* axis : {"x", "y"}) ASSERT_EQ(run(std::string("home ") + axis + " --here").exit_code, 0);
+  }
+
+  TemporaryFolder folder_;
+  SimulatedBoardProcess board_{folder_.path(""), {"--x", kModel, "--y", kModel}};
+};
+
+/// The paper's circle, over the protocol, streamed: as near as the same loop in one process comes to it.
+TEST_F(RunCommand, FollowsTheCircleAndMeasuresItsContour) {
+  fit();
+  const std::string circle = written("circle.ngc", "F10200 G3 X0 Y0 I35 J0\nM2\n");  // 170 mm/s
+  const ProgramRun done = run("run " + circle + " --yes --json - --capture " + file("c.csv"), "2>/dev/null");
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  const auto told = nlohmann::json::parse(done.output);
+  EXPECT_EQ(told["format"], "axis-run/1");
+  EXPECT_EQ(told["stopped_because"], "completed");
+  EXPECT_NEAR(told["duration_s"], 1.435, 0.02);
+  EXPECT_LT(told["contour_um"], 12.0);
+  EXPECT_GT(told["contour_um"], 0.5) << "an encoder of 2.4 um sees no less";
+  const host::Record record = host::read_record(file("c.csv"));
+  EXPECT_NEAR(*std::max_element(record.x.begin(), record.x.end()), 70.0, 0.05);
+  EXPECT_NEAR(record.x.back(), 0.0, 0.02) << "it ends where it began";
+}
+
+TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
+  fit();
+  const ProgramRun refused = run("run " + written("far.ngc", "F6000 G1 X10\nX95\nM2\n") + " --yes");
+  EXPECT_EQ(refused.exit_code, 8);
+  EXPECT_THAT(refused.output, HasSubstr("far.ngc:2: x = 90"));
+  EXPECT_THAT(run("info").output, testing::Not(HasSubstr("enabled")));
+}
+
+TEST_F(RunCommand, AnInterruptStopsOnThePath) {
+  fit();
+  const std::string words = "timeout --preserve-status -s INT 2 " AXISTOOL_PROGRAM " run " + board_.device() +
+                            kPrograms + "arc-whole-circle.ngc --yes --json " + file("run.json") + " >/dev/null 2>&1";
+  const int status = std::system(words.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  std::ifstream in(file("run.json"));
+  const auto told = nlohmann::json::parse(in);
+  EXPECT_EQ(told["stopped_because"], "interrupted");
+  EXPECT_LT(told["duration_s"], 10.0);
+  EXPECT_LT(told["contour_um"], 12.0) << "on its way to rest, too";
+}
+
+/// Whoever kills the program leaves a board that stops by itself, and says why.
+TEST_F(RunCommand, AKilledHostIsNamed) {
+  fit();
+  ASSERT_EQ(run("set-params host.timeout=0.2").exit_code, 0);
+  const std::string words = "timeout -s KILL 2 " AXISTOOL_PROGRAM " run " + board_.device() + kPrograms +
+                            "arc-whole-circle.ngc --yes >/dev/null 2>&1";
+  EXPECT_NE(std::system(words.c_str()), 0);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_THAT(run("faults").output, HasSubstr("host_heartbeat_lost"));
+}
+
+TEST(RunAlone, AProgramIsJudgedBeforeAMachineIsAskedFor) {
+  TemporaryFolder folder;
+  std::ofstream(folder.path("bad.ngc")) << "G21\nG41 X10\n";
+  const ProgramRun bad = run_axistool("run " + folder.path("bad.ngc") + " --device socket:/nowhere");
+  EXPECT_EQ(bad.exit_code, 9);
+  EXPECT_THAT(bad.output, HasSubstr("bad.ngc:2: G41"));
+}
+
+TEST(RunAlone, ADryRunNeedsNoBoard) {
+  TemporaryFolder folder;
+  std::ofstream(folder.path("p.toml")) << "format = \"axis-params/1\"\n[x.limits]\nacceleration = 500.0\n[y.limits]\n"
+                                          "acceleration = 500.0\n";
+  const ProgramRun dry = run_axistool("run " + kPrograms + "square.ngc --dry-run --params " + folder.path("p.toml"));
+  EXPECT_EQ(dry.exit_code, 0) << dry.output;
+  EXPECT_THAT(dry.output, HasSubstr("x 0.000 to 40.000 mm, y 0.000 to 40.000 mm"));
+}
+
+}  // namespace
