@@ -1,6 +1,7 @@
 #include "host/diagnose/search_by_steps.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/model_fit.hpp"
@@ -68,8 +69,13 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto single = std::ranges::find_if(found.singles, is_physical);
   if (single == found.singles.end() || Errors(single->model, sets).validation <= kExplained) return found;
   found.pairs = on_top_of(*single, 0.5, 0.8);
-  const auto pair = std::ranges::find_if(found.pairs, is_physical);
-  if (pair == found.pairs.end()) return found;
+  // By all of its error: single impacts and breakaways, which an order of candidates weighs down, decide what is left.
+  const auto cost = [&](const Candidate& candidate) {
+    const Errors errors(candidate.model, sets);
+    return is_physical(candidate) ? errors.training * errors.validation : HUGE_VAL;
+  };
+  const auto pair = std::ranges::min_element(found.pairs, {}, cost);
+  if (pair == found.pairs.end() || !is_physical(*pair)) return found;
   renew(pair->model);
   if (!promises_a_third(Errors(sets.base, sets), Errors(pair->model, sets))) return found;
   found.triples = on_top_of(*pair, 0.8, 1.0);
