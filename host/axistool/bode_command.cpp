@@ -14,6 +14,7 @@
 #include "host/parameters/axis_parameters.hpp"
 #include "host/parameters/parameter_file.hpp"
 #include "host/record/read_record.hpp"
+#include "host/response/model_starts.hpp"
 #include "host/response/response_measurement.hpp"
 #include "host/response/response_report.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 
 struct BodeArguments : DeviceArguments {
   std::vector<std::string> what;
-  std::string model, parameters, box, report, folder;
+  std::string model, parameters, box, report, folder, model_output;
   host::ResponsePlan plan;
   int countdown_s = 3;
   bool linear = false;
@@ -129,8 +130,19 @@ void run(const BodeArguments& arguments) {
   if (!arguments.report.empty())
     host::response_report(axis, is_axis ? "axis " + arguments.what.front() : fmt::format("{} records", records.size()))
         .write(arguments.report);
+  std::vector<std::string> said;
+  if (!arguments.model_output.empty()) {
+    if (!found.model || !axis.fit)
+      throw host::Failure(host::ExitCode::usage,
+                          "--model-output writes what --model has and the response shows: give --model, and a response "
+                          "of more frequencies");
+    const host::ModelStarts starts = host::with_response(*found.model, *axis.fit, "axistool bode");
+    host::write_model(starts.model, arguments.model_output);
+    said = starts.said;
+  }
   if (!talks(arguments)) return;
   fmt::print("{}", host::response_text(axis, host::terminal_of(stdout)));
+  for (const std::string& line : said) fmt::print("{}: {}\n", arguments.model_output, line);
   if (!arguments.report.empty()) fmt::print("\nReport: {}\n", arguments.report);
 }
 
@@ -160,6 +172,8 @@ void add_bode(CLI::App& app) {
       ->check(CLI::Range(0, 60));
   add_output(*command, "-o,--records", arguments->folder, "folder for the records of the runs",
              FileRole::output_folder);
+  add_output(*command, "--model-output", arguments->model_output,
+             "with --model: the model with compliance and delay as starts for a fit, where the response shows them");
   add_output(*command, "--report", arguments->report, "write an HTML page with plots to this file");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);

@@ -26,6 +26,8 @@ TEST_F(CostOfAStep, CountsAreExactAndRepeatable) {
 TEST_F(CostOfAStep, FloatKeepsItsBudget) {
   auto costs = count_instructions("cost-float-m4");
   EXPECT_LE(costs["estimator_and_feedback"].worst, 90);
+  EXPECT_LE(costs["control_filters"].worst, 80) << "notch and low-pass";
+  EXPECT_GT(costs["control_filters"].mean, 30) << "nothing was filtered";
   // With all monitors, homed, everything switched on: the budget is of the average; the worst step is a ramp's.
   EXPECT_LE(costs["one_axis"].mean, 450);
   EXPECT_LE(costs["both_axes"].mean, 1000);
