@@ -7,6 +7,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
 #include "host/plan/plan_json.hpp"
+#include "host/plan/plan_report.hpp"
 
 namespace axistool {
 
@@ -49,11 +50,6 @@ std::vector<host::Rival> rivals_of(const PlanArguments& arguments, const Insight
   return rivals;
 }
 
-std::string odds_text(double odds) {
-  return odds >= host::kHighestOdds ? fmt::format("more than {:g} to 1", host::kHighestOdds)
-                                    : fmt::format("{:.2g} to 1", odds);
-}
-
 void print(const host::Plan& plan, const std::string& file) {
   fmt::print("Rivals, as probable before the run:\n");
   for (const host::Rival& rival : plan.rivals)
@@ -65,7 +61,7 @@ void print(const host::Plan& plan, const std::string& file) {
     for (const host::PairOutlook& pair : plan.pairs)
       if (pair.separable)
         fmt::print("  {} or {}: {}\n", host::rival_name(plan.rivals[pair.a].kinds),
-                   host::rival_name(plan.rivals[pair.b].kinds), odds_text(pair.expected_odds));
+                   host::rival_name(plan.rivals[pair.b].kinds), host::odds_text(pair.expected_odds));
     fmt::print(
         "Make it: axistool excite AXIS {} -o run.csv; then diagnose with --train … run.csv --believed PLAN.json\n",
         file);
@@ -89,6 +85,7 @@ void run(const PlanArguments& arguments) {
     plan = host::plan_run(records.model, all, rivals, box, options, progress.callback());
   }
   if (plan.separable) host::write_run_plan(plan.run, arguments.output);
+  if (!arguments.report.empty()) host::write_plan_report(plan, arguments.model, arguments.output, arguments.report);
   if (!arguments.json.empty()) write_json(host::to_json(plan, arguments.output), arguments.json);
   if (arguments.json != "-") print(plan, arguments.output);
 }
@@ -105,6 +102,7 @@ void add_plan(CLI::App& app) {
   command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s")
       ->required();
   add_output(*command, "-o,--output", arguments->output, "run to write, for excite")->required();
+  add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   command->add_option("--most-samples", arguments->most_steps, "samples that may be simulated")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

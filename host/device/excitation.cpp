@@ -23,6 +23,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kHeartbeat{20};
+constexpr double kRest_s = 0.2;
 
 /// Rows of a capture as they come, in the order of the channels.
 class Rows {
@@ -175,8 +176,14 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     outcome.state = state;
     return state.end == static_cast<std::uint8_t>(ExcitationEnd::completed) && !stop();
   };
+  // An axis that has just stopped is not taken for one that stands.
+  const auto rest = [&] {
+    const std::size_t wanted = outcome.capture.number.size() + static_cast<std::size_t>(kRest_s * scale.rate_Hz);
+    while (outcome.capture.number.size() < wanted && rows.fetch(milliseconds(500))) continue;
+  };
   try {
-    for (std::size_t index = 0; index < count && run_one(index);) ++index;
+    for (std::size_t index = 0; index < count && run_one(index);)
+      if (++index < count) rest();
     outcome.capture.dropped_by_board = board.stop_capture().dropped;
     while (rows.fetch(milliseconds(50))) continue;
     outcome.capture.lost = lost_rows(outcome.capture);

@@ -1,11 +1,26 @@
 #include "host/plan/decision.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "host/diagnose/parallel.hpp"
 
 namespace host {
+
+namespace {
+
+/// Another motion may bring out twice the error that a good model leaves; more is another effect.
+constexpr double kFar = 2.0;
+
+}  // namespace
+
+std::string odds_text(double odds) {
+  return odds >= kHighestOdds ? fmt::format("more than {:g} to 1", kHighestOdds) : fmt::format("{:.2g} to 1", odds);
+}
 
 Decision decide(const std::vector<Rival>& rivals, const std::vector<const Record*>& training, const Record& run) {
   return decide_on(rivals, common_ground(training, rivals), common_ground({&run}, rivals));
@@ -25,27 +40,34 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
     model = refitted(model, both);
     decision.chi_square[k] = chi_square(model, both) - known;
   });
-  const double least = *std::ranges::min_element(decision.chi_square);
+  decision.best = static_cast<std::size_t>(std::ranges::min_element(decision.chi_square) - decision.chi_square.begin());
+  const double least = decision.chi_square[decision.best];
+  const sim::Drive explanation(decision.rivals[decision.best].model);
+  decision.error = error_of(explanation, run).robust;
+  decision.explains = decision.error <= kFar * std::max(1.0, error_of(explanation, ground).robust);
+  if (!decision.explains) {
+    for (std::size_t k = 0; k < rivals.size(); ++k) decision.left.push_back(k);
+    return decision;
+  }
   double sum = 0.0;
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     Rival& rival = decision.rivals[k];
-    rival.probability *= std::max(std::exp(-0.5 * (decision.chi_square[k] - least)), 1.0 / kHighestOdds);
+    // Neither a belief nor a run makes anything impossible.
+    rival.probability = std::max(rival.probability, 1.0 / kHighestOdds) *
+                        std::max(std::exp(-0.5 * (decision.chi_square[k] - least)), 1.0 / kHighestOdds);
     sum += rival.probability;
   }
   for (Rival& rival : decision.rivals) rival.probability /= sum;
-  const auto by_probability = [&](std::size_t a, std::size_t b) {
-    return decision.rivals[a].probability > decision.rivals[b].probability;
-  };
   std::vector<std::size_t> order(rivals.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::ranges::stable_sort(order, by_probability);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t k) { return decision.rivals[k].probability; });
   decision.best = order.front();
   const double best = decision.rivals[decision.best].probability;
-  if (order.size() > 1) decision.odds = std::min(kHighestOdds, best / decision.rivals[order[1]].probability);
+  if (order.size() > 1) decision.odds = best / decision.rivals[order[1]].probability;
+  constexpr double kRounding = 1e-6;
+  if (decision.odds > kHighestOdds * (1.0 - kRounding)) decision.odds = kHighestOdds;
   for (const std::size_t k : order)
-    if (decision.rivals[k].probability > best * (1.0 - kDecided) / kDecided || k == decision.best)
-      decision.left.push_back(k);
-  decision.error = error_of(sim::Drive(decision.rivals[decision.best].model), run).combined;
+    if (decision.rivals[k].probability > best * (1.0 - kDecided) / kDecided) decision.left.push_back(k);
   return decision;
 }
 

@@ -1,6 +1,7 @@
 // Which of the rivals a run speaks for: odds from exp(-chi^2/2) with the parameters of each fitted again.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "host/plan/rival.hpp"
@@ -12,13 +13,20 @@ inline constexpr double kHighestOdds = 1000.0;
 /// A run has decided where the best rival is as probable as this.
 inline constexpr double kDecided = 0.95;
 
+/// "more than 1000 to 1", "38 to 1"
+std::string odds_text(double odds);
+
 struct Decision {
   std::vector<Rival> rivals;       ///< with their parameters fitted to everything, and their probabilities afterwards
   std::vector<double> chi_square;  ///< what the run adds to each rival's, re-fitted to training and run together
   std::size_t best = 0;            ///< index of the most probable
   double odds = 1.0;               ///< of the best to the next, at most kHighestOdds
   std::vector<std::size_t> left;   ///< rivals that are not yet ruled out: the best, and all with odds below 19:1 to it
-  double error = 0.0;              ///< of the best rival on the run, over the floor
+  double error = 0.0;  ///< of the best rival on the run, over the floor, as a fit weighs it; about 1 for a true one
+  /// False where the run leaves even the best rival far above what it leaves of the training records: it shows
+  /// something that none of them holds, and decides nothing. The probabilities are then those of before, and all are
+  /// left.
+  bool explains = true;
 };
 
 /// `rivals`: fitted to the training records, with what is believed before the run. What they cost on the training

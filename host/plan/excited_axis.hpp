@@ -58,7 +58,7 @@ class ExcitedAxis {
     for (std::size_t k = 0; k < most && excitation_.is_active(); ++k) step();
     const firmware::ExcitationStatePayload state = excitation_.is_active() ? none : excitation_.state();
     if (!is_open) axes_[0].disable();
-    constexpr double kRest_s = 0.1;
+    constexpr double kRest_s = 0.2;  // as between the pieces on a board
     for (std::size_t k = 0; k < samples(kLongestStop_s) && axes_.outputs_on(); ++k) step();
     for (std::size_t k = 0; k < samples(kRest_s); ++k) step();
     return state;

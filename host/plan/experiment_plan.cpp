@@ -209,8 +209,9 @@ class Planner {
         chosen_.pop_back();
         return chosen_.empty() || verify();
       }
-      plan_.predicted.push_back(std::move(*record));
-      const Decision decision = decide_on(rivals_, ground_, common_ground({&plan_.predicted.back()}, rivals_));
+      const Decision decision = decide_on(rivals_, ground_, common_ground({&*record}, rivals_));
+      plan_.predicted.push_back({std::move(*record), {}});
+      for (const Rival& rival : decision.rivals) plan_.predicted.back().bent.push_back(rival.model);
       for (std::size_t other = 0; other < rivals_.size(); ++other) {
         odds[truth][other] = 0.5 * (decision.chi_square[other] - decision.chi_square[truth]);
         const bool fell_short = other != truth && odds[truth][other] < kHope && log_odds(chosen_, truth, other) > kHope;

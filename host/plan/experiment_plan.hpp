@@ -30,6 +30,12 @@ struct ConsideredPiece {
   double expected_log_odds = 0.0;  ///< of the pair that it separates worst, among those that anything separates
 };
 
+/// The run as it would be with one rival true, and all rivals bent to it.
+struct PredictedRun {
+  Record record;
+  std::vector<sim::DriveDescription> bent;  ///< as many as there are rivals
+};
+
 struct Plan {
   std::vector<Rival> rivals;
   std::vector<PairOutlook> pairs;
@@ -38,7 +44,7 @@ struct Plan {
   RunPlan run;                              ///< without pieces where nothing is separable
   double expected_odds = 1.0;               ///< the least of the separable pairs'
   std::vector<ConsideredPiece> considered;  ///< best first
-  std::vector<Record> predicted;            ///< the run as simulated, one for each rival in turn
+  std::vector<PredictedRun> predicted;      ///< with each rival true in turn
   double steps = 0.0;                       ///< of the integrator
   bool cut_short = false;                   ///< pieces were left untried
 };

@@ -54,6 +54,7 @@ nlohmann::json to_json(const Decision& decision) {
           {"best", decision.rivals[decision.best].kinds},
           {"odds", decision.odds},
           {"left", left},
+          {"explains", decision.explains},
           {"error_over_floor", decision.error}};
 }
 

@@ -83,6 +83,14 @@ Decision decide(const sim::DriveDescription& model, const Beliefs& beliefs, cons
 
 void apply(const Decision& decision, const Beliefs& beliefs, Diagnosis& diagnosis) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (!decision.explains) {
+    verdict.explanation += fmt::format(
+        " The planned run decides nothing: it leaves even {} at {:.2g} times the floor, so it shows something that "
+        "none "
+        "of the rivals holds.",
+        rival_name(decision.rivals[decision.best].kinds), decision.error);
+    return;
+  }
   double shared = 0.0;
   bool names_one = false;
   for (const Rival& rival : decision.rivals) {
@@ -96,8 +104,9 @@ void apply(const Decision& decision, const Beliefs& beliefs, Diagnosis& diagnosi
   std::vector<std::string> left;
   for (const std::size_t k : decision.left) left.push_back(rival_name(decision.rivals[k].kinds));
   verdict.explanation += fmt::format(
-      " The planned run leaves {} with odds of {:.3g} to 1{}.", fmt::join(left, " or "), decision.odds,
-      beliefs.expected_odds > 0.0 ? fmt::format(", where {:.3g} were expected", beliefs.expected_odds) : std::string());
+      " The planned run leaves {} with odds of {}{}.", fmt::join(left, " or "), odds_text(decision.odds),
+      beliefs.expected_odds > 0.0 ? fmt::format(", where {} were expected", odds_text(beliefs.expected_odds))
+                                  : std::string());
   const Rival& best = decision.rivals[decision.best];
   const bool speaks = verdict.status == Status::missing || verdict.status == Status::ambiguous;
   if (!names_one || !speaks) return;
