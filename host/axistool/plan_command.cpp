@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <memory>
+#include <tuple>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
@@ -57,11 +58,14 @@ void print(const host::Plan& plan, const std::string& file) {
   if (plan.separable) {
     fmt::print("\nA run of {:.3g} s ({}), within the box:\n", plan.run.duration_s(), file);
     for (const host::RunPiece& piece : plan.run.pieces) fmt::print("  {}\n", host::piece_text(piece));
-    fmt::print("\nExpected odds of the true one, whichever it is:\n");
-    for (const host::PairOutlook& pair : plan.pairs)
-      if (pair.separable)
-        fmt::print("  {} or {}: {}\n", host::rival_name(plan.rivals[pair.a].kinds),
-                   host::rival_name(plan.rivals[pair.b].kinds), host::odds_text(pair.expected_odds));
+    fmt::print("\nExpected odds:\n");
+    for (const host::PairOutlook& pair : plan.pairs) {
+      if (!pair.separable) continue;
+      for (const auto& [truth, other, odds] :
+           {std::tuple{pair.a, pair.b, pair.odds_if_a}, {pair.b, pair.a, pair.odds_if_b}})
+        fmt::print("  if it is {}: {} against {}\n", host::rival_name(plan.rivals[truth].kinds), host::odds_text(odds),
+                   host::rival_name(plan.rivals[other].kinds));
+    }
     fmt::print(
         "Make it: axistool excite AXIS {} -o run.csv; then diagnose with --train … run.csv --believed PLAN.json\n",
         file);

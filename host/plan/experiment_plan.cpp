@@ -19,6 +19,9 @@ namespace {
 /// Log odds that are expected to stay above kHighestOdds whatever the noise: 7 for the odds, and twice their standard
 /// deviation, the square root of twice themselves.
 constexpr double kEnough = 20.0;
+/// With so much left after a rival has bent in earnest the odds will reach kHighestOdds: half as much again as they
+/// are.
+const double kSure = 1.5 * std::log(kHighestOdds);
 /// Less than this is no hope of a decision.
 const double kHope = std::log(kDecided / (1.0 - kDecided));
 /// A run stays this share of the box's half away from its edge, for what the simulated machines do not know.
@@ -64,7 +67,7 @@ class Planner {
     try_pieces(candidate_pieces(model_, box_));
     choose();
     // A rival that bends further than its slope foretold is held against the pieces from where it went.
-    constexpr int kRounds = 3;
+    constexpr int kRounds = 4;
     for (int round = 0; round < kRounds && !chosen_.empty(); ++round) {
       if (verify() || round + 1 == kRounds) break;
       choose();
@@ -147,7 +150,7 @@ class Planner {
   std::vector<PairOutlook> all_pairs() const {
     std::vector<PairOutlook> pairs;
     for (std::size_t a = 0; a < rivals_.size(); ++a)
-      for (std::size_t b = a + 1; b < rivals_.size(); ++b) pairs.push_back({a, b, false, 1.0, {}});
+      for (std::size_t b = a + 1; b < rivals_.size(); ++b) pairs.push_back({a, b});
     return pairs;
   }
 
@@ -179,7 +182,7 @@ class Planner {
         std::vector<std::size_t> with = chosen_;
         with.push_back(piece);
         const double then = value_of(with);
-        constexpr double kWorthwhile = 1.0;
+        constexpr double kWorthwhile = 0.5;
         if (then - value < kWorthwhile || (then - value) / cost_s <= best_rate) continue;
         best = piece;
         best_rate = (then - value) / cost_s;
@@ -214,16 +217,18 @@ class Planner {
       for (const Rival& rival : decision.rivals) plan_.predicted.back().bent.push_back(rival.model);
       for (std::size_t other = 0; other < rivals_.size(); ++other) {
         odds[truth][other] = 0.5 * (decision.chi_square[other] - decision.chi_square[truth]);
-        const bool fell_short = other != truth && odds[truth][other] < kHope && log_odds(chosen_, truth, other) > kHope;
-        if (!fell_short) continue;
+        const bool may_have_more = other != truth && odds[truth][other] < kSure &&
+                                   log_odds(chosen_, truth, other) > odds[truth][other] + kHope;
+        if (!may_have_more) continue;
         as_expected = false;
         bent.emplace_back(other, decision.rivals[other].model);
       }
     }
     for (PairOutlook& pair : plan_.pairs) {
-      const double least = std::min(odds[pair.a][pair.b], odds[pair.b][pair.a]);
-      pair.separable = least > kHope;
-      pair.expected_odds = std::clamp(std::exp(least), 1.0, kHighestOdds);
+      pair.separable = std::min(odds[pair.a][pair.b], odds[pair.b][pair.a]) > kHope;
+      const auto stated = [](double log_odds) { return std::clamp(std::exp(log_odds), 1.0, kHighestOdds); };
+      pair.odds_if_a = stated(odds[pair.a][pair.b]);
+      pair.odds_if_b = stated(odds[pair.b][pair.a]);
     }
     for (const auto& [rival, model] : bent) incarnate(rival, model);
     return as_expected;
@@ -239,17 +244,22 @@ class Planner {
   }
 
   void conclude() {
-    plan_.expected_odds = kHighestOdds;
     std::vector<std::string> by_hand;
+    std::vector<double> odds(rivals_.size(), kHighestOdds);  // of each to the next, if it is the true one
     for (PairOutlook& pair : plan_.pairs) {
       if (pair.separable) {
         plan_.separable = true;
-        plan_.expected_odds = std::min(plan_.expected_odds, pair.expected_odds);
+        odds[pair.a] = std::min(odds[pair.a], pair.odds_if_a);
+        odds[pair.b] = std::min(odds[pair.b], pair.odds_if_b);
         continue;
       }
+      pair.odds_if_a = pair.odds_if_b = 1.0;
       pair.by_hand = separation_by_hand(rivals_[pair.a].kinds, rivals_[pair.b].kinds);
       if (std::ranges::find(by_hand, pair.by_hand) == by_hand.end()) by_hand.push_back(pair.by_hand);
     }
+    double log_odds = 0.0;
+    for (std::size_t k = 0; k < rivals_.size(); ++k) log_odds += rivals_[k].probability * std::log(odds[k]);
+    plan_.expected_odds = std::exp(log_odds);
     for (const std::string& text : by_hand) plan_.by_hand += (plan_.by_hand.empty() ? "" : " ") + text;
     for (std::size_t k = 0; k < tried_.size(); ++k) {
       double least = HUGE_VAL;

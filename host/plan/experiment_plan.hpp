@@ -19,9 +19,9 @@ struct PlanOptions {
 struct PairOutlook {
   std::size_t a = 0, b = 0;  ///< indices of rivals
   bool separable = false;
-  double expected_odds =
-      1.0;              ///< of the true one to the other after the run, the worse of both cases, up to kHighestOdds
-  std::string by_hand;  ///< where no motion in the box separates them: what does
+  /// What the run is expected to make of even odds, of the true one to the other, up to kHighestOdds.
+  double odds_if_a = 1.0, odds_if_b = 1.0;
+  std::string by_hand = {};  ///< where no motion in the box separates them: what does
 };
 
 /// A piece that was simulated, and what it alone would do.
@@ -39,10 +39,11 @@ struct PredictedRun {
 struct Plan {
   std::vector<Rival> rivals;
   std::vector<PairOutlook> pairs;
-  bool separable = false;                   ///< some pair is
-  std::string by_hand;                      ///< for the pairs that are not, in words; empty where all are
-  RunPlan run;                              ///< without pieces where nothing is separable
-  double expected_odds = 1.0;               ///< the least of the separable pairs'
+  bool separable = false;  ///< some pair is
+  std::string by_hand;     ///< for the pairs that are not, in words; empty where all are
+  RunPlan run;             ///< without pieces where nothing is separable
+  /// Of the true one to the next that the run can tell from it: the geometric mean over what may be true.
+  double expected_odds = 1.0;
   std::vector<ConsideredPiece> considered;  ///< best first
   std::vector<PredictedRun> predicted;      ///< with each rival true in turn
   double steps = 0.0;                       ///< of the integrator

@@ -25,7 +25,7 @@ nlohmann::json to_json(const Plan& plan, const std::string& run_file) {
   for (const PairOutlook& pair : plan.pairs)
     pairs.push_back({{"rivals", {plan.rivals[pair.a].kinds, plan.rivals[pair.b].kinds}},
                      {"separable", pair.separable},
-                     {"expected_odds", pair.expected_odds},
+                     {"expected_odds", {pair.odds_if_a, pair.odds_if_b}},
                      {"by_hand", text_or_null(pair.by_hand)}});
   for (const RunPiece& piece : plan.run.pieces) pieces.push_back(piece_text(piece));
   return {{"format", "axis-plan/1"},

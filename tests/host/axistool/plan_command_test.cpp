@@ -31,9 +31,9 @@ class Plan : public testing::Test {
     std::ofstream(file("machine.toml")) << text << "[[effect]]\nkind = \"input_delay\"\ndelay_s = 0.003\n";
   }
   std::string file(const char* name) const { return folder_.path(name); }
-  ProgramRun excite(const std::string& words, const char* record) const {
-    return run_axistool("excite x " + words + " --device model:" + file("machine.toml") + " --drive " +
-                        file("model.toml") + " --yes --countdown 0 -o " + file(record));
+  ProgramRun excite(const std::string& words, const char* record, const char* machine = "machine.toml") const {
+    return run_axistool("excite x " + words + " --device model:" + file(machine) + " --drive " + file("model.toml") +
+                        " --yes --countdown 0 -o " + file(record));
   }
   nlohmann::json document(const char* name) const { return nlohmann::json::parse(std::ifstream(file(name))); }
   TemporaryFolder folder_;
@@ -82,7 +82,7 @@ TEST_F(Plan, RunsPiecesOfEveryLoopInOneRecord) {
                                   << piece("dwell", "values = [0.05, 0.1]\n", "speed = 20.0\nhold = 0.1\n")
                                   << piece("reversals", "", "amplitude = 0.1\nspeed = 4.0\n")
                                   << piece("steps", "values = [2.0, 0.0, -2.0]\n", "hold = 0.05\n");
-  const ProgramRun made = excite(file("run.toml") + " --params " + file("p.toml"), "run.csv");
+  const ProgramRun made = excite(file("run.toml") + " --params " + file("p.toml"), "run.csv", "model.toml");
   ASSERT_EQ(made.exit_code, 0) << made.output;
   const host::Record record = host::read_record(file("run.csv"));
   EXPECT_GT(record.size(), 2500U);

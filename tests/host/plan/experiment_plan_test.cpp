@@ -38,7 +38,7 @@ TEST(ExperimentPlan, TellsADelayFromALag) { expect_decided(public_trial(shipped(
 
 TEST(ExperimentPlan, LeavesToHandsWhatNoMotionSeparates) {
   // Without static friction a constant torque, friction by direction and an offset are one and the same.
-  const TrialOutcome outcome = carried_out(with_constant_torque(public_trial(shipped("case-06"))));
+  const TrialOutcome outcome = carried_out(with_level(public_trial(shipped("case-06")), "constant_torque", 0.15));
   EXPECT_FALSE(outcome.plan.separable);
   EXPECT_TRUE(outcome.plan.run.pieces.empty());
   for (const host::PairOutlook& pair : outcome.plan.pairs) EXPECT_FALSE(pair.separable);

