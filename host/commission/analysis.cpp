@@ -41,6 +41,15 @@ std::string named(const DiagnosisVerdict& verdict) {
 
 }  // namespace
 
+Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model) {
+  std::vector<std::string> training = paths(session, kTrainingFiles);
+  for (const auto& step : session.folder().document().at("steps"))
+    for (const auto& file : step.at("files"))
+      if (const auto name = file.get<std::string>(); name.starts_with("run-") && name.ends_with(".csv"))
+        training.push_back(session.folder().path(name));
+  return MeasurementGate(model).read(training, paths(session, kJudgingFiles));
+}
+
 CommissionStepResult compare_first(CommissionSession& session) {
   const Computing computing(session);
   const sim::DriveDescription given = read_model(session.folder().require("model.toml", "friction"));
@@ -58,8 +67,7 @@ CommissionStepResult diagnose_machine(CommissionSession& session) {
   const Computing computing(session);
   const std::string path = session.folder().require("model.toml", "friction");
   const sim::DriveDescription model = read_model(path);
-  const Measurements measured =
-      MeasurementGate(model).read(paths(session, kTrainingFiles), paths(session, kJudgingFiles));
+  const Measurements measured = read_measurements(session, model);
   const Diagnosis diagnosis = diagnose(model, measured);
   session.folder().write_json("diagnosis.json", to_json(diagnosis));
   write_diagnosis_report(diagnosis, path, session.folder().path("diagnosis.html"));
@@ -68,17 +76,18 @@ CommissionStepResult diagnose_machine(CommissionSession& session) {
 
 CommissionStepResult improve_model(CommissionSession& session) {
   const Computing computing(session);
-  const std::string path = session.folder().require("model.toml", "friction");
+  // Where a run has decided, its answer is part of what there is to improve.
+  const bool is_decided = session.folder().document().value("decided", nlohmann::json()).is_array();
+  const std::string path = is_decided ? session.folder().require("decided.toml", "separate")
+                                      : session.folder().require("model.toml", "friction");
   const sim::DriveDescription model = read_model(path);
-  const Measurements measured =
-      MeasurementGate(model).read(paths(session, kTrainingFiles), paths(session, kJudgingFiles));
+  const Measurements measured = read_measurements(session, model);
   const Improvement improvement = improve(model, measured);
   const std::string output = session.folder().path("improved.toml");
   write_model(improvement.model, output);
   const nlohmann::json document = to_json(improvement, output);
   session.folder().write_json("improvement.json", document);
   write_improvement_report(improvement, {path, output}, session.folder().path("improvement.html"));
-  session.folder().put("verdict", session.folder().read_json("diagnosis.json").at("verdict"));
   return {{"improved.toml", "improvement.json", "improvement.html"},
           fmt::format("{:.3g} → {:.3g} times the floor; stopped because {}.", improvement.first.given_validate,
                       improvement.ladder.back().validate, improvement.stopped_because)};

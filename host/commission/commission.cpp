@@ -13,8 +13,8 @@ namespace host {
 namespace {
 
 constexpr std::array<CommissionStepResult (*)(CommissionSession&), kCommissionSteps.size()> kWork{
-    look,          identify_first,   control_first, climb_ladder, find_friction, measure_response, record_validation,
-    compare_first, diagnose_machine, improve_model, compensate,   write_page};
+    look,          identify_first,   control_first, climb_ladder,  find_friction, measure_response, record_validation,
+    compare_first, diagnose_machine, separate,      improve_model, compensate,    write_page};
 
 /// Gives a board that was fitted before its own parameters back; quietly, since something has failed already.
 void give_back(CommissionSession& session) noexcept {

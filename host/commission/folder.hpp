@@ -18,7 +18,7 @@ struct CommissionStepText {
 };
 
 /// In their order.
-inline constexpr std::array<CommissionStepText, 12> kCommissionSteps{{
+inline constexpr std::array<CommissionStepText, 13> kCommissionSteps{{
     {"look", "rights and faults, standstill noise, direction and breakaway by a slow ramp of voltage"},
     {"identify", "steps of voltage in open loop: inertia, viscous and Coulomb friction"},
     {"control", "a first controller of modest bandwidth, downloaded but not saved"},
@@ -28,6 +28,7 @@ inline constexpr std::array<CommissionStepText, 12> kCommissionSteps{{
     {"validate", "further motions to learn from, and others to judge by, one of them twice"},
     {"compare", "how the model fares on the motions that judge"},
     {"diagnose", "which effect is missing"},
+    {"separate", "while several explanations are left: the run that separates them, planned and made"},
     {"improve", "effects that earn their place, all parameters fitted again"},
     {"compensate", "the same motion with the old and the new parameters; the better set stays"},
     {"page", "one page"},

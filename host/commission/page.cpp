@@ -27,7 +27,7 @@ std::string title_of(const std::string& kind) {
 struct Page {
   CommissionSession& session;
   const nlohmann::json& state;
-  nlohmann::json errors, improvement, diagnosis;
+  nlohmann::json errors, improvement;
 
   double before() const { return errors["before"]["rms_um"]; }
   bool has_after() const { return !errors["after"].is_null(); }
@@ -38,6 +38,7 @@ struct Page {
   /// What the improved model has and the first one lacked.
   std::vector<std::string> added() const {
     std::vector<std::string> kinds;
+    if (state.at("decided").is_array()) kinds = state.at("decided").get<std::vector<std::string>>();
     for (const auto& rung : improvement["ladder"])
       for (const auto& kind : rung["added"]) kinds.push_back(kind);
     return kinds;
@@ -47,7 +48,7 @@ struct Page {
     std::vector<std::string> titles;
     for (const std::string& kind : added()) titles.push_back(title_of(kind));
     if (!titles.empty()) return fmt::format("{}", fmt::join(titles, " and "));
-    const auto& verdict = diagnosis["verdict"];
+    const auto& verdict = state.at("verdict");
     const std::string status = verdict["status"];
     if (status == "adequate") return "nothing is missing in the model";
     if (status == "parameters")
@@ -66,7 +67,7 @@ Verdict verdict_of(const Page& page) {
       fmt::format("Following error: {} µm before, {}, floor {}. Cause: {}.", format_value(page.before()),
                   page.has_after() ? format_value(page.after()) + " after" : "stopped by the new parameters",
                   format_value(page.floor()), page.cause());
-  verdict.sentences.push_back(page.diagnosis["verdict"]["explanation"]);
+  verdict.sentences.push_back(page.state.at("verdict").at("explanation"));
   verdict.sentences.push_back(
       fmt::format("The {} parameters are on the board{}.", page.is_new() ? "new" : "old",
                   page.state.value("saved", false) ? " and saved" : "; they are not saved yet"));
@@ -167,8 +168,7 @@ Table pages_table(const Page& page) {
 CommissionStepResult write_page(CommissionSession& session) {
   CommissionFolder& folder = session.folder();
   folder.require("errors.json", "compensate");
-  const Page page{session, folder.document(), folder.read_json("errors.json"), folder.read_json("improvement.json"),
-                  folder.read_json("diagnosis.json")};
+  const Page page{session, folder.document(), folder.read_json("errors.json"), folder.read_json("improvement.json")};
   Report report("Axis " + session.options().axis_name,
                 session.options().sheet.name.empty() ? "commissioning" : session.options().sheet.name);
   report.verdict(verdict_of(page));

@@ -88,20 +88,17 @@ void CommissionSession::go_back() {
   if (talk_.stop()) throw Failure(ExitCode::refused, "interrupted");
 }
 
-Record CommissionSession::record(const CommissionRun& run) {
-  const auto begin = board_.now();
-  const firmware::ParameterValues values = board_.read_values();
-  const ExcitationScale units = scale(values);
+ExcitationLimits CommissionSession::room_for(double time_s, const std::string& what,
+                                             const firmware::ParameterValues& values) {
   ExcitationLimits box = options_.box;
-  box.time_s = run.time_s;
-  if (motion_s_ + run.time_s > options_.box.time_s)
+  box.time_s = time_s;
+  if (motion_s_ + time_s > options_.box.time_s)
     throw Failure(
         ExitCode::refused,
         fmt::format("{} would take {:g} s, and of the box's {:g} s {:.0f} are left: a longer --box time=… goes "
                     "on from here",
-                    run.file, run.time_s, options_.box.time_s, options_.box.time_s - motion_s_));
-  const bool can_go_back = values.axis(options_.axis).get<"drive.fitted">();
-  if (can_go_back) {
+                    what, time_s, options_.box.time_s, options_.box.time_s - motion_s_));
+  if (values.axis(options_.axis).get<"drive.fitted">()) {
     const auto state = static_cast<firmware::SupervisorState>(board_.status().axis.at(options_.axis).state);
     if (state != firmware::SupervisorState::enabled) {
       board_.wait(kToRest);
@@ -109,7 +106,7 @@ Record CommissionSession::record(const CommissionRun& run) {
     }
     go_back();
   }
-  const double away = static_cast<double>(std::abs(counts() - origin_)) * units.encoder_resolution;
+  const double away = static_cast<double>(std::abs(counts() - origin_)) * options_.sheet.data.encoder_resolution;
   box.travel -= 2.0 * away;
   if (box.travel < options_.box.travel / 4.0)
     throw Failure(
@@ -117,19 +114,50 @@ Record CommissionSession::record(const CommissionRun& run) {
         fmt::format("the axis stands {:g} from where it began, near the end of the box: move it back by hand, "
                     "or widen travel",
                     away));
-  const Excitation excitation = design_excitation(run.kind, run.numbers, box, units, run.loop);
-  const bool is_open = excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
-  if (is_open && can_go_back) disable();
-  const ExcitationOutcome outcome = run_excitation(board_, options_.axis, excitation, values, units, talk_.stop);
-  spend(begin);
+  return box;
+}
+
+Record CommissionSession::keep(const ExcitationOutcome& outcome, const std::map<std::string, std::string>& header,
+                               const std::string& file) {
   Record record = capture_record(outcome.capture, outcome.settings, options_.axis_name);
   record.header["source"] = "axistool commission";
-  record.header.insert(excitation.header.begin(), excitation.header.end());
+  record.header.insert(header.begin(), header.end());
   record.header["excitation_ended"] = std::string(end_name(outcome.state));
-  write_record(record, folder_.path(run.file));
-  require_completed(outcome, run.file);
-  record.path = folder_.path(run.file);
+  write_record(record, folder_.path(file));
+  require_completed(outcome, file);
+  record.path = folder_.path(file);
   return record;
+}
+
+Record CommissionSession::record(const CommissionRun& run) {
+  const auto begin = board_.now();
+  const firmware::ParameterValues values = board_.read_values();
+  const ExcitationScale units = scale(values);
+  const ExcitationLimits box = room_for(run.time_s, run.file, values);
+  const Excitation excitation = design_excitation(run.kind, run.numbers, box, units, run.loop);
+  if (excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop)) disable();
+  const ExcitationOutcome outcome = run_excitation(board_, options_.axis, excitation, values, units, talk_.stop);
+  spend(begin);
+  return keep(outcome, excitation.header, run.file);
+}
+
+Record CommissionSession::record_plan(const RunPlan& run, const std::string& file) {
+  const auto begin = board_.now();
+  const firmware::ParameterValues values = board_.read_values();
+  const ExcitationScale units = scale(values);
+  const ExcitationLimits box = within_both(run.box, room_for(run.duration_s(), file, values));
+  disable();
+  board_.wait(kToRest);
+  const ExcitationOutcome outcome = run_excitations(
+      board_, options_.axis, run.pieces.size(),
+      [&](std::size_t piece, double offset) {
+        ExcitationLimits whole = box;
+        whole.time_s = run.box.time_s;
+        return design_piece(run.pieces[piece], whole, offset, units);
+      },
+      values, units, talk_.stop);
+  spend(begin);
+  return keep(outcome, run_header(run), file);
 }
 
 void CommissionSession::require_completed(const ExcitationOutcome& outcome, const std::string& file) {

@@ -9,6 +9,7 @@
 #include "host/device/board_client.hpp"
 #include "host/device/excitation.hpp"
 #include "host/identify/axis_design.hpp"
+#include "host/plan/run_plan.hpp"
 #include "host/record/record.hpp"
 
 namespace host {
@@ -61,6 +62,9 @@ class CommissionSession {
   /// saying why and what to do.
   Record record(const CommissionRun& run);
 
+  /// The same for a run that was planned.
+  Record record_plan(const RunPlan& run, const std::string& file);
+
   /// Puts the data sheet's scales and its control rate on an axis that nobody has fitted. Throws Failure(refused) where
   /// a fitted axis has other scales than the data sheet.
   void give_scales();
@@ -93,6 +97,10 @@ class CommissionSession {
   ExcitationScale scale(const firmware::ParameterValues& values) const;
   std::int64_t counts();
   void go_back();
+  /// What is left of the box for a motion of so many seconds, once the axis is back where the command began.
+  ExcitationLimits room_for(double time_s, const std::string& what, const firmware::ParameterValues& values);
+  Record keep(const ExcitationOutcome& outcome, const std::map<std::string, std::string>& header,
+              const std::string& file);
   void require_completed(const ExcitationOutcome& outcome, const std::string& file);
   void spend(std::chrono::steady_clock::time_point begin);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/commission/session.hpp"
+#include "host/record/measurements.hpp"
 
 namespace host {
 
@@ -40,6 +41,10 @@ CommissionStepResult compare_first(CommissionSession& session);
 /// Makes diagnosis.json, diagnosis.html.
 CommissionStepResult diagnose_machine(CommissionSession& session);
 
+/// Where the diagnosis is ambiguous and a motion in the box separates: makes plan-N.json, run-N.toml, run-N.csv,
+/// decision-N.json, and decided.toml where one explanation is left.
+CommissionStepResult separate(CommissionSession& session);
+
 /// Makes improved.toml, improvement.json, improvement.html.
 CommissionStepResult improve_model(CommissionSession& session);
 
@@ -52,6 +57,9 @@ CommissionStepResult write_page(CommissionSession& session);
 inline const std::vector<std::string> kTrainingFiles{"steps.csv", "ladder-slow.csv", "ladder-fast.csv",
                                                      "sweep.csv", "reversals.csv",   "dwell.csv"};
 inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-again.csv", "judge-steps.csv"};
+
+/// All that train and judge, through the gate, with what was recorded to separate explanations.
+Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model);
 
 /// The motion that judges a controller; the same each time.
 CommissionRun judging_jogs(const CommissionSession& session, const std::string& file);

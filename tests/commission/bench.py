@@ -37,6 +37,11 @@ def data_sheet(base, torque):
     return text + (f"[drive.tach]\nnoise_variance_rad2_s2 = {base['tach']}\n" if "tach" in base else "")
 
 
+def one_level(base):
+    """The data sheet's claim that both directions have the same friction; without it a weight is part of Coulomb's."""
+    return effect({"kind": "coulomb", "level_N" if base["drive"]["kind"] == "linear" else "level_Nm": base["coulomb"][0]})
+
+
 def machine(base, hidden):
     metres = base["drive"]["kind"] == "linear"
     force, speed = ("N", "m_s") if metres else ("Nm", "rad_s")
@@ -61,8 +66,10 @@ def run(axistool, folder, arguments):
 
 def commission(axistool, base, entry, folder):
     truth, sheet, out = folder / "truth.toml", folder / "sheet.toml", folder / "found"
+    base = {**base, **entry.get("base_changes", {})}
     truth.write_text(machine(base, entry["hides"]))
-    sheet.write_text(data_sheet(base, entry["sheet"]["torque"]))
+    alike = entry["sheet"].get("one_level")
+    sheet.write_text(data_sheet(base, entry["sheet"]["torque"]) + (one_level(base) if alike else ""))
     common = ["--sim", str(truth), "--seed", str(entry["seed"]), "--box", base["box"]]
     done, took = run(axistool, str(out), [*common, "--drive", str(sheet)])
     result = {"name": entry["name"], "hides": [e["kind"] for e in entry["hides"]], "computing_s": took}
@@ -76,7 +83,7 @@ def commission(axistool, base, entry, folder):
     shutil.copy(truth, told / "improved.toml")
     other, _ = run(axistool, str(told), [*common, "--drive", str(truth), "--from", "compensate", "--to", "compensate"])
     best = json.loads((told / "commission.json").read_text())["following_error_um"] if other.returncode == 0 else {}
-    return {**result, "verdict": state["verdict"], "added": [k for rung in ladder for k in rung["added"]],
+    return {**result, "verdict": state["verdict"], "added": (state.get("decided") or []) + [k for rung in ladder for k in rung["added"]],
             "error": state["following_error_um"], "truth_um": best.get("after"), "kept": state["kept"],
             "motion_s": state["motion_s"]}
 
