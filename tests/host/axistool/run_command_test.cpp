@@ -69,7 +69,7 @@ TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
   fit();
   const ProgramRun refused = run("run " + written("far.ngc", "F6000 G1 X10\nX95\nM2\n") + " --yes");
   EXPECT_EQ(refused.exit_code, 8);
-  EXPECT_THAT(refused.output, HasSubstr("far.ngc:2: x = 90"));
+  EXPECT_THAT(refused.output, HasSubstr("far.ngc:2: x = 95"));
   EXPECT_THAT(run("info").output, testing::Not(HasSubstr("enabled")));
 }
 
