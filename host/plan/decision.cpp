@@ -18,6 +18,11 @@ constexpr double kFar = 2.0;
 
 }  // namespace
 
+double stated_odds(double odds) {
+  constexpr double kRounding = 1e-6;
+  return odds > kHighestOdds * (1.0 - kRounding) ? kHighestOdds : std::max(1.0, odds);
+}
+
 std::string odds_text(double odds) {
   return odds >= kHighestOdds ? fmt::format("more than {:g} to 1", kHighestOdds) : fmt::format("{:.2g} to 1", odds);
 }
@@ -63,9 +68,7 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
   std::ranges::stable_sort(order, std::greater{}, [&](std::size_t k) { return decision.rivals[k].probability; });
   decision.best = order.front();
   const double best = decision.rivals[decision.best].probability;
-  if (order.size() > 1) decision.odds = best / decision.rivals[order[1]].probability;
-  constexpr double kRounding = 1e-6;
-  if (decision.odds > kHighestOdds * (1.0 - kRounding)) decision.odds = kHighestOdds;
+  if (order.size() > 1) decision.odds = stated_odds(best / decision.rivals[order[1]].probability);
   for (const std::size_t k : order)
     if (decision.rivals[k].probability > best * (1.0 - kDecided) / kDecided) decision.left.push_back(k);
   return decision;

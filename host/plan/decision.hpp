@@ -13,6 +13,9 @@ inline constexpr double kHighestOdds = 1000.0;
 /// A run has decided where the best rival is as probable as this.
 inline constexpr double kDecided = 0.95;
 
+/// What may be stated of odds: 1 to kHighestOdds, which rounding does not keep them from.
+double stated_odds(double odds);
+
 /// "more than 1000 to 1", "38 to 1"
 std::string odds_text(double odds);
 

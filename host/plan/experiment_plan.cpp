@@ -226,9 +226,8 @@ class Planner {
     }
     for (PairOutlook& pair : plan_.pairs) {
       pair.separable = std::min(odds[pair.a][pair.b], odds[pair.b][pair.a]) > kHope;
-      const auto stated = [](double log_odds) { return std::clamp(std::exp(log_odds), 1.0, kHighestOdds); };
-      pair.odds_if_a = stated(odds[pair.a][pair.b]);
-      pair.odds_if_b = stated(odds[pair.b][pair.a]);
+      pair.odds_if_a = stated_odds(std::exp(odds[pair.a][pair.b]));
+      pair.odds_if_b = stated_odds(std::exp(odds[pair.b][pair.a]));
     }
     for (const auto& [rival, model] : bent) incarnate(rival, model);
     return as_expected;
@@ -259,7 +258,7 @@ class Planner {
     }
     double log_odds = 0.0;
     for (std::size_t k = 0; k < rivals_.size(); ++k) log_odds += rivals_[k].probability * std::log(odds[k]);
-    plan_.expected_odds = std::exp(log_odds);
+    plan_.expected_odds = stated_odds(std::exp(log_odds));
     for (const std::string& text : by_hand) plan_.by_hand += (plan_.by_hand.empty() ? "" : " ") + text;
     for (std::size_t k = 0; k < tried_.size(); ++k) {
       double least = HUGE_VAL;

@@ -24,7 +24,8 @@ Verdict verdict_block(const Plan& plan, const std::string& run_file) {
   block.label = plan.separable ? "a run decides" : "by hand";
   const std::string group = fmt::format("{}", fmt::join(names_of(plan.rivals), " or "));
   if (plan.separable) {
-    block.headline = fmt::format("A run of {:.3g} s tells which it is: {}", plan.run.duration_s(), group);
+    block.headline = fmt::format("A run of {:.3g} s tells {}: {}", plan.run.duration_s(),
+                                 plan.by_hand.empty() ? "which it is" : "some of them apart", group);
     block.sentences.push_back(fmt::format("Expected odds of the true one: {}.", odds_text(plan.expected_odds)));
     block.command = fmt::format("axistool excite AXIS {} -o run.csv", run_file);
   } else {
