@@ -136,21 +136,4 @@ std::vector<RunPiece> candidate_pieces(const sim::DriveDescription& model, const
   return Pieces(model, box).all();
 }
 
-std::vector<RunPiece> variations_of(const RunPiece& piece) {
-  std::vector<RunPiece> list;
-  const auto try_with = [&](auto change) {
-    list.push_back(piece);
-    change(list.back());
-  };
-  for (const double factor : {0.7, 1.4}) {
-    for (const auto& [name, value] : piece.numbers.named)
-      try_with([&name = name, factor](RunPiece& other) { other.numbers.named[name] *= factor; });
-    if (!piece.numbers.list.empty())
-      try_with([factor](RunPiece& other) {
-        for (double& value : other.numbers.list) value *= factor;
-      });
-  }
-  return list;
-}
-
 }  // namespace host

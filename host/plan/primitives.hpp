@@ -13,7 +13,4 @@ namespace host {
 /// a few sizes between what moves the axis at all and the box. Whether a piece stays in the box a simulation must tell.
 std::vector<RunPiece> candidate_pieces(const sim::DriveDescription& model, const ExcitationLimits& box);
 
-/// The piece with its sizes and times a little smaller and larger: where a search goes on from.
-std::vector<RunPiece> variations_of(const RunPiece& piece);
-
 }  // namespace host
