@@ -24,7 +24,7 @@ host::AxisResponse measured(const sim::DriveDescription& machine, const sim::Dri
   host::DesignOptions options;
   options.bandwidth_Hz = bandwidth_Hz;
   sim::DriveDescription named = model;
-  named.name = "x";
+  named.name = std::string(host::kAxisNames[0]);
   const std::string text = host::board_parameters_toml(named, host::design_axis(named, options));
   for (const host::Assignment& one : host::parse_parameter_text(text, "design", "x")) host::put(values, one);
   board.write_values(values);
