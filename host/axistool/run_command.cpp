@@ -89,7 +89,7 @@ Planned plan(const std::string& text, const RunArguments& arguments, const host:
   machine.home = board.home;
   Planned planned;
   planned.program = host::read_gcode(text, arguments.file, point_of(at, board.scale), machine);
-  host::PlanOptions options;
+  host::PathPlanOptions options;
   options.limits = board.limits;
   options.count_mm = *std::min_element(board.scale.count_mm.begin(), board.scale.count_mm.end());
   options.shortest_s = std::max(options.shortest_s, 2.0 / board.scale.rate_Hz);

@@ -95,7 +95,7 @@ SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits) {
 /// A way from rest to rest.
 class Span {
  public:
-  Span(std::vector<SpanCurve> curves, const PlanOptions& options) : curves_(std::move(curves)), options_(options) {
+  Span(std::vector<SpanCurve> curves, const PathPlanOptions& options) : curves_(std::move(curves)), options_(options) {
     double length = 0.0;
     std::vector<SpeedInterval> intervals;
     for (SpanCurve& one : curves_) {
@@ -190,7 +190,7 @@ class Span {
   }
 
   std::vector<SpanCurve> curves_;
-  const PlanOptions& options_;
+  const PathPlanOptions& options_;
   std::vector<SpeedPhase> phases_;
   std::vector<SpeedState> states_;
   std::vector<double> times_;
@@ -201,7 +201,7 @@ class Span {
 /// speeds up as its own limits have it, and while one stops the next one starts.
 class Chain {
  public:
-  explicit Chain(const PlanOptions& options) : options_(options) {}
+  explicit Chain(const PathPlanOptions& options) : options_(options) {}
 
   bool is_empty() const { return spans_.empty(); }
 
@@ -328,7 +328,7 @@ class Chain {
     return nearest <= tolerance_mm;
   }
 
-  const PlanOptions& options_;
+  const PathPlanOptions& options_;
   std::vector<Span> spans_;
   std::vector<double> begins_;
 };
@@ -336,7 +336,7 @@ class Chain {
 /// Joins moves to spans: with blends where the path may be left a little, and stops where it may not.
 class Joiner {
  public:
-  Joiner(PlannedPath& path, const PlanOptions& options) : path_(path), options_(options) {}
+  Joiner(PlannedPath& path, const PathPlanOptions& options) : path_(path), options_(options) {}
 
   void add(const PathMove& move) {
     if (move.kind == PathMoveKind::dwell) {
@@ -414,7 +414,7 @@ class Joiner {
   }
 
   PlannedPath& path_;
-  const PlanOptions& options_;
+  const PathPlanOptions& options_;
   Chain chain_{options_};
   std::vector<SpanCurve> span_;
   double entry_mm_ = 0.0;      ///< tolerance of the corner where the span began
@@ -457,7 +457,7 @@ LimitUse limit_use(const PathKnot* begin, const PathKnot* end, const AxisLimits&
   return use;
 }
 
-PlannedPath plan_path(const std::vector<PathMove>& moves, const PlanOptions& options) {
+PlannedPath plan_path(const std::vector<PathMove>& moves, const PathPlanOptions& options) {
   for (const PathPoint& limit : {options.limits.velocity, options.limits.acceleration, options.limits.jerk})
     if (!(limit.minCoeff() > 0.0))
       throw Failure(ExitCode::bad_input, "a path needs velocity, acceleration and jerk limits above 0 of every axis");

@@ -44,7 +44,7 @@ struct PlannedPath {
   double duration_s() const { return knots.empty() ? 0.0 : knots.back().time_s; }
 };
 
-struct PlanOptions {
+struct PathPlanOptions {
   AxisLimits limits;
   double count_mm = 0.001;              ///< the finest encoder step: half of it is the tolerance of an exact path
   double shortest_s = 0.002;            ///< between knots
@@ -53,7 +53,7 @@ struct PlanOptions {
 
 /// Within the limits of each axis, as quickly as the planner can. Corners are stopped at where their tolerance is 0 and
 /// they are no smooth going on. Throws Failure(bad_input) where a limit or a feed is not above 0.
-PlannedPath plan_path(const std::vector<PathMove>& moves, const PlanOptions& options);
+PlannedPath plan_path(const std::vector<PathMove>& moves, const PathPlanOptions& options);
 
 /// Of what the knots' polynomials ask of the axes, the largest share of a limit: 1 at the limit.
 struct LimitUse {

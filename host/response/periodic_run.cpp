@@ -173,10 +173,10 @@ PeriodicRun periodic_run(const Record& record, const MultisineHeader& excitation
   for (std::size_t line = excitation.lines.front(); line <= excitation.lines.back(); ++line)
     if (!std::ranges::binary_search(excitation.lines, line))
       (line % 2 == 0 ? run.even_lines : run.odd_lines).push_back(line);
-  const auto part = [&](const std::vector<double>& channel) {
+  const auto part = [&](const std::vector<double>& channel) -> std::vector<double> {
+    if (channel.empty()) return {};
     const auto from = channel.begin() + static_cast<std::ptrdiff_t>(steady.from);
-    return channel.empty() ? channel
-                           : std::vector<double>(from, from + static_cast<std::ptrdiff_t>(periods * excitation.period));
+    return {from, from + static_cast<std::ptrdiff_t>(periods * excitation.period)};
   };
   const std::vector<double> u = part(record.u_V), w = part(record.w);
   std::vector<double> x = part(record.x);

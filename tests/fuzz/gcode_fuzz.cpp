@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
     }
     // Plans of minutes are long lists of the same: not under sanitizers.
     if (length > 1e4 || time_s > 60.0 || program.moves.size() > 60) return 0;
-    host::PlanOptions options;
+    host::PathPlanOptions options;
     options.limits = {host::PathPoint::Constant(250.0), host::PathPoint::Constant(2000.0),
                       host::PathPoint::Constant(50'000.0)};
     const host::PlannedPath path = host::plan_path(program.moves, options);

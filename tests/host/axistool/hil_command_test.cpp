@@ -44,7 +44,7 @@ TEST(HilCommand, BeforeAndAfterStandOnOnePage) {
       run_axistool("hil hidden-effect --before-after --model x=" + folder.path("one/hidden-effect-x.toml") + " -o " +
                    folder.path("two"));
   ASSERT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_THAT(run.output, HasSubstr("Before and after: contour error 12.6 → 12.6 µm"));
+  EXPECT_THAT(run.output, HasSubstr("Before and after: contour error 12.3 → 12.3 µm"));
   EXPECT_THAT(host::read_file(folder.path("two/hidden-effect.html")), HasSubstr(">before: "));
 }
 

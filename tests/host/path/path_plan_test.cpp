@@ -26,8 +26,8 @@ using host::PathPoint;
 constexpr double kCount_mm = 0.00244140625, kRate_Hz = 1000.0;
 constexpr double kVelocity = 250.0, kAcceleration = 2000.0, kJerk = 50'000.0;  // the paper's axes
 
-host::PlanOptions options() {
-  host::PlanOptions made;
+host::PathPlanOptions options() {
+  host::PathPlanOptions made;
   made.limits = {PathPoint::Constant(kVelocity), PathPoint::Constant(kAcceleration), PathPoint::Constant(kJerk)};
   made.count_mm = kCount_mm;
   return made;

@@ -68,12 +68,12 @@ struct Gains {
   bool cancels;
 
   explicit Gains(const firmware::AxisParameters<float>& p)
-      : a12(p.drive.Ad12),
-        a22(p.drive.Ad22),
-        b1(p.drive.Bd1),
-        b2(p.drive.Bd2),
-        k1(p.Kc[0]),
-        k2(p.Kc[1]),
+      : a12(static_cast<double>(p.drive.Ad12)),
+        a22(static_cast<double>(p.drive.Ad22)),
+        b1(static_cast<double>(p.drive.Bd1)),
+        b2(static_cast<double>(p.drive.Bd2)),
+        k1(static_cast<double>(p.Kc[0])),
+        k2(static_cast<double>(p.Kc[1])),
         cancels(p.disturbance_cancellation_on) {
     for (std::size_t row = 0; row < 3; ++row)
       estimator.row(static_cast<Eigen::Index>(row)) << static_cast<double>(p.Kobs[row][0]),
