@@ -2,7 +2,7 @@
 #pragma once
 
 #include "firmware/core/axis_parameters.hpp"
-#include "firmware/core/motion_limits.hpp"
+#include "firmware/core/motion/motion_limits.hpp"
 
 namespace firmware {
 

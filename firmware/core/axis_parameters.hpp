@@ -4,13 +4,13 @@
 #include <cstdint>
 
 #include "firmware/core/compensation/compensation_parameters.hpp"
-#include "firmware/core/control_filter.hpp"
-#include "firmware/core/discrete_drive.hpp"
-#include "firmware/core/friction_feedforward.hpp"
-#include "firmware/core/homing.hpp"
-#include "firmware/core/kalman_estimator.hpp"
-#include "firmware/core/motion_limits.hpp"
-#include "firmware/core/reference_feedforward.hpp"
+#include "firmware/core/control/control_filter.hpp"
+#include "firmware/core/control/discrete_drive.hpp"
+#include "firmware/core/control/friction_feedforward.hpp"
+#include "firmware/core/control/kalman_estimator.hpp"
+#include "firmware/core/control/reference_feedforward.hpp"
+#include "firmware/core/motion/homing.hpp"
+#include "firmware/core/motion/motion_limits.hpp"
 #include "firmware/core/supervision/drive_sequence.hpp"
 #include "firmware/core/supervision/monitor_limits.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "firmware/core/arithmetic/count_position.hpp"
 #include "firmware/core/axis_fault.hpp"
-#include "firmware/core/count_position.hpp"
-#include "firmware/core/kalman_estimator.hpp"
+#include "firmware/core/control/kalman_estimator.hpp"
 
 namespace firmware {
 

@@ -1,8 +1,8 @@
 // The units in which fixed point computes: every state is of the order of one, whatever the machine.
 #pragma once
 
+#include "firmware/core/arithmetic/fixed_point.hpp"
 #include "firmware/core/axis_check.hpp"
-#include "firmware/core/fixed_point.hpp"
 
 namespace firmware {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/core/count_position.hpp"
+#include "firmware/core/arithmetic/count_position.hpp"
 
 namespace host {
 

@@ -1,11 +1,11 @@
-// Notch and low-pass behind the feedback (firmware/core/control_filter.hpp), as a design chooses them.
+// Notch and low-pass behind the feedback (firmware/core/control/control_filter.hpp), as a design chooses them.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "firmware/core/control_filter.hpp"
+#include "firmware/core/control/control_filter.hpp"
 #include "host/parameters/compensation_parameters.hpp"
 
 namespace host {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/core/pole_check.hpp"
+#include "firmware/core/control/pole_check.hpp"
 #include "host/exit_codes.hpp"
 #include "host/parameters/axis_parameters.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/core/arithmetic/fixed_point.hpp"
 #include "firmware/core/compensation/drive_compensation.hpp"
-#include "firmware/core/fixed_point.hpp"
 #include "tests/firmware/paper_axes.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "firmware/app/parameters/axis_values.hpp"
-#include "firmware/core/pole_check.hpp"
+#include "firmware/core/control/pole_check.hpp"
 #include "tests/firmware/app/paper_values.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware/core/dac_conversion.hpp"
+#include "firmware/core/control/dac_conversion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "firmware/core/dac_conversion.hpp"
+#include "firmware/core/arithmetic/fixed_point.hpp"
+#include "firmware/core/control/dac_conversion.hpp"
 #include "firmware/core/excitation/excitation_generator.hpp"
-#include "firmware/core/fixed_point.hpp"
 #include "tests/firmware/paper_axes.hpp"
 
 namespace {

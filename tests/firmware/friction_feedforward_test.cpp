@@ -1,5 +1,5 @@
 // Friction feed-forward against eq. (19) with the C library's exponential.
-#include "firmware/core/friction_feedforward.hpp"
+#include "firmware/core/control/friction_feedforward.hpp"
 
 #include <gtest/gtest.h>
 

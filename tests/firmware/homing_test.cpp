@@ -1,5 +1,5 @@
 // The homing sequence alone, on an axis that does at once what it is told.
-#include "firmware/core/homing.hpp"
+#include "firmware/core/motion/homing.hpp"
 
 #include <gtest/gtest.h>
 

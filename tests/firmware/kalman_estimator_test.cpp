@@ -1,5 +1,5 @@
 // The estimator against eq. (43) as the paper prints it, in matrices and double precision.
-#include "firmware/core/kalman_estimator.hpp"
+#include "firmware/core/control/kalman_estimator.hpp"
 
 #include <gtest/gtest.h>
 

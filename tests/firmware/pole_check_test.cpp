@@ -1,5 +1,5 @@
 // The verdict on poles against their eigenvalues in double precision; sets that must never close a loop.
-#include "firmware/core/pole_check.hpp"
+#include "firmware/core/control/pole_check.hpp"
 
 #include <gtest/gtest.h>
 

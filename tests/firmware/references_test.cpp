@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "firmware/core/count_position.hpp"
-#include "firmware/core/reference_generator.hpp"
+#include "firmware/core/arithmetic/count_position.hpp"
+#include "firmware/core/motion/reference_generator.hpp"
 
 namespace {
 

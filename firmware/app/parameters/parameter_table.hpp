@@ -191,7 +191,7 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {251, axis, "encoder.index_spacing", whole, "", "", 0, 1e6F, 0, while_disabled,
      "counts from one index pulse to the next, which then are watched; 0: no index is wired"},
 
-    // Behind the feedback: firmware/core/control_filter.hpp.
+    // Behind the feedback: firmware/core/control/control_filter.hpp.
     {272, axis, "notch.on", toggle, "", "", 0, 1, 0, while_disabled, "take a resonance's frequency out of the command"},
     {273, axis, "notch.frequency", real, "Hz", "Hz", 1, 1e4F, 100, while_disabled, "below 0.45 of the control rate"},
     {274, axis, "notch.damping", real, "1", "1", 0.01F, 2, 0.5F, while_disabled, "half its width over its frequency"},

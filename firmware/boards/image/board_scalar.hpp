@@ -2,7 +2,7 @@
 #pragma once
 
 #ifdef AXIS_SCALAR_FIXED
-#include "firmware/core/fixed_point.hpp"
+#include "firmware/core/arithmetic/fixed_point.hpp"
 #endif
 
 namespace firmware::boards {

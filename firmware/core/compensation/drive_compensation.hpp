@@ -2,7 +2,7 @@
 #pragma once
 
 #include "firmware/core/compensation/compensation_parameters.hpp"
-#include "firmware/core/friction_feedforward.hpp"
+#include "firmware/core/control/friction_feedforward.hpp"
 
 namespace firmware {
 

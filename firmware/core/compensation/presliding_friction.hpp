@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "firmware/core/friction_feedforward.hpp"
+#include "firmware/core/control/friction_feedforward.hpp"
 
 namespace firmware {
 

@@ -1,8 +1,8 @@
 // One sine over the travel, at a position that never loses resolution.
 #pragma once
 
+#include "firmware/core/arithmetic/count_position.hpp"
 #include "firmware/core/compensation/turn_sine.hpp"
-#include "firmware/core/count_position.hpp"
 
 namespace firmware {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware/core/arithmetic/scalar.hpp"
 #include "firmware/core/compensation/turn_sine.hpp"
-#include "firmware/core/scalar.hpp"
 
 namespace firmware {
 

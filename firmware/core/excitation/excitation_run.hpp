@@ -1,7 +1,7 @@
 // One excitation of one axis, from its beginning to standstill, within its box.
 #pragma once
 
-#include "firmware/core/count_position.hpp"
+#include "firmware/core/arithmetic/count_position.hpp"
 #include "firmware/core/excitation/excitation_generator.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 

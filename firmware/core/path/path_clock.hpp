@@ -1,8 +1,8 @@
 // The time of a path: samples of the path for one sample of the board, changed gently.
 #pragma once
 
-#include "firmware/core/jog_profile.hpp"
-#include "firmware/core/stopping_distance.hpp"
+#include "firmware/core/motion/jog_profile.hpp"
+#include "firmware/core/motion/stopping_distance.hpp"
 
 namespace firmware {
 

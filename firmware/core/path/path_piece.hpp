@@ -5,7 +5,7 @@
 #include <bit>
 #include <optional>
 
-#include "firmware/core/count_position.hpp"
+#include "firmware/core/arithmetic/count_position.hpp"
 #include "firmware/core/path/path_node.hpp"
 
 namespace firmware {

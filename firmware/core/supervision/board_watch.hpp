@@ -4,8 +4,8 @@
 #include <concepts>
 #include <cstdint>
 
+#include "firmware/core/arithmetic/scalar.hpp"
 #include "firmware/core/axis_fault.hpp"
-#include "firmware/core/scalar.hpp"
 #include "firmware/core/supervision/input_filter.hpp"
 
 namespace firmware {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/core/scalar.hpp"
+#include "firmware/core/arithmetic/scalar.hpp"
 
 namespace firmware {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/core/scalar.hpp"
+#include "firmware/core/arithmetic/scalar.hpp"
 #include "firmware/core/supervision/input_filter.hpp"
 
 namespace firmware {

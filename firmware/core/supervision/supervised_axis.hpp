@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "firmware/core/axis.hpp"
-#include "firmware/core/homing.hpp"
+#include "firmware/core/motion/homing.hpp"
 #include "firmware/core/supervision/axis_monitors.hpp"
 #include "firmware/core/supervision/capture_ring.hpp"
 #include "firmware/core/supervision/drive_sequence.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "firmware/core/axis_check.hpp"
-#include "firmware/core/pole_check.hpp"
+#include "firmware/core/control/pole_check.hpp"
 
 namespace firmware {
 

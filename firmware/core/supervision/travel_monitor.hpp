@@ -5,9 +5,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "firmware/core/arithmetic/count_position.hpp"
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
-#include "firmware/core/count_position.hpp"
 #include "hal/limit_inputs.hpp"
 
 namespace firmware {

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "firmware/core/kalman_estimator.hpp"
+#include "firmware/core/control/kalman_estimator.hpp"
 #include "host/parameters/control_filters.hpp"
 #include "tests/host/response/two_mass_experiment.hpp"
 

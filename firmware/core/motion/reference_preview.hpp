@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "firmware/core/count_position.hpp"
-#include "firmware/core/reference_feedforward.hpp"
+#include "firmware/core/arithmetic/count_position.hpp"
+#include "firmware/core/control/reference_feedforward.hpp"
 
 namespace firmware {
 

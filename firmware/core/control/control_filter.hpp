@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "firmware/core/scalar.hpp"
+#include "firmware/core/arithmetic/scalar.hpp"
 
 namespace firmware {
 

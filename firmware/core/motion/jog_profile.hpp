@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/core/motion_limits.hpp"
+#include "firmware/core/motion/motion_limits.hpp"
 
 namespace firmware {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "firmware/core/motion_limits.hpp"
+#include "firmware/core/motion/motion_limits.hpp"
 
 namespace firmware {
 

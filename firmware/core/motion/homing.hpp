@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "firmware/core/arithmetic/scalar.hpp"
 #include "firmware/core/axis_fault.hpp"
-#include "firmware/core/scalar.hpp"
 
 namespace firmware {
 

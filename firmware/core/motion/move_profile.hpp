@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/core/move_plan.hpp"
+#include "firmware/core/motion/move_plan.hpp"
 
 namespace firmware {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/core/exp_negative.hpp"
+#include "firmware/core/arithmetic/exp_negative.hpp"
 
 namespace firmware {
 

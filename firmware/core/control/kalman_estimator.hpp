@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/core/discrete_drive.hpp"
-#include "firmware/core/scalar.hpp"
+#include "firmware/core/arithmetic/scalar.hpp"
+#include "firmware/core/control/discrete_drive.hpp"
 
 namespace firmware {
 

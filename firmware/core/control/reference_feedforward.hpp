@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "firmware/core/discrete_drive.hpp"
+#include "firmware/core/control/discrete_drive.hpp"
 
 namespace firmware {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "firmware/core/jog_profile.hpp"
-#include "firmware/core/move_profile.hpp"
+#include "firmware/core/motion/jog_profile.hpp"
+#include "firmware/core/motion/move_profile.hpp"
 
 namespace firmware {
 

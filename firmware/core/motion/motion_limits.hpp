@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "firmware/core/count_position.hpp"
+#include "firmware/core/arithmetic/count_position.hpp"
 
 namespace firmware {
 

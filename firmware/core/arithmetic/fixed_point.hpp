@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "firmware/core/scalar.hpp"
+#include "firmware/core/arithmetic/scalar.hpp"
 
 namespace firmware {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "firmware/core/scalar.hpp"
+#include "firmware/core/arithmetic/scalar.hpp"
 
 namespace firmware {
 
