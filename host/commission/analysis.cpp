@@ -23,16 +23,6 @@ std::vector<std::string> paths(CommissionSession& session, const std::vector<std
   return all;
 }
 
-/// The axis may be left to itself while this lives.
-class Computing {
- public:
-  explicit Computing(CommissionSession& session) : session_(session) { session_.talk().computes(true); }
-  ~Computing() { session_.talk().computes(false); }
-
- private:
-  CommissionSession& session_;
-};
-
 std::string named(const DiagnosisVerdict& verdict) {
   return fmt::format("{}{}{}. {}", status_name(verdict.status), verdict.effects.empty() ? "" : ": ",
                      fmt::join(verdict.effects, verdict.status == Status::ambiguous ? " or " : " + "),

@@ -11,6 +11,7 @@
 #include "host/identify/friction_json.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/model/model_file.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/record/read_record.hpp"
 
 namespace host {
@@ -59,7 +60,7 @@ CommissionStepResult find_friction(CommissionSession& session) {
     session.folder().write_json("friction.json", friction_json(found));
     return {{"model.toml", "friction.json"},
             fmt::format("{} constant speeds decide the curve, to {:.2g} {}.", found.points.size(), found.fit.rms,
-                        found.model.data.kind == sim::DriveKind::rotary ? "Nm" : "N")};
+                        units_of(found.model.data.kind).effort)};
   } catch (const Failure& failure) {
     if (failure.code != ExitCode::refused) throw;
     write_model(rigid, session.folder().path("model.toml"));

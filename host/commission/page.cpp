@@ -9,6 +9,7 @@
 #include "host/commission/steps.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/compensation_parameters.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/binned_curve.hpp"
 #include "host/report/report.hpp"
@@ -116,7 +117,7 @@ void add_pictures(Report& report, const Page& page, const std::vector<std::pair<
   ScatterPlot along;
   along.title = "Following error along the travel";
   along.caption = "Mean in bins of the travel, with the spread from a tenth to nine tenths.";
-  along.x = {"travel", data.kind == sim::DriveKind::rotary ? "mm" : "m"};
+  along.x = {"travel", units_of(data.kind).travel};
   along.y = {"reference less encoder", "µm"};
   TimePlot over;
   over.title = "Following error over time";

@@ -46,23 +46,34 @@ class Separation {
   }
 
   CommissionStepResult run() {
-    session_.talk().computes(true);
-    rivals_ = rivals_of(diagnose(model_, measured_), all_);
-    session_.talk().computes(false);
+    find_rivals();
     if (rivals_.size() < 2) return {{}, "Nothing is left to separate."};
     for (std::size_t round = 0; round < kMostRuns && rivals_.size() > 1 && make_one(round);) ++round;
     return {files_, said_};
   }
 
  private:
+  void find_rivals() {
+    const Computing computing(session_);
+    rivals_ = rivals_of(diagnose(model_, measured_), all_);
+  }
+
+  Plan planned(const ExcitationLimits& box) const {
+    const Computing computing(session_);
+    return plan_run(model_, all_, rivals_, box);
+  }
+
+  Decision decided(const Plan& plan, const Record& made) const {
+    const Computing computing(session_);
+    return decide(plan.rivals, all_, made);
+  }
+
   /// Whether a run was made.
   bool make_one(std::size_t round) {
     CommissionFolder& folder = session_.folder();
     ExcitationLimits box = session_.options().box;
     box.time_s = std::min(kLongestRun_s, box.time_s - session_.motion_s());
-    session_.talk().computes(true);
-    const Plan plan = plan_run(model_, all_, rivals_, box);
-    session_.talk().computes(false);
+    const Plan plan = planned(box);
     const std::string run_file = fmt::format("run-{}.toml", round + 1), record = fmt::format("run-{}.csv", round + 1);
     folder.write_json(fmt::format("plan-{}.json", round + 1), to_json(plan, run_file));
     files_.push_back(fmt::format("plan-{}.json", round + 1));
@@ -80,9 +91,7 @@ class Separation {
 
   void decide_by(Record made, const Plan& plan, std::size_t round) {
     CommissionFolder& folder = session_.folder();
-    session_.talk().computes(true);
-    const Decision decision = decide(plan.rivals, all_, made);
-    session_.talk().computes(false);
+    const Decision decision = decided(plan, made);
     runs_.push_back(std::move(made));
     all_.push_back(&runs_.back());
     folder.write_json(fmt::format("decision-{}.json", round + 1), to_json(decision));

@@ -112,4 +112,16 @@ class CommissionSession {
   double motion_s_ = 0.0;
 };
 
+/// Work while which the axis stands disabled and nobody asks whether to stop; as long as this lives.
+class Computing {
+ public:
+  explicit Computing(const CommissionSession& session) : talk_(session.talk()) { talk_.computes(true); }
+  ~Computing() { talk_.computes(false); }
+  Computing(const Computing&) = delete;
+  Computing& operator=(const Computing&) = delete;
+
+ private:
+  const CommissionTalk& talk_;
+};
+
 }  // namespace host

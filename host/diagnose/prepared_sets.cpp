@@ -120,9 +120,9 @@ KeptBack hold_back(RecordSet& training, RecordSet& validation) {
   return kept;
 }
 
-RecordSet together(const RecordSet& training, const RecordSet& validation) {
-  RecordSet all = training;
-  all.records.insert(all.records.end(), validation.records.begin(), validation.records.end());
+RecordSet together(const RecordSet& a, const RecordSet& b) {
+  RecordSet all = a;
+  all.records.insert(all.records.end(), b.records.begin(), b.records.end());
   return all;
 }
 

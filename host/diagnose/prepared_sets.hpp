@@ -45,8 +45,9 @@ double missing_motion_s(const PreparedSets& sets);
 /// far as the smoothing of a restart reaches.
 KeptBack hold_back(RecordSet& training, RecordSet& validation);
 
-/// Of all records: what recurs along the travel stands out more from several, what happened once stands out less.
-RecordSet together(const RecordSet& training, const RecordSet& validation);
+/// Both sets as one, each with its floors: what recurs along the travel stands out more from several records, what
+/// happened once stands out less.
+RecordSet together(const RecordSet& a, const RecordSet& b);
 
 /// The sets with the floors of the model as it was given, which stays the base. Throws as prepare_sets() does.
 PreparedSets split_sets(const sim::DriveDescription& model, const std::vector<const Record*>& training,

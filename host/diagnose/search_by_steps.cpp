@@ -34,13 +34,14 @@ std::vector<Candidate> without_what_is_needless(const Candidate& triple, const P
   constexpr double kAsGood = 1.1;
   constexpr FitOptions kFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
   std::vector<Candidate> found;
+  const Errors with(triple.model, sets);
   for (std::size_t k = 0; k + 1 < triple.kinds.size(); ++k) {
     sim::DriveDescription model = triple.model;
     std::vector<std::string> kinds = triple.kinds;
     std::erase_if(model.effects, [&](const sim::EffectEntry& entry) { return entry.kind == triple.kinds[k]; });
     kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(k));
     model = fit_model(model, sets.training, kFit).model;
-    const Errors without(model, sets), with(triple.model, sets);
+    const Errors without(model, sets);
     if (without.training < kAsGood * with.training && without.validation < kAsGood * with.validation)
       found.push_back(judged(kinds, model, sets.base, sets.training, sets.validation));
   }

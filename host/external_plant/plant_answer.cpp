@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/exit_codes.hpp"
+#include "host/record/number.hpp"
 
 namespace host {
 
@@ -31,12 +32,8 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 
 /// Nothing where `text` as a whole is no finite number within bounds.
 std::optional<double> number(std::string_view text) {
-  double value = 0.0;
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!(std::abs(value) <= kMostOfPlant)) return std::nullopt;
-  return value;
+  const std::optional<double> value = parse_number(text);
+  return value && std::abs(*value) <= kMostOfPlant ? value : std::nullopt;
 }
 
 }  // namespace

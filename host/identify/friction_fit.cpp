@@ -8,6 +8,7 @@
 #include <set>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/dense_matrix.hpp"
 #include "host/identify/least_squares.hpp"
 
 namespace host {
@@ -124,13 +125,7 @@ Candidate solve_from(const std::vector<CurvePoint>& points, const std::vector<do
   double half = 0.0;
   problem.Evaluate({}, &half, &residuals, nullptr, &sparse);
   candidate.cost = 2.0 * half;
-  candidate.jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
-  for (int row = 0; row < sparse.num_rows; ++row) {
-    for (int at = sparse.rows[static_cast<std::size_t>(row)]; at < sparse.rows[static_cast<std::size_t>(row) + 1];
-         ++at) {
-      candidate.jacobian(row, sparse.cols[static_cast<std::size_t>(at)]) = sparse.values[static_cast<std::size_t>(at)];
-    }
-  }
+  candidate.jacobian = dense_matrix(sparse);
   return candidate;
 }
 

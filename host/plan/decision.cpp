@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "host/diagnose/parallel.hpp"
+#include "host/diagnose/prepared_sets.hpp"
 
 namespace host {
 
@@ -32,7 +33,7 @@ Decision decide(const std::vector<Rival>& rivals, const std::vector<const Record
 }
 
 Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, const RecordSet& run) {
-  RecordSet both = joined(ground, run);
+  RecordSet both = together(ground, run);
   both.common_square = std::max(ground.common_square, run.common_square);
   RecordSet before = ground;
   before.common_square = both.common_square;

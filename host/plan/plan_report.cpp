@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/record/drive_units.hpp"
 #include "host/report/report.hpp"
 
 namespace host {
@@ -62,8 +63,8 @@ void add_parting(Report& report, const Plan& plan, const PairOutlook& pair) {
       "parameters bent to it as far as the records before allow.",
       truth, other);
   plot.t_s = run.record.t_s;
-  const bool rotary = run.record.kind == sim::DriveKind::rotary;
-  const std::string unit = by_speed ? (rotary ? "rad/s" : "m/s") : (rotary ? "mm" : "m");
+  const DriveUnits units = units_of(run.record.kind);
+  const std::string unit = by_speed ? units.speed : units.travel;
   plot.panels.push_back({"command", "V", {{"command", SeriesRole::other, run.record.u_V}}});
   plot.panels.push_back({by_speed ? "speed" : "position", unit, {{"run", SeriesRole::measured, measured}}});
   TracePanel left{by_speed ? "speed left" : "position left", unit, {}};

@@ -120,12 +120,6 @@ RecordSet part_of(const RecordSet& set, std::size_t begin, std::size_t end) {
   return part;
 }
 
-RecordSet joined(const RecordSet& a, const RecordSet& b) {
-  RecordSet both = a;
-  both.records.insert(both.records.end(), b.records.begin(), b.records.end());
-  return both;
-}
-
 double chi_scale(const RecordSet& set) {
   double count = 0.0;
   for (const ComparedRecord& compared : set.records)

@@ -37,9 +37,6 @@ RecordSet common_ground(const std::vector<const Record*>& records, const std::ve
 /// A set that holds the records from `begin` to before `end` only.
 RecordSet part_of(const RecordSet& set, std::size_t begin, std::size_t end);
 
-/// Both sets as one, each with its floors.
-RecordSet joined(const RecordSet& a, const RecordSet& b);
-
 /// Sum over windows and channels of squared error over squared floor, as a fit weighs it: each window of 0.1 s counts
 /// as one observation, since errors within it are alike. Where even good models stay far above the floors, over what is
 /// common there.

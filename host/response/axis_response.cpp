@@ -33,8 +33,7 @@ json plant_json(const FrequencyResponse& response, Eigen::Index channel) {
     half_width.push_back(half_width_95(line, Eigen::Vector2cd::Unit(channel)));
   }
   json plant = complex_json(values, half_width);
-  const bool is_rotary = response.kind == sim::DriveKind::rotary;
-  plant["unit"] = channel == 0 ? (is_rotary ? "mm/V" : "m/V") : (is_rotary ? "rad/s/V" : "m/s/V");
+  plant["unit"] = plant_unit(response, channel);
   return plant;
 }
 

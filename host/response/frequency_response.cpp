@@ -9,6 +9,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/identify/least_squares.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/response/periodic_run.hpp"
 #include "host/response/robust_method.hpp"
 #include "host/response/welch_method.hpp"
@@ -104,6 +105,11 @@ void analyse_arbitrary(const std::vector<Record>& records, FrequencyResponse& re
 }
 
 }  // namespace
+
+std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel) {
+  const DriveUnits units = units_of(response.kind);
+  return fmt::format("{}/V", channel == 0 ? units.travel : units.speed);
+}
 
 double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights) {
   const std::complex<double> power = weights.transpose() * line.covariance * weights.conjugate();

@@ -41,6 +41,9 @@ struct FrequencyResponse {
   Eigen::Index channel() const { return has_position ? 0 : 1; }
 };
 
+/// Of the plant in a channel: "mm/V", "rad/s/V".
+std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel);
+
 /// Half width of a 95 % interval of the real part, the imaginary part or the magnitude of weights' * plant, where
 /// `weights` are taken as known: Student's factor times the standard deviation of one part.
 double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/dense_matrix.hpp"
 #include "host/identify/least_squares.hpp"
 
 namespace host {
@@ -153,10 +154,7 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, int iterat
   if (iterations < kIterations) return found;
   ceres::CRSMatrix sparse;
   problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
-  for (int row = 0; row < sparse.num_rows; ++row)
-    for (int at = sparse.rows[static_cast<std::size_t>(row)]; at < sparse.rows[static_cast<std::size_t>(row) + 1]; ++at)
-      jacobian(row, sparse.cols[static_cast<std::size_t>(at)]) = sparse.values[static_cast<std::size_t>(at)];
+  const Eigen::MatrixXd jacobian = dense_matrix(sparse);
   found.covariance = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
   return found;
 }

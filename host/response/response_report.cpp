@@ -89,11 +89,6 @@ Curve plant_curve(const FrequencyResponse& response, Eigen::Index channel, const
   return curve;
 }
 
-const char* unit_of(const FrequencyResponse& response, Eigen::Index channel) {
-  const bool is_rotary = response.kind == sim::DriveKind::rotary;
-  return channel == 0 ? (is_rotary ? "mm/V" : "m/V") : (is_rotary ? "rad/s/V" : "m/s/V");
-}
-
 ScatterSeries level(const FrequencyResponse& response, const std::string& name, SeriesRole role,
                     double ResponseLine::*value) {
   ScatterSeries series{name, role, SeriesStyle::line, {}, {}, {}, {}};
@@ -138,7 +133,7 @@ void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* bef
           "of all beyond noise (friction, backlash).";
     }
     report.add(over_frequency(capitalised(name) + ", magnitude", caption,
-                              {name, fmt::format("dB {}", unit_of(response, channel))}, std::move(magnitudes)));
+                              {name, fmt::format("dB {}", plant_unit(response, channel))}, std::move(magnitudes)));
     report.add(over_frequency(capitalised(name) + ", phase", "", {"phase", "degrees"}, std::move(phases)));
   }
   if (response.method == FrequencyResponse::Method::welch)
