@@ -8,6 +8,7 @@
 #include "firmware/app/parameters/axis_values.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/motion_consent.hpp"
 #include "host/model/model_file.hpp"
@@ -41,22 +42,17 @@ bool names_an_axis(const BodeArguments& arguments) {
          std::ranges::find(firmware::kAxisNames, arguments.what.front()) != firmware::kAxisNames.end();
 }
 
-/// Of a file of parameters for one axis, on top of `values`.
-firmware::ParameterValues with_file(firmware::ParameterValues values, const std::string& path,
-                                    const std::string& axis) {
-  for (const host::Assignment& one : host::read_parameter_file(path, axis)) host::put(values, one);
-  return values;
-}
-
 Controlled controlled_by_files(const BodeArguments& arguments) {
   Controlled found;
   if (!arguments.model.empty()) {
     found.model = host::read_model(arguments.model);
     found.controller = host::designed_parameters(*found.model, host::design_axis(*found.model, {}));
   }
-  if (!arguments.parameters.empty())
-    found.controller =
-        firmware::axis_parameters<float>(with_file(firmware::ParameterValues(), arguments.parameters, "x").axis(0));
+  if (!arguments.parameters.empty()) {
+    firmware::ParameterValues values;
+    host::put_file(values, arguments.parameters, "x");
+    found.controller = firmware::axis_parameters<float>(values.axis(0));
+  }
   return found;
 }
 
@@ -81,7 +77,7 @@ std::vector<host::Record> measure(const BodeArguments& arguments, Controlled& fo
   const std::string& name = arguments.what.front();
   const std::uint8_t axis = axis_index(name, board.axis_count());
   firmware::ParameterValues values = board.read_values();
-  if (!arguments.parameters.empty()) values = with_file(std::move(values), arguments.parameters, name);
+  if (!arguments.parameters.empty()) host::put_file(values, arguments.parameters, name);
   if (!values.axis(axis).get<"drive.fitted">())
     throw host::Failure(host::ExitCode::refused,
                         fmt::format("axis {} has no controller yet: `axistool design MODEL -o PARAMS`, then `axistool "

@@ -1,13 +1,12 @@
 // axistool commission: from an unknown axis to one that follows better, in one command.
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/commission/commission.hpp"
 #include "host/external_plant/external_plant.hpp"
@@ -25,14 +24,6 @@ struct CommissionArguments : DeviceArguments {
   std::uint64_t seed = 1;
   bool save = false;
 };
-
-std::atomic<bool> interrupted = false;
-
-void watch_for_interrupt(bool watch) {
-  const auto handler = watch ? [](int) { interrupted = true; } : SIG_DFL;
-  std::signal(SIGINT, handler);
-  std::signal(SIGTERM, handler);
-}
 
 /// One axis, behind the board's own protocol.
 host::BoardClient board_of(const CommissionArguments& arguments, const sim::DriveDescription& machine,
@@ -117,14 +108,14 @@ void run(const CommissionArguments& arguments) {
     require_consent(arguments, question);
     return true;
   };
-  talk.stop = [] { return interrupted.load(); };
-  talk.computes = [](bool computes) { watch_for_interrupt(!computes); };
+  talk.stop = interrupted;
+  talk.computes = [](bool computes) { computes ? release_interrupts() : catch_interrupts(); };
   if (talks(arguments))
     talk.tell = [](const std::string& text) {
       fmt::print("{}\n", text);
       std::fflush(stdout);
     };
-  watch_for_interrupt(true);
+  catch_interrupts();
   host::commission_axis(board, options, talk, folder, from, to);
   if (!arguments.json.empty()) write_json(folder.document(), arguments.json);
   if (talks(arguments) && folder.document()["page"].is_string())

@@ -7,6 +7,7 @@
 #include "firmware/core/excitation/excitation_run.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/motion_consent.hpp"
 #include "host/axistool/parameter_commands.hpp"
@@ -55,19 +56,11 @@ firmware::ParameterValues scaled_values(const ExciteArguments& arguments, host::
 
 host::ExcitationScale scale_of(const ExciteArguments& arguments, const firmware::ParameterValues& values,
                                std::uint8_t axis, const std::optional<sim::DriveDescription>& drive) {
-  const firmware::AxisValues v = values.axis(axis);
-  host::ExcitationScale scale;
-  scale.kind = drive ? drive->data.kind : arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
-  scale.encoder_resolution = static_cast<double>(v.get<"drive.encoder_resolution">());
-  scale.dac_resolution_V = static_cast<double>(v.get<"drive.dac_resolution">());
-  scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
-  const bool knows_lead = drive || v.get<"drive.fitted">();
-  scale.lead = knows_lead ? static_cast<double>(v.get<"drive.lead">()) : 0.0;
-  scale.has_tachometer = v.get<"tachometer.fitted">();
-  if (v.get<"drive.fitted">()) {
-    scale.acceleration = static_cast<double>(v.get<"limits.acceleration">());
-    scale.jerk = static_cast<double>(v.get<"limits.jerk">());
-  }
+  host::ExcitationScale scale = host::excitation_scale(values, axis,
+                                                       drive              ? drive->data.kind
+                                                       : arguments.linear ? sim::DriveKind::linear
+                                                                          : sim::DriveKind::rotary);
+  if (drive) scale.lead = static_cast<double>(values.axis(axis).get<"drive.lead">());
   return scale;
 }
 

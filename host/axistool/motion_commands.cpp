@@ -1,13 +1,12 @@
 // axistool enable, disable, jog, move: a board's axes in motion.
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <memory>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/motion.hpp"
 
@@ -21,16 +20,6 @@ struct MotionArguments : DeviceArguments {
   double value = 0.0, duration_s = 1.0;
   bool relative = false, take_over = false, here = false;
 };
-
-std::atomic<bool> interrupted = false;
-
-/// Ctrl-C slows the axis down instead of leaving it to the board's time-out.
-void catch_interrupts() {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
-}
-
-bool is_interrupted() { return interrupted; }
 
 double position_of(host::BoardClient& board, std::uint8_t axis, const firmware::ParameterValues& values) {
   const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
@@ -74,14 +63,15 @@ void jog(const MotionArguments& arguments) {
   catch_interrupts();
   if (!arguments.dry_run && arguments.take_over) board.take_over();
   if (!arguments.dry_run)
-    host::jog_for(board, axis, arguments.value, std::chrono::duration<double>(arguments.duration_s), is_interrupted);
+    host::jog_for(board, axis, arguments.value, std::chrono::duration<double>(arguments.duration_s), interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "jog", {{"axis", arguments.axis}, {"from", before}, {"to", after}});
   if (!talks(arguments)) return;
   if (arguments.dry_run)
     fmt::print("would jog {} at {:g} for {:g} s\n", arguments.axis, arguments.value, arguments.duration_s);
   else
-    fmt::print("{} went from {:.4f} to {:.4f}{}\n", arguments.axis, before, after, interrupted ? " (interrupted)" : "");
+    fmt::print("{} went from {:.4f} to {:.4f}{}\n", arguments.axis, before, after,
+               interrupted() ? " (interrupted)" : "");
 }
 
 void move(const MotionArguments& arguments) {
@@ -98,12 +88,12 @@ void move(const MotionArguments& arguments) {
   if (!arguments.dry_run && arguments.take_over) board.take_over();
   const double way = arguments.relative ? arguments.value : target;
   if (!arguments.dry_run)
-    host::move_and_wait(board, axis, std::llround(way / resolution), arguments.relative, is_interrupted);
+    host::move_and_wait(board, axis, std::llround(way / resolution), arguments.relative, interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
   if (!talks(arguments)) return;
   fmt::print("{} {} {:.4f} from {:.4f}{}\n", arguments.axis, arguments.dry_run ? "would move to" : "is at",
-             arguments.dry_run ? target : after, before, interrupted ? " (interrupted)" : "");
+             arguments.dry_run ? target : after, before, interrupted() ? " (interrupted)" : "");
 }
 
 void add_take_over(CLI::App& command, MotionArguments& arguments) {
@@ -121,7 +111,7 @@ void home(const MotionArguments& arguments) {
     if (arguments.here)
       board.home(axis, true);
     else
-      host::home_and_wait(board, axis, is_interrupted);
+      host::home_and_wait(board, axis, interrupted);
   }
   const bool homed = (board.status().axis.at(axis).flags & firmware::kAxisHomed) != 0;
   const double at = position_of(board, axis, values);

@@ -123,7 +123,7 @@ ParameterValues with_changes(ParameterValues values, const std::vector<std::stri
     if (source.find('=') != std::string::npos && !source.ends_with(".toml")) {
       host::put(values, host::parse_assignment(source));
     } else {
-      for (const host::Assignment& one : host::read_parameter_file(source, axis)) host::put(values, one);
+      host::put_file(values, source, axis);
     }
   }
   return values;

@@ -12,6 +12,7 @@
 #include "firmware/core/path/path_follower.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/motion.hpp"
 #include "host/device/path_run.hpp"
@@ -36,12 +37,11 @@ struct RunArguments : DeviceArguments {
   bool here = false;
 };
 
-std::atomic<bool> interrupted = false, held = false;
+std::atomic<bool> held = false;
 
 /// Ctrl-Z holds the feed and lets it go again; a terminal's other ways of stopping a program end the path.
 void catch_signals() {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  catch_interrupts();
   std::signal(SIGTSTP, [](int) { held = !held; });
 }
 
@@ -207,8 +207,7 @@ std::optional<host::BoardClient> board_of(const RunArguments& arguments) {
 
 firmware::ParameterValues values_without_board(const RunArguments& arguments) {
   firmware::ParameterValues values{hal::kAxisCount};
-  for (const std::string& file : arguments.params)
-    for (const host::Assignment& one : host::read_parameter_file(file)) host::put(values, one);
+  for (const std::string& file : arguments.params) host::put_file(values, file);
   if (talks(arguments))
     fmt::print("no board asked: {}\n", arguments.params.empty()
                                            ? "against the limits that a new board has; --params FILE gives others"
@@ -259,7 +258,7 @@ void run(const RunArguments& arguments) {
     outcome = host::run_path(board, planned.path, machine, relative, true, [&](const host::PathProgress& progress) {
       signals.let_in();
       line.draw(progress, held);
-      return host::PathWish{held, interrupted, static_cast<int>(std::lround(arguments.feed_percent * 10.0))};
+      return host::PathWish{held, interrupted(), static_cast<int>(std::lround(arguments.feed_percent * 10.0))};
     });
   }
   if (!was_enabled) host::disable_and_wait(board, mask);

@@ -17,6 +17,7 @@
 #include "host/parameters/data_sheet_values.hpp"
 #include "host/parameters/parameter_file.hpp"
 #include "host/parameters/parameter_names.hpp"
+#include "host/record/drive_units.hpp"
 #include "host/record/read_record.hpp"
 
 namespace host {
@@ -52,7 +53,7 @@ double CommissionSession::top_speed() const {
 
 void CommissionSession::ask(const std::string& what) {
   const ExcitationLimits& box = options_.box;
-  const char* unit = options_.sheet.data.kind == sim::DriveKind::rotary ? "mm" : "m";
+  const char* unit = units_of(options_.sheet.data.kind).travel;
   const std::string question = fmt::format(
       "{} Axis {} moves, at most {:g} {} to either side of where it stood, {:g} {}/s, {:g} V; {:.0f} s of "
       "{:g} s of motion are left. Go on?",
@@ -61,18 +62,11 @@ void CommissionSession::ask(const std::string& what) {
 }
 
 ExcitationScale CommissionSession::scale(const firmware::ParameterValues& values) const {
-  const firmware::AxisValues v = values.axis(options_.axis);
-  ExcitationScale scale;
-  scale.kind = options_.sheet.data.kind;
-  scale.encoder_resolution = options_.sheet.data.encoder_resolution;
-  scale.dac_resolution_V = options_.sheet.data.dac_resolution_V;
-  scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
-  scale.lead = options_.sheet.data.lead;
-  scale.has_tachometer = v.get<"tachometer.fitted">();
-  if (v.get<"drive.fitted">()) {
-    scale.acceleration = static_cast<double>(v.get<"limits.acceleration">());
-    scale.jerk = static_cast<double>(v.get<"limits.jerk">());
-  }
+  const sim::DataSheet& sheet = options_.sheet.data;
+  ExcitationScale scale = excitation_scale(values, options_.axis, sheet.kind);
+  scale.encoder_resolution = sheet.encoder_resolution;
+  scale.dac_resolution_V = sheet.dac_resolution_V;
+  scale.lead = sheet.lead;
   return scale;
 }
 
@@ -187,7 +181,7 @@ void CommissionSession::require_completed(const ExcitationOutcome& outcome, cons
 
 firmware::ParameterValues CommissionSession::with_file(const std::string& path) {
   firmware::ParameterValues values = board_.read_values();
-  for (const Assignment& one : read_parameter_file(path)) put(values, one);
+  put_file(values, path);
   return values;
 }
 

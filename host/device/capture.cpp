@@ -52,7 +52,7 @@ class CaptureRun {
     if (!settings_.jogs.empty()) board_.stop();
     if (settings_.trigger) capture_.trigger_s = (trigger_number_ - capture_.number.front()) * capture_.row_period_s;
     capture_.dropped_by_board = board_.stop_capture().dropped;
-    capture_.lost = lost_rows(capture_);
+    capture_.lost = lost_rows(capture_.number);
     return std::move(capture_);
   }
 
@@ -188,9 +188,9 @@ void append_row(Capture& capture, const std::vector<firmware::Channel>& channels
   }
 }
 
-std::size_t lost_rows(const Capture& capture) {
+std::size_t lost_rows(const std::vector<std::uint32_t>& numbers) {
   std::size_t lost = 0;
-  for (std::size_t i = 1; i < capture.number.size(); ++i) lost += capture.number[i] - capture.number[i - 1] - 1;
+  for (std::size_t i = 1; i < numbers.size(); ++i) lost += numbers[i] - numbers[i - 1] - 1;
   return lost;
 }
 

@@ -56,8 +56,8 @@ std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels);
 void append_row(Capture& capture, const std::vector<firmware::Channel>& channels, ChannelScale& scale,
                 std::uint32_t number, const std::uint32_t* words);
 
-/// Rows that are missing between the first and the last.
-std::size_t lost_rows(const Capture& capture);
+/// Of rows by their numbers: how many are missing between the first and the last.
+std::size_t lost_rows(const std::vector<std::uint32_t>& numbers);
 
 /// Runs a capture. `progress` is told the rows so far. Throws Failure: time_out (no trigger), what BoardClient throws,
 /// device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and the board to end

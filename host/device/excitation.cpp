@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 #include "host/device/motion.hpp"
@@ -51,6 +52,22 @@ class Rows {
 };
 
 }  // namespace
+
+ExcitationScale excitation_scale(const firmware::ParameterValues& values, std::uint8_t axis, sim::DriveKind kind) {
+  const firmware::AxisValues v = values.axis(axis);
+  ExcitationScale scale;
+  scale.kind = kind;
+  scale.encoder_resolution = static_cast<double>(v.get<"drive.encoder_resolution">());
+  scale.dac_resolution_V = static_cast<double>(v.get<"drive.dac_resolution">());
+  scale.rate_Hz = static_cast<double>(values.get<"control.rate">());
+  scale.has_tachometer = v.get<"tachometer.fitted">();
+  if (v.get<"drive.fitted">()) {
+    scale.lead = static_cast<double>(v.get<"drive.lead">());
+    scale.acceleration = static_cast<double>(v.get<"limits.acceleration">());
+    scale.jerk = static_cast<double>(v.get<"limits.jerk">());
+  }
+  return scale;
+}
 
 std::vector<firmware::ExcitationEntriesRequest> entry_requests(const Excitation& excitation, std::uint8_t axis) {
   std::vector<firmware::ExcitationEntriesRequest> parts;
@@ -186,7 +203,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
       if (++index < count) rest();
     outcome.capture.dropped_by_board = board.stop_capture().dropped;
     while (rows.fetch(milliseconds(50))) continue;
-    outcome.capture.lost = lost_rows(outcome.capture);
+    outcome.capture.lost = lost_rows(outcome.capture.number);
   } catch (const Failure&) {
     try {
       board.stop_excitation();

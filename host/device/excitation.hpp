@@ -45,6 +45,9 @@ struct ExcitationScale {
   double acceleration = 0.0, jerk = 0.0;  ///< limits of references, mm/s^2, mm/s^3 (m); of a closed loop
 };
 
+/// As the board's parameters say; of an axis that is not fitted, neither lead nor limits.
+ExcitationScale excitation_scale(const firmware::ParameterValues& values, std::uint8_t axis, sim::DriveKind kind);
+
 struct Excitation {
   firmware::ExcitationRequest request;
   std::vector<firmware::ExcitationEntriesRequest::Entry> entries;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "firmware/core/path/path_follower.hpp"
+#include "host/device/capture.hpp"
 #include "host/device/capture_channels.hpp"
 #include "host/exit_codes.hpp"
 
@@ -86,13 +87,9 @@ class Rows {
   bool fetch(milliseconds patience) {
     const auto samples = board_.next_samples(patience);
     if (!samples) return false;
-    const std::size_t words = request_.words();
-    if (samples->words.size() % words != 0)
-      throw Failure(ExitCode::protocol, "the board sends rows of another length than was asked for");
-    for (std::size_t row = 0; row * words < samples->words.size(); ++row) {
-      const std::uint32_t number = samples->first_row + static_cast<std::uint32_t>(row);
-      if (!capture_.number.empty()) capture_.lost += number - capture_.number.back() - 1;
-      capture_.number.push_back(number);
+    const std::size_t words = request_.words(), rows = rows_in(*samples, words);
+    for (std::size_t row = 0; row < rows; ++row) {
+      capture_.number.push_back(samples->first_row + static_cast<std::uint32_t>(row));
       const std::uint32_t* word = samples->words.data() + row * words;
       for (const std::size_t i : order_) {
         if (i == first_) capture_.u_V.push_back(scales_[i](Channel::dac_code, *word++));
@@ -234,6 +231,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
       }
       outcome.capture.dropped_by_board = board.stop_capture().dropped;
       while (rows->fetch(milliseconds(50))) continue;
+      outcome.capture.lost = lost_rows(outcome.capture.number);
     }
   } catch (const Failure&) {
     try {

@@ -110,6 +110,10 @@ std::vector<Assignment> read_parameter_file(const std::string& path, std::string
   return parse_parameter_text(read_file(path), path, axis);
 }
 
+void put_file(firmware::ParameterValues& values, const std::string& path, std::string_view axis) {
+  for (const Assignment& one : read_parameter_file(path, axis)) put(values, one);
+}
+
 Assignment parse_assignment(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos)

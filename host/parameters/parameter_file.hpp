@@ -28,6 +28,9 @@ Assignment parse_assignment(std::string_view text);
 /// Throws Failure(bad_input) for an axis that the board does not have.
 void put(firmware::ParameterValues& values, const Assignment& one);
 
+/// The same for all that a file assigns. Throws what read_parameter_file() does, too.
+void put_file(firmware::ParameterValues& values, const std::string& path, std::string_view axis = {});
+
 /// Throws Failure(bad_input) naming what is wrong with the set as a whole, as far as the host can tell.
 void require_fitting_set(const firmware::ParameterValues& values);
 

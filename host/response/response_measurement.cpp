@@ -180,18 +180,6 @@ std::vector<Excitation> plan_resonance(const ResponsePlan& plan, double f_Hz, co
   return Planner(plan, scale, parameters).about(f_Hz);
 }
 
-ExcitationScale excitation_scale(const firmware::ParameterValues& values, std::uint8_t axis, sim::DriveKind kind) {
-  const firmware::AxisValues v = values.axis(axis);
-  return {kind,
-          static_cast<double>(v.get<"drive.encoder_resolution">()),
-          static_cast<double>(v.get<"drive.dac_resolution">()),
-          static_cast<double>(v.get<"drive.lead">()),
-          static_cast<double>(values.get<"control.rate">()),
-          v.get<"tachometer.fitted">(),
-          static_cast<double>(v.get<"limits.acceleration">()),
-          static_cast<double>(v.get<"limits.jerk">())};
-}
-
 void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector<Excitation>& runs,
                         const firmware::ParameterValues& values, const ExcitationScale& scale,
                         const std::function<bool()>& stop, std::vector<Record>& records,

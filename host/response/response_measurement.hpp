@@ -31,9 +31,6 @@ std::vector<Excitation> plan_response(const ResponsePlan& plan, const Excitation
 std::vector<Excitation> plan_resonance(const ResponsePlan& plan, double f_Hz, const ExcitationScale& scale,
                                        const firmware::AxisParameters<float>& parameters);
 
-/// The scales of an axis whose parameters a design has set.
-ExcitationScale excitation_scale(const firmware::ParameterValues& values, std::uint8_t axis, sim::DriveKind kind);
-
 /// Closes the loop if it is open, makes the runs and opens it again; appends their records as they come. Throws what
 /// run_excitation() throws, Failure(refused) where a run leaves the box or is interrupted, Failure(device_fault) with
 /// cause and remedy.
