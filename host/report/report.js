@@ -314,7 +314,7 @@
     if (plot.equal) equaliseScales(chart, plot);
   }
 
-  // A unit of x as long as a unit of y, the drawing in the middle.
+  // A unit of x as long as a unit of y: at first, with the drawing in the middle, and after every zoom, resize and reset.
   function equaliseScales(chart, plot) {
     const range = function (name) {
       const values = plot.series.flatMap((series) => series[name]).filter((value) => value !== null);
@@ -322,13 +322,22 @@
     };
     const x = range("x");
     const y = range("y");
-    const apply = function () {
+    const show = function (unit, horizontal, vertical) {
       const area = chart.getArea();
-      const unit = 1.08 * Math.max((x[1] - x[0]) / area.w, (y[1] - y[0]) / area.h);
       const about = (r, pixels) => [(r[0] + r[1] - unit * pixels) / 2, (r[0] + r[1] + unit * pixels) / 2];
-      chart.updateOptions({ dateWindow: about(x, area.w), valueRange: about(y, area.h) });
+      chart.updateOptions({ dateWindow: about(horizontal, area.w), valueRange: about(vertical, area.h) });
     };
-    new ResizeObserver(apply).observe(chart.graphDiv.parentElement); // after dygraphs' own, which was there first
+    const lengths = (horizontal, vertical) => [
+      (horizontal[1] - horizontal[0]) / chart.getArea().w,
+      (vertical[1] - vertical[0]) / chart.getArea().h,
+    ];
+    const whole = () => show(1.08 * Math.max(...lengths(x, y)), x, y);
+    // Dragging zooms one axis, which is the one with the shorter unit now; a reset forgets the window of x.
+    const zoomed = () => show(Math.min(...lengths(chart.xAxisRange(), chart.yAxisRange())), chart.xAxisRange(), chart.yAxisRange());
+    chart.updateOptions({ zoomCallback: () => (chart.isZoomed("x") ? zoomed() : whole()) });
+    whole();
+    const resized = () => (chart.resize(), whole()); // dygraphs itself hears of the window's size alone
+    new ResizeObserver(resized).observe(chart.graphDiv.parentElement);
   }
 
   JSON.parse(document.getElementById("plots").textContent).forEach(function (plot, index) {

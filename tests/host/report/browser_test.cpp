@@ -194,31 +194,22 @@ TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
   for (const nlohmann::json& chart : seen["pixels"]) EXPECT_GT(chart.back().get<int>(), 30) << seen["pixels"];
 }
 
-/// What a reader of a dark screen sees, and one who sees nothing hears; a unit of x as long as a unit of y.
+/// What a reader of a dark screen sees, and one who sees nothing hears.
 constexpr const char* dark_script = R"(
 <pre id="seen"></pre><script>
   const light = (colour) => colour.match(/[\d.]+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0) / 765;
-  const plane = axisCharts[1], area = plane.getArea(), x = plane.xAxisRange(), y = plane.yAxisRange();
   document.getElementById("seen").textContent = encodeURIComponent(JSON.stringify({
     ground: light(getComputedStyle(document.body).backgroundColor),
     figure: light(getComputedStyle(document.querySelector("figure")).backgroundColor),
     ink: light(getComputedStyle(document.body).color),
     measured: axisCharts[0].getColors()[0],
     spoken: document.querySelector("[role=img]").getAttribute("aria-label"),
-    scales: [(x[1] - x[0]) / area.w, (y[1] - y[0]) / area.h],
   }));
 </script></body>)";
 
 TEST_F(Browser, ADarkScreenGetsADarkPageThatTellsWhatItShows) {
   Report report("Dark");
   report.add(TimePlot{"", "", {0.0, 1.0}, {{"speed", "rad/s", {{"measured", SeriesRole::measured, {-2.0, 3.0}}}}}, {}});
-  ScatterPlot plane{"",
-                    "",
-                    {"x", "mm"},
-                    {"y", "mm"},
-                    {{"path", SeriesRole::model, SeriesStyle::points, {0, 70, 35}, {0, 0, 35}, {}, {}}}};
-  plane.equal_scales = true;
-  report.add(plane);
   const nlohmann::json seen = seen_in(visit(report.html(), dark_script, "--blink-settings=preferredColorScheme=0"));
   ASSERT_TRUE(seen.is_object()) << log_;
   EXPECT_LT(seen["ground"].get<double>(), 0.2);
@@ -226,7 +217,60 @@ TEST_F(Browser, ADarkScreenGetsADarkPageThatTellsWhatItShows) {
   EXPECT_GT(seen["ink"].get<double>(), 0.8);
   EXPECT_EQ(seen["measured"], "#b4c0cc") << "lines are lighter too";
   EXPECT_EQ(seen["spoken"], "speed [rad/s] over time: measured from -2 to 3");
-  EXPECT_NEAR(seen["scales"][0].get<double>(), seen["scales"][1].get<double>(), 1e-9);
+}
+
+/// The units of x and y a pixel: as drawn, zoomed by a drag along x, reset, and in a narrower place.
+constexpr const char* plane_script = R"(
+<pre id="seen"></pre><script>
+(async function () {
+  const plane = axisCharts[0], canvas = [...plane.graphDiv.querySelectorAll("canvas")].pop(), seen = [];
+  function look() {
+    const area = plane.getArea(), x = plane.xAxisRange(), y = plane.yAxisRange();
+    seen.push({ width: area.w, scales: [(x[1] - x[0]) / area.w, (y[1] - y[0]) / area.h], x: x, y: y });
+  }
+  function mouse(type, x) {
+    const box = canvas.getBoundingClientRect();
+    canvas.dispatchEvent(new MouseEvent(type, { bubbles: true, cancelable: true, view: window, button: 0,
+      clientX: box.left + x, clientY: box.top + 60 }));
+  }
+  look();
+  for (const [type, x] of [["mousedown", 140], ["mousemove", 160], ["mousemove", 190], ["mouseup", 190]]) mouse(type, x);
+  look();
+  for (const type of ["mousedown", "mouseup", "dblclick"]) mouse(type, 190);
+  look();
+  document.querySelector("main").style.width = "260px";
+  for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
+  look();
+  document.getElementById("seen").textContent = encodeURIComponent(JSON.stringify(seen));
+})();
+</script></body>)";
+
+TEST_F(Browser, APlaneKeepsAUnitOfXAsLongAsAUnitOfY) {
+  Report report("Plane");
+  ScatterPlot plane{"",
+                    "",
+                    {"x", "mm"},
+                    {"y", "mm"},
+                    {{"path", SeriesRole::model, SeriesStyle::points, {0, 70, 35}, {0, 0, 35}, {}, {}}}};
+  plane.equal_scales = true;
+  report.add(plane);
+  for (const char* screen : {"--window-size=1280,1000", "--window-size=390,844"}) {
+    SCOPED_TRACE(screen);
+    const nlohmann::json seen = seen_in(visit(report.html(), plane_script, screen));
+    EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
+    ASSERT_TRUE(seen.is_array()) << log_;
+    ASSERT_EQ(seen.size(), 4U);
+    for (const nlohmann::json& look : seen) {
+      EXPECT_NEAR(look["scales"][0].get<double>(), look["scales"][1].get<double>(), 1e-9) << seen.dump(1);
+    }
+    EXPECT_LT(seen[1]["scales"][0], seen[0]["scales"][0]) << "the drag magnifies";
+    EXPECT_EQ(seen[2], seen[0]) << "a double click shows the whole again";
+    EXPECT_LT(seen[3]["width"], seen[0]["width"]);
+    for (const nlohmann::json& look : {seen[0], seen[3]}) {
+      EXPECT_LT(look["x"][0], 0.0);
+      EXPECT_GT(look["x"][1], 70.0);
+    }
+  }
 }
 
 TEST_F(Browser, AnEmptyReportIsStillAPage) {
