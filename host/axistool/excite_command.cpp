@@ -12,6 +12,7 @@
 #include "host/axistool/motion_consent.hpp"
 #include "host/axistool/parameter_commands.hpp"
 #include "host/device/excitation.hpp"
+#include "host/device/excitation_end.hpp"
 #include "host/device/motion.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/data_sheet_values.hpp"
@@ -79,24 +80,6 @@ nlohmann::json document_of(const ExciteArguments& arguments, const host::Excitat
           {"dropped_by_board", outcome.capture.dropped_by_board}};
 }
 
-[[noreturn]] void fail_for_end(host::BoardClient& board, std::uint8_t axis, const ExciteArguments& arguments,
-                               const host::ExcitationOutcome& outcome) {
-  const auto end = static_cast<firmware::ExcitationEnd>(outcome.state.end);
-  if (end == firmware::ExcitationEnd::fault || end == firmware::ExcitationEnd::refused)
-    host::require_no_fault(board.status(), axis);
-  if (end == firmware::ExcitationEnd::no_motion)
-    throw host::Failure(host::ExitCode::refused,
-                        fmt::format("nothing moved under the largest command: free the axis, look at motor, amplifier "
-                                    "and encoder, or raise the volts of the box ({} holds what there is)",
-                                    arguments.output));
-  if (end == firmware::ExcitationEnd::travel || end == firmware::ExcitationEnd::speed)
-    throw host::Failure(host::ExitCode::refused,
-                        fmt::format("the axis {}, and was stopped: less volts, or a wider box ({} holds what there is)",
-                                    host::end_name(outcome.state), arguments.output));
-  throw host::Failure(host::ExitCode::answer_is_no, fmt::format("{} before its time ({} holds what there is)",
-                                                                host::end_name(outcome.state), arguments.output));
-}
-
 /// What is to be run: one excitation, or the pieces of a planned run.
 struct Programme {
   host::RunPlan run;
@@ -157,11 +140,7 @@ void run(const ExciteArguments& arguments) {
   if (talks(arguments))
     fmt::print("{}: {} rows in {}, {} lost\n", host::end_name(outcome.state), record.size(), arguments.output,
                outcome.capture.lost);
-  if (outcome.state.end != static_cast<std::uint8_t>(firmware::ExcitationEnd::completed))
-    fail_for_end(board, axis, arguments, outcome);
-  if (outcome.capture.lost > 0)
-    throw host::Failure(host::ExitCode::protocol,
-                        fmt::format("{} rows were lost; the record has gaps there", outcome.capture.lost));
+  host::require_completed(board, axis, outcome, arguments.output + " holds what there is");
 }
 
 std::string footer() {

@@ -9,6 +9,7 @@
 #include "firmware/app/parameters/axis_values.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
+#include "host/device/excitation_end.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 #include "host/response/axis_controller.hpp"
@@ -192,13 +193,7 @@ void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector
     record.header["source"] = "axistool bode";
     record.header.insert(runs[i].header.begin(), runs[i].header.end());
     record.header["excitation_ended"] = std::string(end_name(outcome.state));
-    if (outcome.state.end != static_cast<std::uint8_t>(firmware::ExcitationEnd::completed)) {
-      require_no_fault(board.status(), axis);
-      throw Failure(ExitCode::refused, fmt::format("run {} of {} ended early: {}; less volts, or a wider box", i + 1,
-                                                   runs.size(), end_name(outcome.state)));
-    }
-    if (outcome.capture.lost > 0)
-      throw Failure(ExitCode::protocol, fmt::format("{} rows of run {} were lost", outcome.capture.lost, i + 1));
+    require_completed(board, axis, outcome, fmt::format("run {} of {}", i + 1, runs.size()));
     records.push_back(std::move(record));
     if (progress) progress(i + 1, runs.size());
   }
