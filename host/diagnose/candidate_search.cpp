@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
@@ -191,6 +192,29 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 
 namespace {
 
+/// The model whose friction fades alike in both directions: jogs that an effect disturbs bend the fading of each
+/// direction by itself, and a fit does not find back from there. Empty where it does so already.
+std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescription& model) {
+  const sim::EffectEntry* stribeck = model.find("stribeck");
+  const sim::EffectEntry* coulomb = model.find("coulomb");
+  if (stribeck == nullptr || coulomb == nullptr || !stribeck->has("omega1_positive") || !coulomb->has("positive") ||
+      !stribeck->has("static_positive"))
+    return std::nullopt;
+  sim::DriveDescription even = model;
+  sim::EffectEntry& entry = *even.find("stribeck");
+  for (const char* omega : {"omega1", "omega2"}) {
+    const std::string positive = std::string(omega) + "_positive", negative = std::string(omega) + "_negative";
+    const double mean = std::sqrt(std::abs(entry.at(positive) * entry.at(negative)));
+    entry.parameters[positive] = mean;
+    entry.parameters[negative] = -mean;
+  }
+  const double above = 0.5 * (entry.at("static_positive") / coulomb->at("positive") +
+                              entry.at("static_negative") / coulomb->at("negative"));
+  entry.parameters["static_positive"] = above * coulomb->at("positive");
+  entry.parameters["static_negative"] = above * coulomb->at("negative");
+  return even;
+}
+
 /// Fits the last effect again from both sides of each of its parameters (a scan has looked there already): an effect
 /// that acts at breakaway or on impact leaves valleys side by side. All that from the base as it was given too, since a
 /// re-fit without the effect may have bent the base so far that it does not come back.
@@ -221,6 +245,8 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
     // And all together: a size and the time over which it grows may trade against each other.
     if (ids.size() > 1) start_from(ids, factor);
   }
+  for (const sim::DriveDescription& base : bases)
+    if (std::optional<sim::DriveDescription> even = with_even_fading(base)) starts.push_back(*std::move(even));
   std::vector<FitResult> fits(starts.size());
   for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], set, kSeriousFit); });
   return std::ranges::min_element(fits, {}, &FitResult::robust)->model;

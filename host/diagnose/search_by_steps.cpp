@@ -29,16 +29,17 @@ bool promises_a_third(const Errors& base, const Errors& pair) {
          explained_share(base.validation, pair.validation) > kMost;
 }
 
-/// A triple without each of its first two effects in turn: the third may have made one of them needless.
-std::vector<Candidate> without_what_is_needless(const Candidate& triple, const PreparedSets& sets) {
+/// Several effects without each of them in turn, fitted again from there. The last one may have made an earlier one
+/// needless; and the last one itself may have done no more than carry a fit out of a valley in which it was stuck.
+std::vector<Candidate> without_what_is_needless(const Candidate& whole, const PreparedSets& sets) {
   constexpr double kAsGood = 1.1;
   constexpr FitOptions kFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
   std::vector<Candidate> found;
-  const Errors with(triple.model, sets);
-  for (std::size_t k = 0; k + 1 < triple.kinds.size(); ++k) {
-    sim::DriveDescription model = triple.model;
-    std::vector<std::string> kinds = triple.kinds;
-    std::erase_if(model.effects, [&](const sim::EffectEntry& entry) { return entry.kind == triple.kinds[k]; });
+  const Errors with(whole.model, sets);
+  for (std::size_t k = 0; k < whole.kinds.size(); ++k) {
+    sim::DriveDescription model = whole.model;
+    std::vector<std::string> kinds = whole.kinds;
+    std::erase_if(model.effects, [&](const sim::EffectEntry& entry) { return entry.kind == whole.kinds[k]; });
     kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(k));
     model = fit_model(model, sets.training, kFit).model;
     const Errors without(model, sets);
@@ -78,6 +79,17 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto pair = std::ranges::min_element(found.pairs, {}, cost);
   if (pair == found.pairs.end() || !is_physical(*pair)) return found;
   renew(pair->model);
+  if (std::vector<Candidate> shorter = without_what_is_needless(*pair, sets); !shorter.empty()) {
+    for (Candidate& better : shorter) {
+      std::erase_if(found.singles, [&](const Candidate& stuck) { return stuck.kinds == better.kinds; });
+      found.singles.push_back(std::move(better));
+    }
+    std::ranges::stable_sort(found.singles, {}, &Candidate::left);
+    if (Errors(found.singles.front().model, sets).validation <= kExplained) {
+      found.pairs.clear();
+      return found;
+    }
+  }
   if (!promises_a_third(Errors(sets.base, sets), Errors(pair->model, sets))) return found;
   found.triples = on_top_of(*pair, 0.8, 1.0);
   const auto triple = std::ranges::find_if(found.triples, is_physical);
