@@ -1,7 +1,9 @@
 // axistool commission: from an unknown axis to one that follows better, in one command.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "host/axistool/commands.hpp"
@@ -13,24 +15,36 @@
 #include "host/model/model_file.hpp"
 #include "host/shipped_files.hpp"
 #include "host/simulated_board/simulated_link.hpp"
+#include "host/simulated_board/usual_wiring.hpp"
 
 namespace axistool {
 
 namespace {
 
 struct CommissionArguments : DeviceArguments {
-  std::string axis, model, plant, drive, folder, box, from, to;
-  double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz;
+  std::string axis, model, plant, drive, folder, box, home, from, to;
+  double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz, modulus = host::CommissionOptions{}.modulus;
   std::uint64_t seed = 1;
   bool save = false;
 };
 
+bool is_simulated(const CommissionArguments& arguments) { return !arguments.model.empty() || !arguments.plant.empty(); }
+
+/// A home switch within the box.
+hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
+  const double usual = options.sheet.data.kind == sim::DriveKind::rotary ? 25.0 : 0.025;
+  return host::usual_wiring(options.sheet.data, std::min(usual, options.box.travel / 4.0));
+}
+
 /// One axis, behind the board's own protocol.
 host::BoardClient board_of(const CommissionArguments& arguments, const sim::DriveDescription& machine,
-                           std::uint8_t axis) {
-  if (arguments.model.empty() && arguments.plant.empty()) return open_board(arguments);
-  std::vector<host::SimulatedDrive> drives(static_cast<std::size_t>(axis) + 1);
-  for (host::SimulatedDrive& drive : drives) drive.drive = machine;
+                           const host::CommissionOptions& options) {
+  if (!is_simulated(arguments)) return open_board(arguments);
+  std::vector<host::SimulatedDrive> drives(std::size_t{options.axis} + 1);
+  for (host::SimulatedDrive& drive : drives) {
+    drive.drive = machine;
+    drive.wiring = wiring_of(options);
+  }
   if (!arguments.plant.empty()) {
     const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(std::max(arguments.patience_s, 10.0)));
@@ -43,6 +57,21 @@ host::BoardClient board_of(const CommissionArguments& arguments, const sim::Driv
   }
   return host::BoardClient(
       std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", arguments.seed}));
+}
+
+/// What finds home: as the user says, as the simulated board is wired, else as the board's parameters say.
+std::optional<host::CommissionHoming> homing_of(const CommissionArguments& arguments,
+                                                const host::CommissionOptions& options) {
+  using firmware::HomingMode;
+  if (arguments.home.empty() && !is_simulated(arguments)) return std::nullopt;
+  const host::UsualHome usual = host::usual_home(wiring_of(options));
+  if (arguments.home.empty()) return host::CommissionHoming{usual.mode, usual.position};
+  static const std::map<std::string, HomingMode> kModes{{"none", HomingMode::none},
+                                                        {"switch", HomingMode::home_switch},
+                                                        {"index", HomingMode::index},
+                                                        {"both", HomingMode::switch_and_index}};
+  const bool is_backward = arguments.home.starts_with('-');
+  return host::CommissionHoming{kModes.at(arguments.home.substr(is_backward ? 1 : 0)), 0.0, is_backward};
 }
 
 std::uint8_t axis_of(const std::string& name) { return axis_index(name, hal::kMostAxes); }
@@ -88,20 +117,21 @@ void run(const CommissionArguments& arguments) {
   options.axis_name = arguments.axis;
   options.sheet = sheet_of(arguments, kept);
   options.bandwidth_Hz = arguments.bandwidth_Hz;
+  options.modulus = arguments.modulus;
   options.save = arguments.save;
-  const bool is_simulated = !arguments.model.empty() || !arguments.plant.empty();
   std::string box = arguments.box.empty() ? folder.document().value("box", "") : arguments.box;
-  if (box.empty() && is_simulated) box = usual_box(options.sheet.data.kind);
+  if (box.empty() && is_simulated(arguments)) box = usual_box(options.sheet.data.kind);
   if (box.empty())
     throw host::Failure(host::ExitCode::refused,
                         "nothing moves without a box: --box travel=…,speed=…,volts=…,time=…, which the board enforces");
   options.box = host::parse_box(box, options.sheet.data.kind);
+  options.homing = homing_of(arguments, options);
   folder.put("axis", arguments.axis);
   folder.put("box", box);
   host::write_model(options.sheet, kept);
   const sim::DriveDescription machine =
       arguments.model.empty() ? options.sheet : host::read_drive(host::machine_file(arguments.model));
-  host::BoardClient board = board_of(arguments, machine, options.axis);
+  host::BoardClient board = board_of(arguments, machine, options);
   axis_index(arguments.axis, board.axis_count());
   host::CommissionTalk talk;
   talk.consents = [&](const std::string& question) {
@@ -148,11 +178,19 @@ void add_commission(CLI::App& app) {
   command->add_option("--plant", arguments->plant, "program that is the machine, in lockstep (axis-plant/1)");
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive (default: that of --sim)");
   command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s in all");
+  command
+      ->add_option("--home", arguments->home,
+                   "what finds home within the box: none, switch, index, both; -switch, -both where the switch lies to "
+                   "the negative side (default: homing.mode of the board)")
+      ->check(CLI::IsMember({"none", "switch", "index", "both", "-switch", "-index", "-both"}));
   command->add_option("--from", arguments->from, "go on at this step");
   command->add_option("--to", arguments->to, "end after this step");
-  command->add_option("--bandwidth", arguments->bandwidth_Hz, "of the closed loop, Hz")
+  command->add_option("--bandwidth", arguments->bandwidth_Hz, "of the first closed loop, Hz")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--margin", arguments->modulus, "modulus margin up to which the bandwidth is raised then")
+      ->capture_default_str()
+      ->check(CLI::Range(0.2, 0.9));
   command->add_option("--seed", arguments->seed, "of a simulated machine's noise")->capture_default_str();
   command->add_flag("--save", arguments->save, "save the better parameters in the board's flash");
   command

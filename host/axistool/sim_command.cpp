@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/command_options.hpp"
@@ -17,6 +16,7 @@
 #include "host/model/model_file.hpp"
 #include "host/simulated_board/socket_board.hpp"
 #include "host/simulated_board/usb_board.hpp"
+#include "host/simulated_board/usual_wiring.hpp"
 
 namespace axistool {
 
@@ -52,14 +52,8 @@ void make_folder_of(const std::string& flash_file) {
                                     folder.string(), fault.message()));
 }
 
-/// A home switch 25 mm from where the axis is at power-up and, on a shaft, an index pulse each turn.
 hal::pc::AxisWiring wiring(const sim::DriveDescription& drive) {
-  hal::pc::AxisWiring wiring;
-  const bool is_rotary = drive.data.kind == sim::DriveKind::rotary;  // then in mm, otherwise in m
-  wiring.home = is_rotary ? 25.0 : 0.025;
-  wiring.index_spacing = is_rotary ? 2.0 * std::numbers::pi * drive.data.lead : 0.0;
-  wiring.index_offset = 1.0;
-  return wiring;
+  return host::usual_wiring(drive.data, drive.data.kind == sim::DriveKind::rotary ? 25.0 : 0.025);
 }
 
 /// Where no model is given the paper's two axes take turns.

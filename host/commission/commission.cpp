@@ -13,8 +13,9 @@ namespace host {
 namespace {
 
 constexpr std::array<CommissionStepResult (*)(CommissionSession&), kCommissionSteps.size()> kWork{
-    look,          identify_first,   control_first, climb_ladder,  find_friction, measure_response, record_validation,
-    compare_first, diagnose_machine, separate,      improve_model, compensate,    write_page};
+    look,          identify_first,   control_first,     home_axis,     climb_ladder,
+    find_friction, measure_response, record_validation, compare_first, diagnose_machine,
+    separate,      improve_model,    compensate,        write_page};
 
 /// Gives a board that was fitted before its own parameters back; quietly, since something has failed already.
 void give_back(CommissionSession& session) noexcept {
@@ -26,7 +27,7 @@ void give_back(CommissionSession& session) noexcept {
   }
 }
 
-constexpr std::size_t kControl = 2, kLastInLoop = 6;  // places of control, validate
+constexpr std::size_t kControl = 2, kLastInLoop = 7;  // places of control, validate
 static_assert(kCommissionSteps[kControl].name == "control" && kCommissionSteps[kLastInLoop].name == "validate");
 
 /// A step whose motions the first controller makes.

@@ -18,13 +18,14 @@ struct CommissionStepText {
 };
 
 /// In their order.
-inline constexpr std::array<CommissionStepText, 13> kCommissionSteps{{
+inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
     {"look", "rights and faults, standstill noise, direction and breakaway by a slow ramp of voltage"},
     {"identify", "steps of voltage in open loop: inertia, viscous and Coulomb friction"},
     {"control", "a first controller of modest bandwidth, downloaded but not saved"},
+    {"home", "the switch or index that positions are counted from, where the axis has one"},
     {"ladder", "jogs at a ladder of speeds, both ways"},
     {"friction", "the friction curve"},
-    {"response", "the frequency response"},
+    {"response", "the frequency response, and as much bandwidth as its margins allow"},
     {"validate", "further motions to learn from, and others to judge by, one of them twice"},
     {"compare", "how the model fares on the motions that judge"},
     {"diagnose", "which effect is missing"},

@@ -35,10 +35,14 @@ bool level_friction(CommissionSession& session, sim::DriveDescription& model) {
 
 }  // namespace
 
+Record record_steps(CommissionSession& session) {
+  constexpr double kTime_s = 10.0;
+  return session.record({"steps.csv", "steps", {}, "", kTime_s});
+}
+
 CommissionStepResult identify_first(CommissionSession& session) {
   session.ask("Identify: steps of voltage to and fro.");
-  constexpr double kTime_s = 10.0;
-  const Record steps = session.record({"steps.csv", "steps", {}, "", kTime_s});
+  const Record steps = record_steps(session);
   const Measurements measured = MeasurementGate(session.options().sheet).admit({steps});
   Identification found = identify_drive(measured, session.options().sheet, default_method(measured.training()));
   found.model.name = session.options().axis_name;

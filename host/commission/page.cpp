@@ -30,9 +30,10 @@ struct Page {
   const nlohmann::json& state;
   nlohmann::json errors, improvement;
 
-  double before() const { return errors["before"]["rms_um"]; }
-  bool has_after() const { return !errors["after"].is_null(); }
-  double after() const { return has_after() ? errors["after"]["rms_um"].get<double>() : before(); }
+  const nlohmann::json& sets() const { return errors["sets"]; }
+  double before() const { return sets().front()["rms_um"]; }
+  bool has_after() const { return !sets().back()["rms_um"].is_null(); }
+  double after() const { return has_after() ? sets().back()["rms_um"].get<double>() : before(); }
   double floor() const { return errors["floor_um"]; }
   bool is_new() const { return state.value("kept", "") == "new"; }
 
@@ -63,7 +64,7 @@ struct Page {
 Verdict verdict_of(const Page& page) {
   Verdict verdict;
   verdict.tone = page.is_new() ? Tone::good : Tone::neutral;
-  verdict.label = page.is_new() ? "better" : "as it was";
+  verdict.label = page.is_new() ? "better" : "no gain";
   verdict.headline =
       fmt::format("Following error: {} µm before, {}, floor {}. Cause: {}.", format_value(page.before()),
                   page.has_after() ? format_value(page.after()) + " after" : "stopped by the new parameters",
@@ -78,19 +79,39 @@ Verdict verdict_of(const Page& page) {
     verdict.sentences.push_back(fmt::format("By hand: {}: {}.", info != nullptr ? std::string(info->title) : name,
                                             info != nullptr ? std::string(info->remedy) : "no parameter mends it"));
   }
+  for (const auto& kind : page.errors["needs_home"])
+    verdict.sentences.push_back(
+        fmt::format("{} is compensated only from home: wire a switch or an index, and begin "
+                    "again with --home.",
+                    title_of(kind)));
   if (!page.state.value("saved", false)) verdict.command = "axistool save";
   return verdict;
+}
+
+/// What each set of parameters has that the one before has not.
+std::string set_title(const Page& page, const std::string& name) {
+  const bool is_first = page.sets().size() < 3;
+  if (name == "before")
+    return page.state.value("was_fitted", false) ? "before: as the board was" : "before: base model";
+  if (name == "bandwidth") return "with the bandwidth raised";
+  return is_first ? "after: with what was found" : "after: with what was found, too";
 }
 
 BarChart errors_chart(const Page& page) {
   BarChart chart;
   chart.title = "The axis's own following error, µm RMS";
   chart.caption =
-      "The same jogs each time. Floor: what the motion, made twice, does not repeat; no parameter mends that.";
+      "The same jogs each time, made twice with each set. Before: the controller that identification of the base "
+      "(inertia, friction) gives, with friction feed-forward and its disturbance estimate cancelled, or what the board "
+      "ran. Floor: what the last set does not repeat; no parameter mends that.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
-  chart.rows.push_back({"before", {page.before()}, ""});
-  if (page.has_after()) chart.rows.push_back({"after", {page.after()}, page.is_new() ? "" : "not kept"});
+  for (const auto& set : page.sets())
+    if (!set["rms_um"].is_null())
+      chart.rows.push_back({set_title(page, set["name"]),
+                            {set["rms_um"].get<double>()},
+                            fmt::format("± {}{}", format_value(set["repeats_um"].get<double>()),
+                                        set["name"] == page.errors["kept"] ? ", kept" : "")});
   chart.rows.push_back({"floor", {page.floor()}, ""});
   return chart;
 }

@@ -1,10 +1,192 @@
-// The frequency response.
+// The frequency response, and a loop designed on it: as fast as the margin asked for allows, and measured again.
+#include <fmt/format.h>
+
+#include "firmware/app/parameters/axis_values.hpp"
 #include "host/commission/steps.hpp"
+#include "host/exit_codes.hpp"
+#include "host/model/model_file.hpp"
+#include "host/record/read_record.hpp"
+#include "host/response/loop_design.hpp"
+#include "host/response/response_measurement.hpp"
+#include "host/response/response_report.hpp"
 
 namespace host {
 
-CommissionStepResult measure_response(CommissionSession&) {
-  return {{}, "Not measured: the bandwidth stays as it was designed."};
+namespace {
+
+constexpr double kFirst_s = 70.0, kAgain_s = 46.0;  // of motion: three bands and a resonance; two bands
+constexpr std::size_t kRealisations = 3;
+constexpr double kKept = 0.9;    // of the margin asked for has to be there when it is measured again
+constexpr double kWorth = 1.05;  // by which the bandwidth has to rise, or nothing changes
+constexpr const char* kMeasured = "response.json";
+
+nlohmann::json filters_json(const ControlFilterChoice& filters) {
+  if (!filters.notch) return nullptr;
+  return {{"f_Hz", filters.notch->f_Hz}, {"damping", filters.notch->damping}, {"depth", filters.notch->depth}};
+}
+
+class ResponseStep {
+ public:
+  explicit ResponseStep(CommissionSession& session)
+      : session_(session),
+        folder_(session.folder()),
+        model_(read_model(folder_.require("model.toml", "friction"))),
+        former_(session.with_file(folder_.require("first-params.toml", "control"))) {}
+
+  CommissionStepResult run() {
+    folder_.put("raised", nullptr);
+    session_.ask("Response: rides to and fro with a sum of sines on top.");
+    session_.download(former_);
+    AxisResponse measured;
+    try {
+      measured = measure(kFirst_s, "response");
+    } catch (const Failure& failure) {
+      if (failure.code != ExitCode::refused || session_.talk().stop()) throw;
+      return done(fmt::format("Not measured: {}. The bandwidth stays as it was designed.", failure.what()));
+    }
+    keep(response_json(measured), kMeasured);
+    said_ = fmt::format("Measured at {} frequencies", measured.response.lines.size());
+    if (measured.fit)
+      for (const Resonance& mode : measured.fit->resonances)
+        said_ += fmt::format(", resonance at {:.3g} Hz", mode.f_Hz.value);
+    said_ += ". ";
+    try {
+      raise(measured);
+    } catch (const Failure& failure) {
+      if (failure.code != ExitCode::refused || session_.talk().stop()) throw;
+      give_up(failure.what());
+    }
+    return done("");
+  }
+
+ private:
+  CommissionStepResult done(const std::string& more) {
+    session_.disable();
+    return {files_, said_ + more};
+  }
+
+  void keep(const nlohmann::json& content, const char* file) {
+    folder_.write_json(file, content);
+    files_.emplace_back(file);
+  }
+
+  AxisResponse measure(double time_s, const std::string& name) {
+    BoardClient& board = session_.board();
+    const std::uint8_t axis = session_.options().axis;
+    const firmware::ParameterValues values = board.read_values();
+    ResponsePlan plan;
+    plan.box = session_.room_for(time_s, "the " + name, values);
+    plan.realisations = kRealisations;
+    std::vector<Record> records;
+    const auto keep_records = [&] {
+      for (std::size_t i = 0; i < records.size(); ++i) {
+        files_.push_back(fmt::format("{}-{:02}.csv", name, i + 1));
+        write_record(records[i], folder_.path(files_.back()));
+      }
+    };
+    const auto begin = board.now();
+    try {
+      measure_axis(board, axis, plan, values, session_.scale(values), session_.talk().stop, records);
+    } catch (const Failure&) {
+      session_.spend(begin);
+      keep_records();
+      throw;
+    }
+    session_.spend(begin);
+    keep_records();
+    session_.disable();
+    const Computing computing(session_);
+    const auto controller = firmware::axis_parameters<float>(values.axis(axis));
+    return analyse_response(records, &controller);
+  }
+
+  LoopDesign design(const AxisResponse& measured) const {
+    const Computing computing(session_);
+    LoopAim aim;
+    aim.modulus = session_.options().modulus;
+    aim.seek_notch = true;
+    return design_loop(model_, session_.first_options(), aim, measured);
+  }
+
+  void raise(const AxisResponse& measured) {
+    const LoopDesign loop = design(measured);
+    const double before_Hz = session_.first_options().bandwidth_Hz, after_Hz = loop.design.used.bandwidth_Hz;
+    response_report(loop.after, "axis " + session_.options().axis_name + ", designed on what was measured", &measured)
+        .write(folder_.path("response.html"));
+    files_.emplace_back("response.html");
+    if (after_Hz < kWorth * before_Hz && keeps_margin(measured)) return give_up("the margin asked for allows no more");
+    const std::string change =
+        fmt::format("The bandwidth goes from {:.3g} to {:.3g} Hz at a modulus margin of {:.2g}{}", before_Hz, after_Hz,
+                    session_.options().modulus,
+                    loop.filters.notch ? fmt::format(", with a notch at {:.3g} Hz", loop.filters.notch->f_Hz) : "");
+    session_.ask(change + ", on the measured response. It is downloaded, not saved, and measured again.");
+    session_.download(session_.design(model_, {loop.design, loop.filters}, "raised-params.toml"));
+    files_.emplace_back("raised-params.toml");
+    const AxisResponse again = try_loop();
+    keep(response_json(again), "response-after.json");
+    if (!again.margins || !again.margins->is_stable) return give_up("measured again, the loop has no margin");
+    if (!keeps_margin(again))
+      return give_up(fmt::format("measured again, the modulus margin is {:.2g}", again.margins->modulus->value));
+    folder_.put("raised", {{"bandwidth_Hz", {{"before", before_Hz}, {"after", after_Hz}}},
+                           {"notch", filters_json(loop.filters)},
+                           {"margins",
+                            {{"before", response_json(measured)["margins"]},
+                             {"designed", response_json(loop.after)["margins"]},
+                             {"measured", response_json(again)["margins"]}}}});
+    said_ += fmt::format("{}; measured again: {:.2g}.", change, again.margins->modulus->value);
+  }
+
+  bool keeps_margin(const AxisResponse& axis) const {
+    return axis.margins && axis.margins->is_stable && axis.margins->modulus &&
+           axis.margins->modulus->ci95[1] >= kKept * session_.options().modulus;
+  }
+
+  /// A loop that swings is none to keep.
+  AxisResponse try_loop() {
+    try {
+      return measure(kAgain_s, "response-after");
+    } catch (const Failure& failure) {
+      if (failure.code != ExitCode::device_fault || session_.talk().stop()) throw;
+      session_.recover();
+      throw Failure(ExitCode::refused, failure.what());
+    }
+  }
+
+  void give_up(const std::string& why) {
+    session_.download(former_);
+    said_ += fmt::format("The former loop stays: {}.", why);
+  }
+
+  CommissionSession& session_;
+  CommissionFolder& folder_;
+  sim::DriveDescription model_;
+  firmware::ParameterValues former_;
+  std::vector<std::string> files_;
+  std::string said_;
+};
+
+}  // namespace
+
+CommissionStepResult measure_response(CommissionSession& session) { return ResponseStep(session).run(); }
+
+CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model) {
+  CommissionLoop first = session.first_loop(model);
+  const CommissionFolder& folder = session.folder();
+  const nlohmann::json raised = folder.document().value("raised", nlohmann::json());
+  if (!raised.is_object()) return first;
+  const Computing computing(session);
+  LoopAim aim;
+  aim.modulus = session.options().modulus;
+  if (const nlohmann::json& notch = raised.at("notch"); notch.is_object())
+    aim.filters.notch = Notch{notch.at("f_Hz"), notch.at("damping"), notch.at("depth")};
+  try {
+    LoopDesign loop =
+        design_loop(model, session.first_options(), aim, read_response(folder.require(kMeasured, "response")));
+    return {std::move(loop.design), loop.filters};
+  } catch (const Failure& failure) {
+    if (failure.code != ExitCode::refused) throw;
+    return first;  // this model finds no bandwidth that keeps the margin
+  }
 }
 
 }  // namespace host

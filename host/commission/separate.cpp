@@ -82,7 +82,7 @@ class Separation {
     write_run_plan(plan.run, folder.path(run_file));
     session_.ask(fmt::format("Separate {}: a run of {:.3g} s, after which the true one stands {:.2g} to 1.",
                              names(rivals_), plan.run.duration_s(), plan.expected_odds));
-    session_.download(session_.design(model_, "planned-params.toml"));
+    session_.download(session_.design(model_, session_.first_loop(model_), "planned-params.toml"));
     Record made = session_.record_plan(plan.run, record);
     files_.insert(files_.end(), {run_file, record});
     decide_by(std::move(made), plan, round);

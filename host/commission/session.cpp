@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "firmware/app/parameters/axis_values.hpp"
-#include "firmware/core/excitation/excitation_run.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 #include "host/atomic_file.hpp"
+#include "host/device/excitation_end.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/friction_law.hpp"
@@ -82,6 +82,13 @@ void CommissionSession::go_back() {
   if (talk_.stop()) throw Failure(ExitCode::refused, "interrupted");
 }
 
+void CommissionSession::enable() {
+  const auto state = static_cast<firmware::SupervisorState>(board_.status().axis.at(options_.axis).state);
+  if (state == firmware::SupervisorState::enabled) return;
+  board_.wait(kToRest);
+  enable_and_wait(board_, mask());
+}
+
 ExcitationLimits CommissionSession::room_for(double time_s, const std::string& what,
                                              const firmware::ParameterValues& values) {
   ExcitationLimits box = options_.box;
@@ -93,11 +100,8 @@ ExcitationLimits CommissionSession::room_for(double time_s, const std::string& w
                     "on from here",
                     what, time_s, options_.box.time_s, options_.box.time_s - motion_s_));
   if (values.axis(options_.axis).get<"drive.fitted">()) {
-    const auto state = static_cast<firmware::SupervisorState>(board_.status().axis.at(options_.axis).state);
-    if (state != firmware::SupervisorState::enabled) {
-      board_.wait(kToRest);
-      enable_and_wait(board_, mask());
-    }
+    enable();
+    if (folder_.document().value("homed", false) && !is_homed()) find_home();  // a reset forgets it, and some faults
     go_back();
   }
   const double away = static_cast<double>(std::abs(counts() - origin_)) * options_.sheet.data.encoder_resolution;
@@ -118,7 +122,7 @@ Record CommissionSession::keep(const ExcitationOutcome& outcome, const std::map<
   record.header.insert(header.begin(), header.end());
   record.header["excitation_ended"] = std::string(end_name(outcome.state));
   write_record(record, folder_.path(file));
-  require_completed(outcome, file);
+  require_completed(board_, options_.axis, outcome, folder_.path(file) + " holds what there is");
   record.path = folder_.path(file);
   return record;
 }
@@ -154,34 +158,9 @@ Record CommissionSession::record_plan(const RunPlan& run, const std::string& fil
   return keep(outcome, run_header(run), file);
 }
 
-void CommissionSession::require_completed(const ExcitationOutcome& outcome, const std::string& file) {
-  using firmware::ExcitationEnd;
-  const auto end = static_cast<ExcitationEnd>(outcome.state.end);
-  const std::string kept = folder_.path(file) + " holds what there is";
-  if (end == ExcitationEnd::completed && outcome.capture.lost == 0) return;
-  if (end == ExcitationEnd::completed)
-    throw Failure(ExitCode::protocol, fmt::format("{} rows were lost on the way; `axistool doctor` looks at the way to "
-                                                  "the board ({})",
-                                                  outcome.capture.lost, kept));
-  if (end == ExcitationEnd::fault || end == ExcitationEnd::refused) require_no_fault(board_.status(), options_.axis);
-  if (end == ExcitationEnd::asked) throw Failure(ExitCode::refused, "interrupted");
-  if (end == ExcitationEnd::blind)
-    throw Failure(ExitCode::refused,
-                  fmt::format("encoder and tachometer show different motion: one of them is reversed, dead, or not on "
-                              "this axis; mend that first ({})",
-                              kept));
-  if (end == ExcitationEnd::no_motion)
-    throw Failure(ExitCode::refused,
-                  fmt::format("nothing moved under the largest command: free the axis, look at motor, "
-                              "amplifier, brake and encoder, or raise the volts of the box ({})",
-                              kept));
-  throw Failure(ExitCode::refused, fmt::format("the axis {} and was stopped: less volts, or a wider box ({})",
-                                               end_name(outcome.state), kept));
-}
-
 firmware::ParameterValues CommissionSession::with_file(const std::string& path) {
   firmware::ParameterValues values = board_.read_values();
-  put_file(values, path);
+  put_file(values, path, options_.axis_name);
   return values;
 }
 
@@ -208,40 +187,51 @@ void CommissionSession::plan_limits(const sim::DriveDescription& model) {
                          {"jerk", acceleration * usual.jerk / usual.acceleration}});
 }
 
+ReferenceLimits CommissionSession::limits() const {
+  const nlohmann::json& planned = folder_.document().at("limits");
+  return {planned.at("velocity"), planned.at("acceleration"), planned.at("jerk")};
+}
+
 firmware::ParameterValues CommissionSession::with_planned_limits(firmware::ParameterValues values) const {
   for (const auto& [name, value] : folder_.document().at("limits").items())
     values.set(require_place(fmt::format("{}.limits.{}", options_.axis_name, name)), value.get<float>());
   return values;
 }
 
-firmware::ParameterValues CommissionSession::design(const sim::DriveDescription& model, const std::string& file) {
+DesignOptions CommissionSession::first_options() const {
   DesignOptions wanted;
   const int halvings = folder_.document().value("halvings", 0);
   wanted.bandwidth_Hz = std::ldexp(options_.bandwidth_Hz, -halvings);
   wanted.disturbance_variance = std::ldexp(wanted.disturbance_variance, -4 * halvings);
-  const std::string text = board_parameters_toml(model, design_axis(model, wanted)) + compensation_toml(model);
+  return wanted;
+}
+
+CommissionLoop CommissionSession::first_loop(const sim::DriveDescription& model) const {
+  return {design_axis(model, first_options()), {}};
+}
+
+firmware::ParameterValues CommissionSession::design(const sim::DriveDescription& model, const CommissionLoop& loop,
+                                                    const std::string& file) {
+  const std::string text = board_parameters_toml(model, loop.design, limits()) + compensation_toml(model) +
+                           filter_toml(model, loop.filters) + parameter_tables(model, homing_parameters());
   firmware::ParameterValues values = board_.read_values();
   for (const Assignment& one : parse_parameter_text(text, file, options_.axis_name)) put(values, one);
-  values = with_planned_limits(values);
   require_fitting_set(values);
-  std::string kept = fmt::format("format = \"axis-params/1\"\n\n[{}]\n", options_.axis_name);
-  for (std::size_t place = 0; place < values.size(); ++place) {
-    const std::string name = full_name(place);
-    if (name.starts_with(options_.axis_name + "."))
-      kept += fmt::format("{} = {}\n", name.substr(options_.axis_name.size() + 1),
-                          value_text(info_at(place), values.at(place)));
-  }
-  write_file_atomically(folder_.path(file), kept);
+  write_file_atomically(folder_.path(file), text);
   return values;
+}
+
+void CommissionSession::recover() {
+  disable();
+  board_.clear_faults();
+  board_.wait(kToRest);  // a self-test follows
 }
 
 bool CommissionSession::calm_down() {
   constexpr int kMost = 3;
   const int halvings = folder_.document().value("halvings", 0);
   if (halvings == kMost) return false;
-  disable();
-  board_.clear_faults();
-  board_.wait(kToRest);  // a self-test follows
+  recover();
   folder_.put("halvings", halvings + 1);
   return true;
 }

@@ -2,17 +2,28 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "firmware/core/motion/homing.hpp"
 #include "host/commission/folder.hpp"
 #include "host/device/board_client.hpp"
 #include "host/device/excitation.hpp"
 #include "host/identify/axis_design.hpp"
+#include "host/parameters/board_parameters.hpp"
+#include "host/parameters/control_filters.hpp"
 #include "host/plan/run_plan.hpp"
 #include "host/record/record.hpp"
 
 namespace host {
+
+/// What finds the place that positions are counted from, on an axis that has a switch or an index pulse.
+struct CommissionHoming {
+  firmware::HomingMode mode = firmware::HomingMode::none;
+  double position = 0.0;     ///< of the place that is found, mm (m)
+  bool is_backward = false;  ///< the switch lies to the negative side
+};
 
 struct CommissionOptions {
   std::uint8_t axis = 0;
@@ -22,7 +33,9 @@ struct CommissionOptions {
   /// are planned for; time of all motion together.
   ExcitationLimits box;
   double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of delays yet
-  bool save = false;           ///< the better set, in the board's flash
+  double modulus = 0.5;        ///< margin up to which the measured response lets the bandwidth rise
+  std::optional<CommissionHoming> homing = {};  ///< empty: what the board's own homing.mode says
+  bool save = false;                            ///< the better set, in the board's flash
 };
 
 /// The user's side.
@@ -41,6 +54,12 @@ struct CommissionRun {
   ExcitationNumbers numbers;
   std::string loop;  ///< "", "reference", "output"
   double time_s = 0.0;
+};
+
+/// A controller for a model: design, and filters behind it.
+struct CommissionLoop {
+  AxisDesign design;
+  ControlFilterChoice filters;
 };
 
 /// Functions throw what BoardClient throws, and Failure(refused) when the user stops.
@@ -73,8 +92,12 @@ class CommissionSession {
   firmware::ParameterValues with_file(const std::string& path);
   /// Downloads a set, unless the board has it, with the axis disabled.
   void download(const firmware::ParameterValues& values);
-  /// Writes the file of a design for `model`, and returns its parameters on this board, with the planned limits.
-  firmware::ParameterValues design(const sim::DriveDescription& model, const std::string& file);
+  /// Writes the file of a controller for `model`, and returns its parameters on this board, with the planned limits.
+  firmware::ParameterValues design(const sim::DriveDescription& model, const CommissionLoop& loop,
+                                   const std::string& file);
+  /// Of modest bandwidth: nothing is known of delays and resonances yet.
+  CommissionLoop first_loop(const sim::DriveDescription& model) const;
+  DesignOptions first_options() const;
   /// The same for every set, so that motions are the same: decided from `model` by what the box leaves, and kept in the
   /// folder. Throws Failure(refused) where friction takes all of the box's volts.
   void plan_limits(const sim::DriveDescription& model);
@@ -84,25 +107,36 @@ class CommissionSession {
   /// model more. False where it has been as calm as it can be.
   bool calm_down();
 
+  /// Something finds home on this axis.
+  bool can_home();
+  bool is_homed();
+  /// Enables the axis and lets it find home. The box stays where it is.
+  void find_home();
+
   /// The axis stands and is disabled; whatever fails meanwhile is not said.
   void leave_standing() noexcept;
   void disable();
+  /// Ends the faults that a controller made which is no longer wanted.
+  void recover();
 
   double motion_s() const { return motion_s_; }
+  /// The box of a motion of so many seconds, from where the command began: the axis goes there first.
+  ExcitationLimits room_for(double time_s, const std::string& what, const firmware::ParameterValues& values);
+  ExcitationScale scale(const firmware::ParameterValues& values) const;
+  /// Counts the time since `begin` as motion.
+  void spend(std::chrono::steady_clock::time_point begin);
   /// Speeds that motions of this box may have, mm/s (m/s): held for a second; reached at all.
   double steady_speed() const;
   double top_speed() const;
 
  private:
-  ExcitationScale scale(const firmware::ParameterValues& values) const;
   std::int64_t counts();
+  void enable();
   void go_back();
-  /// What is left of the box for a motion of so many seconds, once the axis is back where the command began.
-  ExcitationLimits room_for(double time_s, const std::string& what, const firmware::ParameterValues& values);
+  ReferenceLimits limits() const;
+  std::vector<CompensationParameter> homing_parameters() const;
   Record keep(const ExcitationOutcome& outcome, const std::map<std::string, std::string>& header,
               const std::string& file);
-  void require_completed(const ExcitationOutcome& outcome, const std::string& file);
-  void spend(std::chrono::steady_clock::time_point begin);
 
   BoardClient& board_;
   CommissionOptions options_;

@@ -24,13 +24,21 @@ CommissionStepResult identify_first(CommissionSession& session);
 /// Makes first-params.toml, and downloads it.
 CommissionStepResult control_first(CommissionSession& session);
 
+/// Where something finds home: makes steps.csv again, counted from there; every later motion is.
+CommissionStepResult home_axis(CommissionSession& session);
+
 /// Makes ladder-slow.csv, ladder-fast.csv.
 CommissionStepResult climb_ladder(CommissionSession& session);
 
 /// Makes model.toml, of which the jogs decide the friction where they can.
 CommissionStepResult find_friction(CommissionSession& session);
 
+/// Makes response.json, response.html, raised-params.toml, response-after.json, and leaves a livelier controller to
+/// the later steps where the measured response allows one and the machine agrees.
 CommissionStepResult measure_response(CommissionSession& session);
+
+/// What the measured response allows for `model`; the first loop where it allowed none, or was not measured.
+CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model);
 
 /// Makes the other records that train (kTrainingFiles) and those that judge (kJudgingFiles).
 CommissionStepResult record_validation(CommissionSession& session);
@@ -60,6 +68,9 @@ inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-aga
 
 /// All that train and judge, through the gate, with what was recorded to separate explanations.
 Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model);
+
+/// Steps of voltage in open loop: steps.csv.
+Record record_steps(CommissionSession& session);
 
 /// The motion that judges a controller; the same each time.
 CommissionRun judging_jogs(const CommissionSession& session, const std::string& file);

@@ -106,12 +106,17 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
 }
 
 std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design) {
+  return board_parameters_toml(model, design, ReferenceLimits::usual_for(model.data.kind));
+}
+
+std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design,
+                                  const ReferenceLimits& limits) {
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
   std::string axis = model.name.empty() ? "x" : model.name;
   if (!is_bare_key(axis)) axis = fmt::format("'{}'", axis);
   std::string text = "format = \"axis-params/1\"\n";
   std::string table;
-  for (const BoardParameter& parameter : board_parameters(model, design, ReferenceLimits::usual_for(model.data.kind))) {
+  for (const BoardParameter& parameter : board_parameters(model, design, limits)) {
     const firmware::ParameterInfo& info =
         *std::ranges::find(firmware::kParameters, parameter.name, &firmware::ParameterInfo::name);
     const std::size_t dot = parameter.name.find('.');

@@ -30,8 +30,11 @@ struct BoardParameter {
 std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                              const ReferenceLimits& limits);
 
-/// The same with the usual limits as a TOML document with one table a group, named after the axis (the model's name,
+/// The same as a TOML document with one table a group, named after the axis (the model's name,
 /// "x" when it has none). Values carry nine digits: as many as single precision on the board can tell apart.
+std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design,
+                                  const ReferenceLimits& limits);
+/// With the usual limits.
 std::string board_parameters_toml(const sim::DriveDescription& model, const AxisDesign& design);
 
 }  // namespace host

@@ -1,0 +1,77 @@
+// Homing: what a drive does at a place of its travel can be taken back only where that place is found again.
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "firmware/app/parameters/axis_values.hpp"
+#include "host/commission/steps.hpp"
+#include "host/device/motion.hpp"
+#include "host/exit_codes.hpp"
+#include "host/record/drive_units.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kSearchOfBox = 0.45;  ///< of its travel: to one side, and something to stop in
+constexpr double kSpeedOfBox = 0.15;
+
+}  // namespace
+
+bool CommissionSession::can_home() {
+  if (options_.homing) return options_.homing->mode != firmware::HomingMode::none;
+  return board_.read_values().axis(options_.axis).get<"homing.mode">() != 0;
+}
+
+bool CommissionSession::is_homed() {
+  return (board_.status().axis.at(options_.axis).flags & firmware::kAxisHomed) != 0;
+}
+
+std::vector<CompensationParameter> CommissionSession::homing_parameters() const {
+  if (!options_.homing) return {};
+  const sim::DataSheet& sheet = options_.sheet.data;
+  const double speed = kSpeedOfBox * options_.box.speed, way = kSearchOfBox * options_.box.travel;
+  const double turn = sheet.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * sheet.lead : way;
+  return {{"homing.mode", static_cast<double>(options_.homing->mode)},
+          {"homing.velocity", options_.homing->is_backward ? -speed : speed},
+          {"homing.creep_velocity", speed / 10.0},
+          {"homing.travel", way},
+          {"homing.index_travel", 1.2 * turn},
+          {"homing.position", options_.homing->position}};
+}
+
+void CommissionSession::find_home() {
+  const auto begin = board_.now();
+  enable();
+  std::int64_t last = counts();
+  home_and_wait(board_, options_.axis, [&] {
+    const auto status = board_.status().axis.at(options_.axis);
+    if ((status.flags & firmware::kAxisHomed) == 0) last = status.counts();
+    return talk_.stop();
+  });
+  spend(begin);
+  if (talk_.stop()) throw Failure(ExitCode::refused, "interrupted");
+  origin_ += counts() - last;  // the same place, counted from home
+}
+
+CommissionStepResult home_axis(CommissionSession& session) {
+  session.folder().put("homed", false);
+  if (!session.can_home())
+    return {{},
+            "Nothing finds home on this axis (homing.mode is 0, and no --home was given): what the drive does at a "
+            "place of its travel can be found, and not compensated."};
+  const CommissionOptions& options = session.options();
+  const double way = kSearchOfBox * options.box.travel;
+  session.ask(
+      fmt::format("Home: the axis looks for its switch or index, {:g} {} at most, and makes the steps of "
+                  "voltage again, counted from there.",
+                  way, units_of(options.sheet.data.kind).travel));
+  session.download(session.with_file(session.folder().require("first-params.toml", "control")));
+  session.find_home();
+  session.folder().put("homed", true);
+  record_steps(session);
+  session.disable();
+  return {{"steps.csv"}, "Home is found: positions count from there, also in what is recorded from here on."};
+}
+
+}  // namespace host

@@ -1,0 +1,22 @@
+#include "host/simulated_board/usual_wiring.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace host {
+
+hal::pc::AxisWiring usual_wiring(const sim::DataSheet& data, double home) {
+  hal::pc::AxisWiring wiring;
+  wiring.home = home;
+  wiring.index_spacing = data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
+  wiring.index_offset = 1.0;
+  return wiring;
+}
+
+UsualHome usual_home(const hal::pc::AxisWiring& wiring) {
+  if (wiring.index_spacing == 0.0) return {firmware::HomingMode::home_switch, wiring.home};
+  const double turns = std::ceil((wiring.home - wiring.index_offset) / wiring.index_spacing);
+  return {firmware::HomingMode::switch_and_index, wiring.index_offset + turns * wiring.index_spacing};
+}
+
+}  // namespace host
