@@ -163,7 +163,8 @@ PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, 
   board.home = PathPoint::Zero();
   for (std::size_t axis = 0; axis < axes; ++axis) {
     const firmware::AxisValues v = values.axis(axis);
-    if (needs_fitted && !v.get<"drive.fitted">())
+    const bool is_fitted = v.get<"drive.fitted">();
+    if (needs_fitted && !is_fitted)
       throw Failure(ExitCode::refused, fmt::format("axis {} is not fitted: give it the parameters of a design "
                                                    "(axistool design, axistool set-params)",
                                                    firmware::kAxisNames.at(axis)));

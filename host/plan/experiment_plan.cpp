@@ -217,8 +217,9 @@ class Planner {
       for (const Rival& rival : decision.rivals) plan_.predicted.back().bent.push_back(rival.model);
       for (std::size_t other = 0; other < rivals_.size(); ++other) {
         odds[truth][other] = 0.5 * (decision.chi_square[other] - decision.chi_square[truth]);
-        const bool may_have_more = other != truth && odds[truth][other] < kSure &&
-                                   log_odds(chosen_, truth, other) > odds[truth][other] + kHope;
+        const double found = odds[truth][other];
+        const bool may_have_more =
+            other != truth && found < kSure && log_odds(chosen_, truth, other) > found + kHope;
         if (!may_have_more) continue;
         as_expected = false;
         bent.emplace_back(other, decision.rivals[other].model);

@@ -34,7 +34,8 @@ constexpr HomingParameters<float> homing(const AxisValues& v) {
 }
 
 constexpr DriveSequenceParameters sequence(const AxisValues& v) {
-  const float samples_a_second = 1.0F / v.get<"drive.sample_period">();
+  const float sample_period_s = v.get<"drive.sample_period">();
+  const float samples_a_second = 1.0F / sample_period_s;
   const auto samples = [=](float time_s) { return ScalarTraits<float>::nearest_product(time_s, samples_a_second); };
   return {.ready_input = v.get<"amplifier.ready_input">(),
           .brake_fitted = v.get<"brake.fitted">(),
@@ -116,11 +117,11 @@ constexpr float tangent(float x) {
 
 constexpr FilterParameters<float> filters(const AxisValues& v) {
   const float period_s = v.get<"drive.sample_period">();
-  const float damping = v.get<"notch.damping">();
+  const float damping = v.get<"notch.damping">(), depth = v.get<"notch.depth">();
   FilterParameters<float> f = {
       biquad(v.get<"notch.on">(), v.get<"notch.frequency">() * period_s, damping),
       biquad(v.get<"low_pass.on">(), v.get<"low_pass.frequency">() * period_s, v.get<"low_pass.damping">())};
-  f[0].of_band = 2.0F * damping * (v.get<"notch.depth">() - 1.0F);
+  f[0].of_band = 2.0F * damping * (depth - 1.0F);
   f[1].is_low_pass = true;
   return f;
 }
@@ -135,9 +136,11 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.dac_resolution_V = v.get<"drive.dac_resolution">();
   p.dac_limit_V = v.get<"drive.dac_limit">();
   p.tachometer_fitted = v.get<"tachometer.fitted">();
-  const float true_per_read = 1.0F / v.get<"calibration.tachometer_gain">();
+  const float read_per_true = v.get<"calibration.tachometer_gain">();
+  const float true_per_read = 1.0F / read_per_true;
   p.tachometer_gain = v.get<"tachometer.gain">() * true_per_read;
-  p.tachometer_offset = (v.get<"tachometer.offset">() + v.get<"calibration.tachometer_offset">()) * true_per_read;
+  const float offset = v.get<"tachometer.offset">(), offset_besides = v.get<"calibration.tachometer_offset">();
+  p.tachometer_offset = (offset + offset_besides) * true_per_read;
   p.drive = {v.get<"model.a12">(), v.get<"model.a22">(), v.get<"model.b1">(), v.get<"model.b2">()};
   p.Kobs = {{{v.get<"kalman.k11">(), v.get<"kalman.k12">()},
              {v.get<"kalman.k21">(), v.get<"kalman.k22">()},

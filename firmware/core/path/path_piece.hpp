@@ -21,7 +21,8 @@ inline constexpr std::int64_t kMost = std::int64_t{1} << (24 + kBits);
 constexpr std::int64_t scaled(std::int64_t value, std::uint32_t factor, int shift) {
   const auto low = static_cast<std::uint32_t>(value);
   const std::int64_t high = value >> 32;
-  return ((high * factor) << (32 - shift)) + static_cast<std::int64_t>((std::uint64_t{low} * factor) >> shift);
+  const std::uint64_t of_low = std::uint64_t{low} * factor;
+  return ((high * factor) << (32 - shift)) + static_cast<std::int64_t>(of_low >> shift);
 }
 
 constexpr std::int64_t shifted(std::int64_t value, int left) { return left >= 0 ? value << left : value >> -left; }
