@@ -93,6 +93,10 @@ class Ad5752 {
   static constexpr std::uint32_t kPowerBoth = (1u << 0) | (1u << 2);                      // table 24: PUA, PUB
   static constexpr std::uint32_t kTooHot = 1u << 5, kOverloaded = (1u << 7) | (1u << 9);  // table 24: TSD, OCA, OCB
   static constexpr std::uint32_t kCode = 0xFFFF;
+  // How long the select line is high between words: twice t6 and twice t17 as remembered, 100 ns and 200 ns. These two
+  // rows of the timing table have not been read again, nor t16, 40 ns, from a clock's rise to the answer's bit: look
+  // them up before the first power-up. A wrong t16 shows in start(), as registers that differ, before an output is on.
+  static constexpr std::uint32_t kHighWriting_ns = 200, kHighReading_ns = 400;
 
   struct Reading {
     std::uint32_t word;
@@ -114,20 +118,18 @@ class Ad5752 {
   }
 
   bool send(std::uint32_t word) {
-    constexpr std::uint32_t kSelectHigh_ns = 100;  // t6
-    port_.pause_ns(kSelectHigh_ns);
+    port_.pause_ns(kHighWriting_ns);
     return port_.send24(word);
   }
 
   /// The word asks, the next one brings the answer: one that does nothing.
   ConverterState compare(const Reading& reading) {
-    constexpr std::uint32_t kSelectHigh_ns = 200;  // t17, when reading
     std::uint32_t reply = 0;
-    port_.pause_ns(kSelectHigh_ns);
+    port_.pause_ns(kHighReading_ns);
     if (!port_.exchange24(kRead | reading.word, reply)) return ConverterState::silent;
-    port_.pause_ns(kSelectHigh_ns);
+    port_.pause_ns(kHighReading_ns);
     if (!port_.exchange24(kControlRegister | kNothing, reply)) return ConverterState::silent;
-    port_.pause_ns(kSelectHigh_ns);
+    port_.pause_ns(kHighReading_ns);
     if ((reply & reading.field) == reading.value) return ConverterState::sound;
     if (reading.word != kPowerRegister || (reply & kCode) == kCode) return ConverterState::registers_differ;
     if ((reply & kTooHot) != 0) return ConverterState::too_hot;

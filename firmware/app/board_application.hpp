@@ -15,6 +15,7 @@
 #include "firmware/app/parameters/set_crc.hpp"
 #include "firmware/app/path_service.hpp"
 #include "firmware/app/protocol/messages.hpp"
+#include "firmware/app/refusal_status.hpp"
 #include "firmware/app/store/parameter_store.hpp"
 #include "firmware/app/triggered_capture.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
@@ -45,7 +46,7 @@ class BoardApplication {
   void start() {
     store_.load(active_);
     saved_crc_ = active_crc_ = set_crc(active_);
-    if (store_is_usable() && check<Scalar>(active_).kind != SetProblemKind::none) set_fits_ = false;
+    if (store_is_usable() && check<Scalar>(active_).kind != ValueRefusal::none) set_fits_ = false;
     configure_all();
   }
 
@@ -65,17 +66,18 @@ class BoardApplication {
   bool has_unsaved_changes() const { return active_crc_ != saved_crc_; }
 
   /// Takes the staged set over, as a whole or not at all.
-  Status commit(ProblemPayload& problem) {
+  Status commit(RefusedValuePayload& refused) {
     const std::size_t changed = change_that_needs_standstill();
     if (changed < active_.size() && any_enabled()) {
-      problem = {key_at(changed).code, 0, 0, std::bit_cast<std::uint32_t>(staged_.at(changed))};
+      refused = {.key = key_at(changed).code, .bits = std::bit_cast<std::uint32_t>(staged_.at(changed))};
       return Status::drive_enabled;
     }
-    const SetProblem found = check<Scalar>(staged_);
-    if (found.kind != SetProblemKind::none) {
+    const SetRefusal found = check<Scalar>(staged_);
+    if (found.kind != ValueRefusal::none) {
       const std::size_t place = place_of(found.key).value_or(0);
-      problem = {found.key.code, static_cast<std::uint8_t>(found.kind), 0,
-                 std::bit_cast<std::uint32_t>(staged_.at(place))};
+      refused = {.key = found.key.code,
+                 .kind = static_cast<std::uint8_t>(found.kind),
+                 .bits = std::bit_cast<std::uint32_t>(staged_.at(place))};
       return Status::bad_value;
     }
     if (staged_ == active_) return Status::ok;
@@ -178,8 +180,7 @@ class BoardApplication {
     // At rest the reference stands still, and only this background can change that.
     const MovePlanResult planned =
         relative ? axes_[axis].plan_move_by(counts) : axes_[axis].plan_move_to(CountPosition::at(counts));
-    if (planned.error == MovePlanError::outside_travel) return Status::outside_travel;
-    if (planned.error != MovePlanError::none) return Status::unreachable;
+    if (planned.refusal != Refusal::none) return status_of(planned.refusal);
     const typename Board::ControlShutOut guard;
     if (!axes_[axis].start(planned.plan)) return refusal(axis);
     axes_.board().host_commands(true);
@@ -238,12 +239,12 @@ class BoardApplication {
   PathService<Axes, typename Board::ControlShutOut>& path() { return path_; }
 
   /// The limit of travel on one side of an axis.
-  ProblemPayload limit_of_travel(std::size_t axis, bool positive) const {
+  RefusedValuePayload limit_of_travel(std::size_t axis, bool positive) const {
     using parameter_check::id_of;
     const AxisValues values = active_.axis(axis);
     const std::uint16_t id = positive ? id_of<"monitor.travel_max">() : id_of<"monitor.travel_min">();
     const float limit = positive ? values.get<"monitor.travel_max">() : values.get<"monitor.travel_min">();
-    return {ParameterKey::of_axis(axis, id).code, 0, 0, std::bit_cast<std::uint32_t>(limit)};
+    return {.key = ParameterKey::of_axis(axis, id).code, .bits = std::bit_cast<std::uint32_t>(limit)};
   }
   /// On which side of where an axis is a target lies.
   bool is_ahead(std::size_t axis, std::int64_t target_counts) {

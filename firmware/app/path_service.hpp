@@ -5,6 +5,7 @@
 #include <span>
 
 #include "firmware/app/protocol/path_messages.hpp"
+#include "firmware/app/refusal_status.hpp"
 #include "firmware/core/axis_check.hpp"
 #include "firmware/core/path/path_follower.hpp"
 
@@ -157,21 +158,6 @@ class PathService {
       place += 3;
     }
     return node;
-  }
-
-  static Status status_of(NodeProblem problem) {
-    switch (problem) {
-      case NodeProblem::none:
-        return Status::ok;
-      case NodeProblem::no_room:
-        return Status::no_room;
-      case NodeProblem::outside_travel:
-        return Status::outside_travel;
-      case NodeProblem::not_open:
-        return Status::wrong_state;
-      default:
-        return Status::unreachable;
-    }
   }
 
   Group& axes_;

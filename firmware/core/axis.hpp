@@ -37,10 +37,10 @@ class Axis {
   explicit constexpr Axis(Hal& hal) : hal_(hal) {}
 
   /// Takes new parameters, or says what is wrong with them and keeps the old. Only while disabled.
-  constexpr ParameterError configure(const AxisParameters<Scalar>& parameters) {
-    if (telemetry_.enabled) return ParameterError::controller_is_enabled;
-    const ParameterError error = check(parameters);
-    if (error != ParameterError::none) return error;
+  constexpr Refusal configure(const AxisParameters<Scalar>& parameters) {
+    if (telemetry_.enabled) return Refusal::controller_is_enabled;
+    const Refusal error = check(parameters);
+    if (error != Refusal::none) return error;
     parameters_ = parameters;
     limits_ = motion_limits(parameters);
     const Scalar travel_per_velocity = parameters.lead * parameters.sample_period_s;
@@ -62,7 +62,7 @@ class Axis {
     dac_.configure(parameters.dac_resolution_V, parameters.dac_limit_V);
     is_configured_ = true;
     is_synchronised_ = false;
-    return ParameterError::none;
+    return Refusal::none;
   }
 
   /// Closes the loop from the next step on, with the reference where the axis stands. False (and telemetry().fault says
@@ -217,9 +217,6 @@ class Axis {
     return table;
   }
 
-  /// Opens the loop because of a fault that somebody else found.
-  constexpr void trip(AxisFault fault) { fail(fault); }
-
  private:
   using Traits = ScalarTraits<Scalar>;
 
@@ -240,13 +237,13 @@ class Axis {
 
   constexpr bool measure(const hal::EncoderReading& encoder) {
     if (!is_synchronised_ && !is_configured_) return false;
-    if (!encoder.valid) return fail(AxisFault::encoder_invalid);
+    if (!encoder.valid) return latch(AxisFault::encoder_invalid);
     if (!is_synchronised_) synchronise(encoder);
     telemetry_.encoder_travel = counter_.advance(encoder.counts);
     telemetry_.encoder_counts = counter_.counts();
     if (parameters_.tachometer_fitted) {
       const hal::TachometerReading tachometer = hal_.tachometer().read();
-      if (!tachometer.valid) return fail(AxisFault::tachometer_invalid);
+      if (!tachometer.valid) return latch(AxisFault::tachometer_invalid);
       telemetry_.tachometer_velocity =
           Traits::times(tachometer.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
       estimator_.update(telemetry_.estimate, model_input_V_, telemetry_.encoder_counts, telemetry_.tachometer_velocity);
@@ -286,9 +283,9 @@ class Axis {
     }
     telemetry_.control_V = control_V;
     if (!dac_.is_within(control_V) && Traits::is_nan(control_V)) {
-      fail(Traits::is_nan(estimate.offset + estimate.velocity + estimate.disturbance)
-               ? AxisFault::state_not_a_number
-               : AxisFault::control_signal_not_a_number);
+      latch(Traits::is_nan(estimate.offset + estimate.velocity + estimate.disturbance)
+                ? AxisFault::state_not_a_number
+                : AxisFault::control_signal_not_a_number);
       return;
     }
     const DacWord<Scalar> word = dac_(control_V);
@@ -297,7 +294,7 @@ class Axis {
     telemetry_.output_V = word.volts;
     model_input_V_ = word.volts - telemetry_.friction_V;
     telemetry_.feedback_V = model_input_V_ - added_V + parameters_.Kc[1] * telemetry_.reference_velocity;
-    if (!hal_.dac().write(word.code)) fail(AxisFault::dac_write_failed);
+    if (!hal_.dac().write(word.code)) latch(AxisFault::dac_write_failed);
   }
 
   constexpr void hold_reference_here() {
@@ -326,11 +323,11 @@ class Axis {
     telemetry_.saturated = word.saturated;
     telemetry_.output_V = model_input_V_ = word.volts;
     telemetry_.friction_V = telemetry_.feedback_V = Scalar(0);
-    if (!hal_.dac().write(word.code)) fail(AxisFault::dac_write_failed);
+    if (!hal_.dac().write(word.code)) latch(AxisFault::dac_write_failed);
   }
 
   /// Latches the first fault and opens the loop. Always false, for the caller to return.
-  constexpr bool fail(AxisFault fault) {
+  constexpr bool latch(AxisFault fault) {
     if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
     disable();
     is_synchronised_ = false;

@@ -54,42 +54,4 @@ struct AxisParameters {
   CompensationParameters<Scalar> compensation{};  ///< last: no control period reads it here
 };
 
-enum class ParameterError : std::uint8_t {
-  none = 0,
-  sample_period = 1,           ///< not above 0
-  lead = 2,                    ///< not above 0
-  encoder_resolution = 3,      ///< not above 0
-  dac_resolution = 4,          ///< not above 0
-  dac_limit = 5,               ///< below 2 or above 2^23 steps of the converter
-  tachometer_gain = 6,         ///< gain zero, or gain or offset not finite, although a tachometer is fitted
-  drive_model = 7,             ///< Ad12, Bd1 or Bd2 not above 0, or Ad22 outside (0, 1]
-  kalman_gain = 8,             ///< not finite
-  state_feedback = 9,          ///< not finite
-  friction_curve = 10,         ///< a magnitude below 0, or not finite
-  friction_blend = 11,         ///< not above 0 although friction feed-forward is on
-  velocity_limit = 12,         ///< not above 0, or outside the references' range (motion_limits.hpp)
-  acceleration_limit = 13,     ///< likewise
-  jerk_limit = 14,             ///< likewise
-  jerk_time = 15,              ///< acceleration limit / jerk limit too long
-  controller_is_enabled = 16,  ///< parameters change only while the axis is disabled
-  following_error = 17,        ///< floor not above 0, or share below 0; either above its ceiling (axis_check.hpp)
-  disagreement = 18,           ///< floor not above 0, share outside 0..1, or jump not above the floor; ceilings
-  overspeed = 19,              ///< not above the velocity limit and the encoder's steps, or above its ceiling
-  polarity_command = 20,       ///< not above 0, or above what the converter can put out, less a tenth
-  travel = 21,                 ///< minimum not below maximum
-  saturation_time = 22,        ///< not above 0 or above 1 s; or the capture's stride not above 0
-  cogging = 23,                ///< on, and an amplitude not finite, or a period not above two counts
-  position_friction = 24,      ///< likewise
-  presliding = 25,             ///< on, and the stiffness not above 0 or the damping below 0
-  backlash = 26,               ///< on, and the gap not above 0 or gap or wind-up of 2^10 counts and more
-  backlash_crossing = 27,      ///< on, and not 1..4096 samples
-  oscillation = 28,            ///< not above 0, or so much that an unstable loop would pass
-  estimator_poles = 29,        ///< unstable, undamped or slow (pole_check.hpp)
-  loop_poles = 30,             ///< likewise
-  homing = 31,                 ///< not by an operator, and a velocity 0, creep or a way not above 0
-  amplifier_ready = 32,        ///< the ready input on, and no time for it; or a time below 0
-  index_spacing = 33,          ///< below 0
-  filters = 34,                ///< on, and not below 0.45 of the rate; or the loop with them does not settle
-};
-
 }  // namespace firmware

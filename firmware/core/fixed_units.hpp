@@ -79,12 +79,19 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
     q.compensation.cogging_V[i] = harmonic(c.cogging_V[i], unit.volts);
   q.compensation.position_friction_on = c.position_friction_on;
   q.compensation.position_friction = harmonic(c.position_friction, Real(1));
-  q.compensation.presliding = {c.presliding.on, fixed(c.presliding.stiffness_V_per_rad * gain_velocity * unit.time_s),
-                               fixed(c.presliding.damping_V_s_per_rad * gain_velocity)};
+  q.compensation.presliding = {
+      .on = c.presliding.on,
+      .stiffness_V_per_rad = fixed(c.presliding.stiffness_V_per_rad * gain_velocity * unit.time_s),
+      .damping_V_s_per_rad = fixed(c.presliding.damping_V_s_per_rad * gain_velocity)};
   q.compensation.backlash = c.backlash;
   for (std::size_t i = 0; i < kControlFilters; ++i) {
     const BiquadParameters<Real>& f = p.filters[i];
-    q.filters[i] = {f.on, f.is_low_pass, fixed(f.a1), fixed(f.a2), fixed(f.a3), fixed(f.of_band)};
+    q.filters[i] = {.on = f.on,
+                    .is_low_pass = f.is_low_pass,
+                    .a1 = fixed(f.a1),
+                    .a2 = fixed(f.a2),
+                    .a3 = fixed(f.a3),
+                    .of_band = fixed(f.of_band)};
   }
   q.friction_feedforward_on = p.friction_feedforward_on;
   q.disturbance_cancellation_on = p.disturbance_cancellation_on;
@@ -96,23 +103,7 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
               .index_travel = p.homing.index_travel,
               .position = p.homing.position};
   q.sequence = p.sequence;
-  const MonitorLimits<Real>& m = p.monitors;
-  q.monitors = {.following_error_floor = fixed(m.following_error_floor / unit.length),
-                .following_error_per_velocity = fixed(m.following_error_per_velocity * unit.velocity / unit.length),
-                .disagreement_floor = fixed(m.disagreement_floor / unit.velocity),
-                .disagreement_share = fixed(m.disagreement_share),
-                .encoder_jump = fixed(m.encoder_jump / unit.velocity),
-                .overspeed = fixed(m.overspeed / unit.velocity),
-                .polarity_command_V = fixed(m.polarity_command_V / unit.volts),
-                .oscillation_V = fixed(m.oscillation_V / unit.volts),
-                .load_share = fixed(m.load_share),
-                .swing_share = fixed(m.swing_share),
-                .travel_min_counts = m.travel_min_counts,
-                .travel_max_counts = m.travel_max_counts,
-                .index_spacing = m.index_spacing,
-                .saturation_samples = m.saturation_samples,
-                .input_samples = m.input_samples,
-                .capture_stride = m.capture_stride};
+  q.monitors = fixed_limits(p.monitors, unit);
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
   q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);
   q.jerk_limit = fixed(p.jerk_limit / unit.travel_velocity * unit.time_s * unit.time_s);

@@ -135,7 +135,9 @@ class SimulatedAxis {
     SimulatedLimits(sim::Plant& plant, const AxisWiring& wiring) : plant_(plant), wiring_(wiring) {}
     LimitState read() {
       const double travel = static_cast<double>(plant_.encoder_counts()) * plant_.data().encoder_resolution;
-      return {travel >= wiring_.positive_end, travel <= wiring_.negative_end, travel >= wiring_.home};
+      return {.positive_end = travel >= wiring_.positive_end,
+              .negative_end = travel <= wiring_.negative_end,
+              .home = travel >= wiring_.home};
     }
 
    private:

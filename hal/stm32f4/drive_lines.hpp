@@ -38,17 +38,21 @@ static_assert(DriveEnable<DriveLines> && ReadyInput<DriveLines> && BrakeOutput<D
 /// End switches open when actuated; the home switch closes to ground.
 class SwitchInputs {
  public:
-  SwitchInputs(Pin positive_end, Pin negative_end, Pin home)
-      : positive_end_(positive_end), negative_end_(negative_end), home_(home) {}
+  struct Pins {
+    Pin positive_end, negative_end, home;
+  };
+  explicit SwitchInputs(const Pins& pins) : pins_(pins) {}
   void start() {
-    for (const Pin& pin : {positive_end_, negative_end_, home_}) pin.make_input(Pull::up);
+    for (const Pin& pin : {pins_.positive_end, pins_.negative_end, pins_.home}) pin.make_input(Pull::up);
   }
-  LimitState read() { return {positive_end_.read(), negative_end_.read(), !home_.read()}; }
+  LimitState read() {
+    return {.positive_end = pins_.positive_end.read(),
+            .negative_end = pins_.negative_end.read(),
+            .home = !pins_.home.read()};
+  }
 
  private:
-  Pin positive_end_;
-  Pin negative_end_;
-  Pin home_;
+  Pins pins_;
 };
 static_assert(LimitInputs<SwitchInputs>);
 

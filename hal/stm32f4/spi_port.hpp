@@ -24,7 +24,7 @@ class SpiPort {
   }
 
   /// The same at 84 MHz / 8 = 10.5 MHz, with what the other end sends meanwhile: its answer may take most of half a
-  /// clock (48 ns) to reach the line.
+  /// clock (48 ns) to reach the line. Slower would hold the control interrupt up for longer.
   bool exchange24(std::uint32_t word, std::uint32_t& reply) {
     registers_.CR1 = kReceiving;  // the rate changes while the port is off (28.3.3)
     registers_.CR1 = kReceiving | Spi::kEnable;

@@ -46,7 +46,7 @@ void backup(const StoreArguments& arguments) {
     const auto place = values.place_of({entry.key});
     const bool fits =
         place && firmware::check_value(firmware::rule_at(*place), std::bit_cast<float>(entry.value_bits)) ==
-                     firmware::ValueProblem::none;
+                     firmware::ValueRefusal::none;
     if (!fits) foreign.push_back(entry);
   }
   host::write_file_atomically(arguments.file, host::format_backup(values, foreign));

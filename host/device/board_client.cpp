@@ -29,7 +29,7 @@ constexpr milliseconds kSavePatience{5000};
 [[noreturn]] void fail(ExitCode code, const std::string& text) { throw Failure(code, text); }
 
 [[noreturn]] void throw_problem(const Message& reply) {
-  firmware::ProblemPayload problem;
+  firmware::RefusedValuePayload problem;
   if (!reply.get(problem)) fail(ExitCode::protocol, "the board refuses a value but does not say which");
   const firmware::ParameterKey key{problem.key};
   if (reply.status == Status::drive_enabled)
@@ -42,7 +42,7 @@ constexpr milliseconds kSavePatience{5000};
 }
 
 [[noreturn]] void throw_outside_travel(const Message& reply) {
-  firmware::ProblemPayload limit;
+  firmware::RefusedValuePayload limit;
   if (!reply.get(limit)) fail(ExitCode::refused, "the motion would leave the axis's travel");
   const firmware::ParameterKey key{limit.key};
   const auto place = firmware::place_of(key);
@@ -196,16 +196,11 @@ std::optional<Message> BoardClient::receive(steady_clock::time_point deadline) {
   const auto report = link_->receive(left);
   if (!report) return std::nullopt;
   Message message;
-  switch (firmware::decode(*report, message)) {
-    case firmware::DecodeProblem::none:
-      return message;
-    case firmware::DecodeProblem::wrong_version:
-      fail(ExitCode::protocol, fmt::format("the board speaks version {} of the protocol, this axistool version {}",
-                                           static_cast<unsigned>((*report)[0]), firmware::kProtocolVersion));
-    case firmware::DecodeProblem::wrong_length:
-    case firmware::DecodeProblem::wrong_crc:
-      break;
-  }
+  const Status envelope = firmware::decode(*report, message);
+  if (envelope == Status::ok) return message;
+  if (envelope == Status::wrong_version)
+    fail(ExitCode::protocol, fmt::format("the board speaks version {} of the protocol, this axistool version {}",
+                                         static_cast<unsigned>((*report)[0]), firmware::kProtocolVersion));
   fail(ExitCode::protocol, "a report arrived damaged (checksum): try again, and another cable or port");
 }
 

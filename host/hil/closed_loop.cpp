@@ -23,7 +23,7 @@ ClosedLoop::ClosedLoop(const sim::DriveDescription& machine, const firmware::Axi
                        std::uint64_t seed)
     : data_(machine.data), plant_(machine, seed), board_(plant_), axis_(board_), record_(empty_record(machine)) {
   const auto error = axis_.configure(parameters);
-  if (error != firmware::ParameterError::none) {
+  if (error != firmware::Refusal::none) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("the axis rejects its parameters (parameter error {})", static_cast<int>(error)));
   }
@@ -35,9 +35,9 @@ ClosedLoop::ClosedLoop(const sim::DriveDescription& machine, const firmware::Axi
 void ClosedLoop::start_move_to(double travel) {
   const auto counts = static_cast<std::int64_t>(std::llround(travel / data_.encoder_resolution));
   const auto planned = axis_.plan_move_to(firmware::CountPosition::at(counts));
-  if (planned.error != firmware::MovePlanError::none || !axis_.start(planned.plan)) {
+  if (planned.refusal != firmware::Refusal::none || !axis_.start(planned.plan)) {
     throw Failure(ExitCode::bad_input, fmt::format("the simulated axis cannot move to {:g} (plan error {})", travel,
-                                                   static_cast<int>(planned.error)));
+                                                   static_cast<int>(planned.refusal)));
   }
 }
 

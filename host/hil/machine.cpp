@@ -37,7 +37,7 @@ Machine::Machine(const std::array<MachineAxis, hal::kAxisCount>& axes, std::uint
   axes_.board().host_commands(true);
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     const auto error = axes_[i].configure(axes[i].parameters);
-    if (error != firmware::ParameterError::none) {
+    if (error != firmware::Refusal::none) {
       throw Failure(ExitCode::bad_input, fmt::format("axis {} rejects its parameters (parameter error {})",
                                                      kAxisNames[i], static_cast<int>(error)));
     }

@@ -178,7 +178,7 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
   const firmware::MotionLimits along{motion(limits.feed, kUnit_mm, sample_period_s, 1),
                                      motion(limits.acceleration, kUnit_mm, sample_period_s, 2),
                                      motion(limits.jerk, kUnit_mm, sample_period_s, 3)};
-  if (check(along) != firmware::MotionLimitError::none) {
+  if (check(along) != firmware::Refusal::none) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("a feed of {:g} mm/s with {:g} mm/s² and {:g} mm/s³ is outside the range of references",
                               limits.feed, limits.acceleration, limits.jerk));
@@ -200,10 +200,10 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
   do {
     for (; sent < words.nodes.size() && follower.room() > 0; ++sent) {
       const PathWord& word = words.nodes[sent];
-      const auto problem =
+      const auto refusal =
           follower.push(Node{word.duration, {word.axis[0], word.axis[1]}}, sent + 1 == words.nodes.size(),
                         [](std::size_t, std::int64_t) { return true; });
-      if (problem != firmware::NodeProblem::none)
+      if (refusal != firmware::Refusal::none)
         throw Failure(ExitCode::bad_input, fmt::format("a path of {:g} mm at {:g} mm/s is outside the range of an "
                                                        "encoder with steps of {:g} mm: smaller, or slower",
                                                        path.length(), limits.feed, count_mm[0]));

@@ -115,7 +115,7 @@ class ScenarioDriver {
       case MoveKind::move_to: {
         const double count_mm = scenario_.axes[move.axis].drive.data.encoder_resolution;
         const auto planned = axis.plan_move_to(firmware::CountPosition::at(std::llround(move.target_mm / count_mm)));
-        accepted = planned.error == firmware::MovePlanError::none && axis.start(planned.plan);
+        accepted = planned.refusal == firmware::Refusal::none && axis.start(planned.plan);
         break;
       }
       case MoveKind::stop:

@@ -31,7 +31,7 @@ firmware::FilterParameters<float> core_filters(const ControlFilterChoice& choice
   firmware::ParameterValues values;
   const auto set = [&](const std::string& name, double value) {
     const std::size_t place = require_place("x." + name);
-    if (firmware::check_value(firmware::rule_at(place), static_cast<float>(value)) != firmware::ValueProblem::none)
+    if (firmware::check_value(firmware::rule_at(place), static_cast<float>(value)) != firmware::ValueRefusal::none)
       throw Failure(ExitCode::bad_input, fmt::format("{} = {:g} is out of its range, {:g} to {:g}", name, value,
                                                      info_at(place).minimum, info_at(place).maximum));
     values.set(place, static_cast<float>(value));

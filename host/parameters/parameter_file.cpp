@@ -89,7 +89,7 @@ class ParameterReader {
     const float value = is_switch ? (**node.as_boolean() ? 1.0F : 0.0F)
                                   : static_cast<float>(node.value<double>().value_or(std::nan("")));
     const auto problem = firmware::check_value(firmware::rule_at(place), value);
-    if (problem != firmware::ValueProblem::none)
+    if (problem != firmware::ValueRefusal::none)
       fail(line, "{}", describe(firmware::key_at(place), static_cast<std::uint8_t>(problem), value));
     return {place, value};
   }
@@ -133,7 +133,7 @@ Assignment parse_assignment(std::string_view text) {
       throw Failure(ExitCode::usage, fmt::format("{}: '{}' is not a number", text, number));
   }
   const auto problem = firmware::check_value(firmware::rule_at(place), value);
-  if (problem != firmware::ValueProblem::none)
+  if (problem != firmware::ValueRefusal::none)
     throw Failure(ExitCode::usage, describe(firmware::key_at(place), static_cast<std::uint8_t>(problem), value));
   return {place, value};
 }
@@ -145,8 +145,8 @@ void put(firmware::ParameterValues& values, const Assignment& one) {
 }
 
 void require_fitting_set(const firmware::ParameterValues& values) {
-  const firmware::SetProblem problem = firmware::check<float>(values);
-  if (problem.kind == firmware::SetProblemKind::none) return;
+  const firmware::SetRefusal problem = firmware::check<float>(values);
+  if (problem.kind == firmware::ValueRefusal::none) return;
   const float value = values.at(firmware::place_of(problem.key).value());
   const std::string why = why_refused(values, problem);
   throw Failure(ExitCode::bad_input, describe(problem.key, static_cast<std::uint8_t>(problem.kind), value) +

@@ -81,23 +81,23 @@ std::string describe(firmware::ParameterKey key, std::uint8_t set_problem_kind, 
                ? fmt::format("{} = {} must be true or false", name, text)
                : fmt::format("{} = {} is {} {} ({})", name, text, side, value_text(info, limit), unit_text(info));
   };
-  switch (static_cast<firmware::SetProblemKind>(set_problem_kind)) {
-    case firmware::SetProblemKind::below_minimum:
+  switch (static_cast<firmware::ValueRefusal>(set_problem_kind)) {
+    case firmware::ValueRefusal::below_minimum:
       return outside("below its minimum", info.minimum);
-    case firmware::SetProblemKind::above_maximum:
+    case firmware::ValueRefusal::above_maximum:
       return outside("above its maximum", info.maximum);
-    case firmware::SetProblemKind::not_whole:
+    case firmware::ValueRefusal::not_whole:
       return fmt::format("{} = {} must be {}", name, text,
                          info.type == firmware::ParameterType::toggle ? "true or false" : "a whole number");
-    case firmware::SetProblemKind::rate_disagrees:
+    case firmware::ValueRefusal::rate_disagrees:
       return fmt::format(
           "{} = {} s does not belong to control.rate: set control.rate = {:.6g}, or design for the board's rate", name,
           text, 1.0 / static_cast<double>(value));
-    case firmware::SetProblemKind::refused_by_core:
+    case firmware::ValueRefusal::refused_by_core:
       return fmt::format("{} = {} ({}) does not go with the other parameters of its axis: {}", name, text,
                          unit_text(info), info.doc);
-    case firmware::SetProblemKind::not_a_number:
-    case firmware::SetProblemKind::none:
+    case firmware::ValueRefusal::not_a_number:
+    case firmware::ValueRefusal::none:
       break;
   }
   return fmt::format("{} is not a finite number; it must lie between {} and {} ({})", name,

@@ -36,7 +36,7 @@ std::string unit_text(const firmware::ParameterInfo& info);
 std::string value_text(const firmware::ParameterInfo& info, float value);
 
 /// "x.kalman.k11 = 5.2 is above its maximum 2.0 (1)"; for a set's problem also what does not fit. Never called with
-/// SetProblemKind::none.
+/// ValueRefusal::none.
 std::string describe(firmware::ParameterKey key, std::uint8_t set_problem_kind, float value);
 
 }  // namespace host

@@ -12,8 +12,8 @@ namespace host {
 
 namespace {
 
-using firmware::ParameterError;
 using firmware::PoleProblem;
+using firmware::Refusal;
 namespace ceilings = firmware::monitor_ceilings;
 
 template <typename Matrix>
@@ -41,6 +41,17 @@ const char* words(PoleProblem problem) {
   return "sound here, but not as the board rounds them";
 }
 
+/// As the monitor's declaration has it; empty where it has none.
+std::string declared_reason(Refusal refusal) {
+  std::string reason;
+  firmware::MonitoredFaults::for_each([&](auto declared) {
+    using Declaration = decltype(declared);
+    if constexpr (requires { Declaration::kWhyRefused; })
+      if (firmware::monitored::refusal_of<Declaration>() == refusal) reason = Declaration::kWhyRefused;
+  });
+  return reason;
+}
+
 }  // namespace
 
 std::string estimator_poles_text(const firmware::AxisParameters<float>& p) {
@@ -63,37 +74,33 @@ std::string loop_poles_text(const firmware::AxisParameters<float>& p) {
   return eigenvalues_text(Eigen::Matrix2d(closed.cast<double>()));
 }
 
-std::string why_refused(const firmware::ParameterValues& values, const firmware::SetProblem& problem) {
-  if (problem.kind != firmware::SetProblemKind::refused_by_core || problem.key.owner() == 0) return "";
-  const auto p = firmware::axis_parameters<float>(values.axis(problem.key.owner() - 1));
-  switch (problem.refusal) {
-    case ParameterError::estimator_poles:
+std::string why_refused(const firmware::ParameterValues& values, const firmware::SetRefusal& refused) {
+  if (refused.kind != firmware::ValueRefusal::refused_by_core || refused.key.owner() == 0) return "";
+  const auto p = firmware::axis_parameters<float>(values.axis(refused.key.owner() - 1));
+  switch (refused.core) {
+    case Refusal::estimator_poles:
       return fmt::format("with these Kalman gains the estimator is {}; its poles are {}. Design the gains again",
                          words(firmware::estimator_problem(p)), estimator_poles_text(p));
-    case ParameterError::loop_poles:
+    case Refusal::loop_poles:
       return fmt::format("with feedback.k1 and feedback.k2 the loop is {}; its poles are {}. Design the gains again",
                          words(firmware::loop_problem(p)), loop_poles_text(p));
-    case ParameterError::filters:
+    case Refusal::filters:
       return "with notch and low_pass as they are the loop would not settle, or one of them is not below 0.45 of the "
              "control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
-    case ParameterError::following_error:
+    case Refusal::following_error:
       return following_error_relation(p);
-    case ParameterError::disagreement:
+    case Refusal::disagreement:
       return disagreement_relation(p);
-    case ParameterError::overspeed:
+    case Refusal::overspeed:
       return overspeed_relation(p);
-    case ParameterError::polarity_command:
+    case Refusal::polarity_command:
       return fmt::format("above {:g} of drive.dac_limit, {:.4g} V, no command would reach it", ceilings::kCommandShare,
                          ceilings::kCommandShare * p.dac_limit_V);
-    case ParameterError::oscillation:
+    case Refusal::oscillation:
       return fmt::format("above {:g} of drive.dac_limit, {:.4g} V, no swing would reach it",
                          ceilings::kOscillationShare, ceilings::kOscillationShare * p.dac_limit_V);
-    case ParameterError::saturation_time:
-      return fmt::format("above {:g} s it would not protect", ceilings::kSaturation_s);
-    case ParameterError::travel:
-      return "monitor.travel_min must be below monitor.travel_max";
     default:
-      return "";
+      return declared_reason(refused.core);
   }
 }
 

@@ -9,7 +9,7 @@ namespace host {
 
 /// Continues "x.feedback.k1 = ... does not go with the other parameters of its axis: "; empty where the line of
 /// documentation says it all.
-std::string why_refused(const firmware::ParameterValues& values, const firmware::SetProblem& problem);
+std::string why_refused(const firmware::ParameterValues& values, const firmware::SetRefusal& refused);
 
 /// Of the sampled estimator and of the sampled loop, in the plane of z: "0.678, 0.694 +- 0.286i".
 std::string estimator_poles_text(const firmware::AxisParameters<float>& p);

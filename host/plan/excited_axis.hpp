@@ -31,8 +31,7 @@ class ExcitedAxis {
     record_.sample_period_s = data_.sample_period_s;
     axes_.board().configure(firmware::BoardWatch::default_limits(static_cast<float>(data_.sample_period_s)));
     axes_.board().host_commands(true);
-    is_usable_ =
-        axes_[0].configure(firmware::axis_parameters<float>(values_.axis(0))) == firmware::ParameterError::none;
+    is_usable_ = axes_[0].configure(firmware::axis_parameters<float>(values_.axis(0))) == firmware::Refusal::none;
     for (int k = 0; k <= firmware::kSelfTestSamples; ++k) step();
     start_counts_ = axes_[0].telemetry().encoder_counts;
     record_.t_s.clear();

@@ -49,7 +49,7 @@ class Search {
 
  private:
   bool keeps(const firmware::AxisParameters<float>& parameters) {
-    if (firmware::check_poles(parameters) != firmware::ParameterError::none) return false;
+    if (firmware::check_poles(parameters) != firmware::Refusal::none) return false;
     const LoopMargins margins = quick_margins(drive_, AxisController(parameters));
     if (!margins.is_stable || !margins.modulus) return false;
     best_modulus_ = std::max(best_modulus_, margins.modulus->value);

@@ -17,7 +17,7 @@ using firmware_test::kPaperX;
 struct ClosedLoop {
   explicit ClosedLoop(const AxisParameters<float>& parameters)
       : plant(firmware_test::friction_drive(kPaperX), 1), board(plant), axis(board) {
-    EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
+    EXPECT_EQ(axis.configure(parameters), firmware::Refusal::none);
     axis.step();
     axis.set_home(0);
     EXPECT_TRUE(axis.enable());

@@ -26,7 +26,7 @@ using hal::pc::SimulatedAxis;
 struct ClosedLoop {
   ClosedLoop(const PaperAxis& paper, const AxisParameters<float>& parameters)
       : plant(firmware_test::friction_drive(paper), 1), board(plant), axis(board) {
-    EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
+    EXPECT_EQ(axis.configure(parameters), firmware::Refusal::none);
     axis.step();
     EXPECT_TRUE(axis.enable());
   }
@@ -171,7 +171,7 @@ ContourErrors run_circle(bool friction_feedforward, bool disturbance_cancellatio
   const double turn_mm = 2.0 * std::numbers::pi * 35.0;
   const auto planned =
       firmware::plan_move(CountPosition::at(std::llround(turn_mm / firmware_test::kEncoderResolution_mm)), limits);
-  EXPECT_EQ(planned.error, firmware::MovePlanError::none);
+  EXPECT_EQ(planned.refusal, firmware::Refusal::none);
   firmware::ReferenceGenerator along_path;
   along_path.configure(limits);
   EXPECT_TRUE(along_path.start(planned.plan));

@@ -20,7 +20,7 @@ using firmware::AxisFault;
 using firmware::AxisParameters;
 using firmware::CountPosition;
 using firmware::kOneCount;
-using firmware::ParameterError;
+using firmware::Refusal;
 using firmware_test::kPaperX;
 using firmware_test::kPaperY;
 using firmware_test::LinearAxis;
@@ -74,7 +74,7 @@ TEST_P(LinearLoop, StepOfTheReferenceDecaysWithThePolesThatWerePlaced) {
   const AxisParameters<double> p = fine(*GetParam());
   LinearAxis drive(p);
   Axis<double, LinearAxis> axis(drive);
-  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  ASSERT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   ASSERT_TRUE(axis.enable());
 
@@ -100,7 +100,7 @@ TEST_P(LinearLoop, EstimateApproachesADisturbanceStepWithTheObserversPoles) {
   const AxisParameters<double> p = fine(*GetParam());
   LinearAxis drive(p);
   Axis<double, LinearAxis> axis(drive);
-  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  ASSERT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   ASSERT_TRUE(axis.enable());
   drive.disturbance_V = 1.0;
@@ -130,7 +130,7 @@ Response sinusoid_response(const PaperAxis& paper, bool zero_phase, double frequ
   p.zero_phase_feedforward_on = zero_phase;
   LinearAxis drive(p);
   Axis<double, LinearAxis> axis(drive);
-  EXPECT_EQ(axis.configure(p), ParameterError::none);
+  EXPECT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   EXPECT_TRUE(axis.enable());
   const double amplitude_mm = 1e-4;
@@ -182,7 +182,7 @@ std::vector<std::int32_t> words_from(std::int64_t origin_counts) {
   LinearAxis drive(p);
   drive.origin_counts = origin_counts;
   Axis<float, LinearAxis> axis(drive);
-  EXPECT_EQ(axis.configure(p), ParameterError::none);
+  EXPECT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   EXPECT_TRUE(axis.enable());
   std::vector<std::int32_t> words;
@@ -218,12 +218,12 @@ TEST(Resolution, TenMetresEndWithinHalfACountOfTheTarget) {
   p.acceleration_limit = 5000.0f;
   LinearAxis drive(p);
   Axis<float, LinearAxis> axis(drive);
-  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  ASSERT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   ASSERT_TRUE(axis.enable());
   const CountPosition target = CountPosition::at(4096000);
   const auto planned = axis.plan_move_to(target);
-  ASSERT_EQ(planned.error, firmware::MovePlanError::none);
+  ASSERT_EQ(planned.refusal, firmware::Refusal::none);
   ASSERT_TRUE(axis.start(planned.plan));
   double worst_mm = 0.0;
   int samples = 0;
@@ -251,7 +251,7 @@ TEST(DisturbanceCancellation, RemovesTheStandingErrorThatStateFeedbackLeaves) {
     p.disturbance_cancellation_on = cancel;
     LinearAxis drive(p);
     Axis<float, LinearAxis> axis(drive);
-    ASSERT_EQ(axis.configure(p), ParameterError::none);
+    ASSERT_EQ(axis.configure(p), Refusal::none);
     axis.step();
     ASSERT_TRUE(axis.enable());
     drive.disturbance_V = 0.5;
@@ -271,7 +271,7 @@ TEST(DisturbanceCancellation, OnTopOfFrictionFeedforwardDoesNotCountFrictionTwic
   p.disturbance_cancellation_on = true;
   LinearAxis drive(p);
   Axis<float, LinearAxis> axis(drive);
-  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  ASSERT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   ASSERT_TRUE(axis.enable());
   axis.jog(50.0f);
@@ -290,7 +290,7 @@ TEST(Saturation, IsReportedAndTheModelIsGivenWhatTheConverterPutOut) {
   p.dac_limit_V = 0.5f;
   LinearAxis drive(p);
   Axis<float, LinearAxis> axis(drive);
-  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  ASSERT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   ASSERT_TRUE(axis.enable());
   bool saturated = false;
@@ -307,7 +307,7 @@ TEST(Saturation, IsReportedAndTheModelIsGivenWhatTheConverterPutOut) {
 class AxisFaults : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_EQ(axis.configure(parameters), ParameterError::none);
+    ASSERT_EQ(axis.configure(parameters), Refusal::none);
     axis.step();
     ASSERT_TRUE(axis.enable());
     axis.jog(20.0f);
@@ -357,7 +357,7 @@ TEST(AxisFault, AControlSignalThatIsNotANumberNeverReachesTheConverter) {
   p.disturbance_cancellation_on = true;
   LinearAxis drive(p);
   Axis<float, LinearAxis> axis(drive);
-  ASSERT_EQ(axis.configure(p), ParameterError::none);
+  ASSERT_EQ(axis.configure(p), Refusal::none);
   axis.step();
   ASSERT_TRUE(axis.enable());
   drive.velocity = 1.0;
@@ -387,43 +387,42 @@ TEST_F(AxisFaults, AfterTheCauseIsGoneTheAxisHoldsWhereItStands) {
 }
 
 TEST_F(AxisFaults, ParametersStayWhileEnabled) {
-  EXPECT_EQ(axis.configure(parameters), ParameterError::controller_is_enabled);
+  EXPECT_EQ(axis.configure(parameters), Refusal::controller_is_enabled);
 }
 
 TEST(AxisParameterCheck, NamesWhatIsWrong) {
   const AxisParameters<float> good = parameters_of<float>(kPaperX);
-  ASSERT_EQ(firmware::check(good), ParameterError::none);
+  ASSERT_EQ(firmware::check(good), Refusal::none);
   const auto error_after = [&](auto change) {
     AxisParameters<float> p = good;
     change(p);
     return firmware::check(p);
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(error_after([](auto& p) { p.sample_period_s = 0.0f; }), ParameterError::sample_period);
-  EXPECT_EQ(error_after([&](auto& p) { p.lead = nan; }), ParameterError::lead);
-  EXPECT_EQ(error_after([](auto& p) { p.encoder_resolution = -1.0f; }), ParameterError::encoder_resolution);
-  EXPECT_EQ(error_after([](auto& p) { p.dac_resolution_V = 0.0f; }), ParameterError::dac_resolution);
-  EXPECT_EQ(error_after([](auto& p) { p.dac_limit_V = 1e-4f; }), ParameterError::dac_limit);
-  EXPECT_EQ(error_after([](auto& p) { p.tachometer_gain = 0.0f; }), ParameterError::tachometer_gain);
-  EXPECT_EQ(error_after([](auto& p) { p.drive.Ad22 = 1.01f; }), ParameterError::drive_model);
-  EXPECT_EQ(error_after([&](auto& p) { p.Kobs[2][1] = nan; }), ParameterError::kalman_gain);
-  EXPECT_EQ(error_after([](auto& p) { p.Kc[1] = std::numeric_limits<float>::infinity(); }),
-            ParameterError::state_feedback);
+  EXPECT_EQ(error_after([](auto& p) { p.sample_period_s = 0.0f; }), Refusal::sample_period);
+  EXPECT_EQ(error_after([&](auto& p) { p.lead = nan; }), Refusal::lead);
+  EXPECT_EQ(error_after([](auto& p) { p.encoder_resolution = -1.0f; }), Refusal::encoder_resolution);
+  EXPECT_EQ(error_after([](auto& p) { p.dac_resolution_V = 0.0f; }), Refusal::dac_resolution);
+  EXPECT_EQ(error_after([](auto& p) { p.dac_limit_V = 1e-4f; }), Refusal::dac_limit);
+  EXPECT_EQ(error_after([](auto& p) { p.tachometer_gain = 0.0f; }), Refusal::tachometer_gain);
+  EXPECT_EQ(error_after([](auto& p) { p.drive.Ad22 = 1.01f; }), Refusal::drive_model);
+  EXPECT_EQ(error_after([&](auto& p) { p.Kobs[2][1] = nan; }), Refusal::kalman_gain);
+  EXPECT_EQ(error_after([](auto& p) { p.Kc[1] = std::numeric_limits<float>::infinity(); }), Refusal::state_feedback);
   EXPECT_EQ(error_after([](auto& p) {
               p.friction_feedforward_on = true;
               p.friction.negative.static_V = -1.0f;
             }),
-            ParameterError::friction_curve);
+            Refusal::friction_curve);
   EXPECT_EQ(error_after([](auto& p) {
               p.friction_feedforward_on = true;
               p.friction.blend_velocity_rad_s = 0.0f;
             }),
-            ParameterError::friction_blend);
-  EXPECT_EQ(error_after([](auto& p) { p.velocity_limit = 0.0f; }), ParameterError::velocity_limit);
-  EXPECT_EQ(error_after([](auto& p) { p.velocity_limit = 1e6f; }), ParameterError::velocity_limit);
-  EXPECT_EQ(error_after([](auto& p) { p.acceleration_limit = 0.0f; }), ParameterError::acceleration_limit);
-  EXPECT_EQ(error_after([](auto& p) { p.jerk_limit = 0.0f; }), ParameterError::jerk_limit);
-  EXPECT_EQ(error_after([](auto& p) { p.jerk_limit = 1e-3f; }), ParameterError::jerk_time);
+            Refusal::friction_blend);
+  EXPECT_EQ(error_after([](auto& p) { p.velocity_limit = 0.0f; }), Refusal::velocity_limit);
+  EXPECT_EQ(error_after([](auto& p) { p.velocity_limit = 1e6f; }), Refusal::velocity_limit);
+  EXPECT_EQ(error_after([](auto& p) { p.acceleration_limit = 0.0f; }), Refusal::acceleration_limit);
+  EXPECT_EQ(error_after([](auto& p) { p.jerk_limit = 0.0f; }), Refusal::jerk_limit);
+  EXPECT_EQ(error_after([](auto& p) { p.jerk_limit = 1e-3f; }), Refusal::jerk_time);
 }
 
 TEST(AxisParameterCheck, AnUnconfiguredAxisCannotBeEnabled) {

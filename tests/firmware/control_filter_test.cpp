@@ -130,9 +130,9 @@ TYPED_TEST(ControlFilter, IsRefusedWhereTheLoopDoesNotStandIt) {
 TYPED_TEST(ControlFilter, IsRefusedNearHalfTheControlRate) {
   firmware::ParameterValues values = paper_values();
   set(values, "x.notch.frequency", 451);
-  EXPECT_EQ(firmware::check_poles(this->parameters(values)), firmware::ParameterError::none) << "it is off";
+  EXPECT_EQ(firmware::check_poles(this->parameters(values)), firmware::Refusal::none) << "it is off";
   set(values, "x.notch.on", 1);
-  EXPECT_EQ(firmware::check_poles(this->parameters(values)), firmware::ParameterError::filters);
+  EXPECT_EQ(firmware::check_poles(this->parameters(values)), firmware::Refusal::filters);
 }
 
 }  // namespace

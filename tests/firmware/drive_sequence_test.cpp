@@ -134,7 +134,7 @@ TEST_F(Sequence, AReadyInputWithoutATimeIsRefused) {
   p.sequence.amplifier_wait = 0;
   firmware::boards::ValueAxis io;
   firmware::SupervisedAxis<float, firmware::boards::ValueAxis> axis(io);
-  EXPECT_EQ(axis.configure(p), firmware::ParameterError::amplifier_ready);
+  EXPECT_EQ(axis.configure(p), firmware::Refusal::amplifier_ready);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ class DrivenAxis {
   explicit DrivenAxis(const firmware::AxisParameters<float>& parameters) {
     io.encoder().reading = {0, true};
     io.tachometer().reading = {0, true};
-    EXPECT_EQ(axis.configure(parameters), firmware::ParameterError::none);
+    EXPECT_EQ(axis.configure(parameters), firmware::Refusal::none);
     for (int k = 0; k < firmware::kSelfTestSamples + 1; ++k) axis.step();
     EXPECT_TRUE(axis.set_position(0));
     EXPECT_TRUE(axis.enable());

@@ -174,8 +174,8 @@ std::vector<Period> run_fixed(const AxisParameters<double>& parameters, int peri
   Axis<FixedPoint, firmware::boards::ValueAxis> axis(io);
   Axis<double, firmware::boards::ValueAxis> in_double(io);
   const AxisParameters<FixedPoint> in_fixed = firmware::to_fixed(parameters);
-  RC_ASSERT(in_double.configure(as_double(in_fixed)) == firmware::ParameterError::none);
-  RC_ASSERT(axis.configure(in_fixed) == firmware::ParameterError::none);
+  RC_ASSERT(in_double.configure(as_double(in_fixed)) == firmware::Refusal::none);
+  RC_ASSERT(axis.configure(in_fixed) == firmware::Refusal::none);
   const auto noise = *rc::gen::container<std::vector<int>>(97, rc::gen::inRange(-20, 21));
   std::vector<Period> record;
   for (int k = 0; k < periods; ++k) {
@@ -287,7 +287,7 @@ TEST(FixedPoint, NoReadingMakesAnAxisOverflow) {
   EXPECT_TRUE(rc::check("codes stay in range, the estimate stays ordered", [] {
     firmware::boards::ValueAxis io;
     Axis<FixedPoint, firmware::boards::ValueAxis> axis(io);
-    RC_ASSERT(axis.configure(firmware::to_fixed(random_axis())) == firmware::ParameterError::none);
+    RC_ASSERT(axis.configure(firmware::to_fixed(random_axis())) == firmware::Refusal::none);
     for (int k = 0; k < 300; ++k) {
       io.encoder().reading = {*rc::gen::arbitrary<std::uint32_t>(), true};
       io.tachometer().reading = {*rc::gen::inRange(-(1 << 24), 1 << 24), true};
@@ -316,9 +316,9 @@ TEST(FixedPoint, ParametersThatDoNotFitAreRefused) {
   firmware::boards::ValueAxis io;
   Axis<FixedPoint, firmware::boards::ValueAxis> axis(io);
   auto parameters = firmware_test::parameters_of<double>(firmware_test::kPaperX);
-  EXPECT_EQ(axis.configure(firmware::to_fixed(parameters)), firmware::ParameterError::none);
+  EXPECT_EQ(axis.configure(firmware::to_fixed(parameters)), firmware::Refusal::none);
   parameters.Kc[0] = 1e9;
-  EXPECT_EQ(axis.configure(firmware::to_fixed(parameters)), firmware::ParameterError::state_feedback);
+  EXPECT_EQ(axis.configure(firmware::to_fixed(parameters)), firmware::Refusal::state_feedback);
 }
 
 }  // namespace

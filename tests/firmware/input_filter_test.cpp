@@ -20,16 +20,16 @@ TEST(InputFilter, CountsPeriodsInARow) {
   firmware::InputFilter filter;
   filter.configure(3);
   for (int spark = 0; spark < 50; ++spark) {
-    EXPECT_FALSE(filter.settle(true));
-    EXPECT_FALSE(filter.settle(true));
-    EXPECT_FALSE(filter.settle(false));
+    EXPECT_FALSE(filter.filtered(true));
+    EXPECT_FALSE(filter.filtered(true));
+    EXPECT_FALSE(filter.filtered(false));
     EXPECT_FALSE(filter.is_pending());
   }
-  filter.settle(true);
-  filter.settle(true);
-  EXPECT_TRUE(filter.settle(true));
-  EXPECT_TRUE(filter.settle(true)) << "and stays";
-  EXPECT_FALSE(filter.settle(false)) << "let go at once";
+  filter.filtered(true);
+  filter.filtered(true);
+  EXPECT_TRUE(filter.filtered(true));
+  EXPECT_TRUE(filter.filtered(true)) << "and stays";
+  EXPECT_FALSE(filter.filtered(false)) << "let go at once";
 }
 
 struct Line {

@@ -223,22 +223,22 @@ TEST_F(BoardMonitor, LinesOfTheBoard) {
 }
 
 TEST(MonitorLimits, NoneCanBeSwitchedOff) {
-  using firmware::ParameterError;
+  using firmware::Refusal;
   const auto error_after = [](auto change) {
     auto p = parameters();
     change(p.monitors);
     return firmware::check_monitors(p);
   };
-  EXPECT_EQ(error_after([](auto&) {}), ParameterError::none);
-  EXPECT_EQ(error_after([](auto& m) { m.following_error_floor = 0.0f; }), ParameterError::following_error);
-  EXPECT_EQ(error_after([](auto& m) { m.disagreement_share = 1.5f; }), ParameterError::disagreement);
+  EXPECT_EQ(error_after([](auto&) {}), Refusal::none);
+  EXPECT_EQ(error_after([](auto& m) { m.following_error_floor = 0.0f; }), Refusal::following_error);
+  EXPECT_EQ(error_after([](auto& m) { m.disagreement_share = 1.5f; }), Refusal::disagreement);
   EXPECT_EQ(error_after([](auto& m) { m.encoder_jump = std::numeric_limits<float>::infinity(); }),
-            ParameterError::disagreement);
-  EXPECT_EQ(error_after([](auto& m) { m.overspeed = 100.0f; }), ParameterError::overspeed);
-  EXPECT_EQ(error_after([](auto& m) { m.polarity_command_V = kNaN; }), ParameterError::polarity_command);
-  EXPECT_EQ(error_after([](auto& m) { m.oscillation_V = 0.0f; }), ParameterError::oscillation);
-  EXPECT_EQ(error_after([](auto& m) { m.travel_max_counts = m.travel_min_counts; }), ParameterError::travel);
-  EXPECT_EQ(error_after([](auto& m) { m.saturation_samples = 0; }), ParameterError::saturation_time);
+            Refusal::disagreement);
+  EXPECT_EQ(error_after([](auto& m) { m.overspeed = 100.0f; }), Refusal::overspeed);
+  EXPECT_EQ(error_after([](auto& m) { m.polarity_command_V = kNaN; }), Refusal::polarity_command);
+  EXPECT_EQ(error_after([](auto& m) { m.oscillation_V = 0.0f; }), Refusal::oscillation);
+  EXPECT_EQ(error_after([](auto& m) { m.travel_max_counts = m.travel_min_counts; }), Refusal::travel);
+  EXPECT_EQ(error_after([](auto& m) { m.saturation_samples = 0; }), Refusal::saturation_time);
 }
 
 TEST(MonitorLimits, HaveTheSameMeaningInFixedPoint) {

@@ -65,6 +65,52 @@ inline constexpr double kDacResolution_V = 20.0 / 65536.0;       // Table 1
 inline constexpr double kMotorConstant_Nm_per_A = 0.4769;        // Table 1
 inline constexpr double kTachometerResolution_rad_s = 1.0 / 64;  // this project's simulated board
 
+/// Each threshold at its parameter's initial value.
+template <typename Real>
+constexpr firmware::MonitorLimits<Real> initial_monitor_limits(float encoder_resolution, float sample_period_s) {
+  const auto initial = [](auto id) {
+    float value = 0;
+    firmware::for_each_threshold([&](auto declared, auto index) {
+      using Declaration = decltype(declared);
+      const firmware::ThresholdRow& row = std::get<index()>(Declaration::template kThresholds<float>).row;
+      if (row.id == decltype(id)::value) value = row.initial;
+    });
+    return value;
+  };
+  return firmware::monitor_limits<Real>(initial, encoder_resolution, sample_period_s);
+}
+
+/// Where nothing better is known. Following error: the way of 2 ms at the velocity limit, and 5 ms of the present
+/// speed; state feedback without any feed-forward is some 1 ms late. Disagreement: 4 % of the velocity limit and 10 %
+/// of the speed (tachometers are within 2 %, ripple included); a jump: a quarter of the limit; neither below what the
+/// encoder's steps look like. Overspeed: a fifth above the limit. Polarity: 30 % of the converter, well above any
+/// friction that can still be overcome. Oscillation: 25 % of the converter. Saturation: 0.1 s. Travel: all that an
+/// encoder counter holds. `velocity_limit` mm/s (m/s), `lead` mm/rad (1).
+template <typename Real>
+constexpr firmware::MonitorLimits<Real> default_monitor_limits(Real velocity_limit, Real lead, Real encoder_resolution,
+                                                               Real sample_period_s, Real dac_limit_V) {
+  const Real fastest = velocity_limit / lead;
+  const Real count = encoder_resolution / (lead * sample_period_s);
+  const auto larger = [](Real a, Real b) { return a > b ? a : b; };
+  auto limits =
+      initial_monitor_limits<Real>(static_cast<float>(encoder_resolution), static_cast<float>(sample_period_s));
+  limits.following_error_floor = velocity_limit * Real(0.002f);
+  limits.following_error_per_velocity = lead * Real(0.005f);
+  limits.disagreement_floor = larger(fastest * Real(0.04f), count * Real(2));
+  limits.disagreement_share = Real(0.1f);
+  limits.encoder_jump = larger(fastest * Real(0.25f), count * Real(8));
+  limits.overspeed = larger(fastest * Real(1.2f), fastest + count * Real(2));
+  limits.polarity_command_V = dac_limit_V * Real(0.3f);
+  limits.oscillation_V = dac_limit_V * Real(0.25f);
+  firmware::set_filters(limits, sample_period_s);
+  limits.travel_min_counts = -(std::int64_t{1} << 31);
+  limits.travel_max_counts = std::int64_t{1} << 31;
+  const std::int32_t samples = firmware::ScalarTraits<Real>::truncate(Real(0.1f) / sample_period_s + Real(0.5f));
+  limits.saturation_samples = samples;
+  limits.capture_stride = firmware::capture_stride(Real(1) / sample_period_s);
+  return limits;
+}
+
 template <typename Scalar>
 constexpr firmware::AxisParameters<Scalar> parameters_of(const PaperAxis& axis) {
   const auto scalar = [](double value) { return static_cast<Scalar>(value); };
@@ -90,8 +136,7 @@ constexpr firmware::AxisParameters<Scalar> parameters_of(const PaperAxis& axis) 
   p.velocity_limit = scalar(250.0);
   p.acceleration_limit = scalar(2000.0);  // section 4
   p.jerk_limit = scalar(50000.0);         // section 4
-  p.monitors = firmware::default_monitor_limits(p.velocity_limit, p.lead, p.encoder_resolution, p.sample_period_s,
-                                                p.dac_limit_V);
+  p.monitors = default_monitor_limits(p.velocity_limit, p.lead, p.encoder_resolution, p.sample_period_s, p.dac_limit_V);
   return p;
 }
 

@@ -13,9 +13,9 @@ namespace {
 using firmware::CountPosition;
 using firmware::Increment;
 using firmware::kOneCount;
-using firmware::NodeProblem;
 using firmware::PathEnd;
 using firmware::PathPhase;
+using firmware::Refusal;
 
 constexpr std::size_t kAxes = 2;
 using Follower = firmware::PathFollower<kAxes, 64>;
@@ -61,9 +61,9 @@ class Followed : public testing::Test {
   bool push_next(bool last) {
     std::array<std::int64_t, kAxes> given = given_;
     const auto node = circle_.node(kPiece * (pushed_ + 1), kPiece, kUnits, last, given);
-    const NodeProblem problem = follower_.push(node, last, [](std::size_t, std::int64_t) { return true; });
-    if (problem == NodeProblem::no_room) return false;
-    EXPECT_EQ(problem, NodeProblem::none);
+    const Refusal refusal = follower_.push(node, last, [](std::size_t, std::int64_t) { return true; });
+    if (refusal == Refusal::path_full) return false;
+    EXPECT_EQ(refusal, Refusal::none);
     given_ = given;
     ++pushed_;
     return true;
@@ -184,21 +184,20 @@ TEST_F(Followed, RefusesWhatCannotBeRight) {
   const auto anywhere = [](std::size_t, std::int64_t) { return true; };
   firmware::PathNode<kAxes> node;
   node.duration = firmware::kShortestPiece;
-  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::not_open);
+  EXPECT_EQ(follower_.push(node, false, anywhere), Refusal::path_not_open);
   open();
   EXPECT_FALSE(follower_.start()) << "nothing to follow";
   node.duration = firmware::kShortestPiece - 1;
-  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::too_fast);
+  EXPECT_EQ(follower_.push(node, false, anywhere), Refusal::path_too_fast);
   node.duration = firmware::kLongestPiece;
   node.axis[0].acceleration = std::numeric_limits<std::int32_t>::max();
-  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::too_fast)
+  EXPECT_EQ(follower_.push(node, false, anywhere), Refusal::path_too_fast)
       << "half a count a sample^2, for 2^14 samples";
   node.duration = 10 * firmware::kShortestPiece;
-  EXPECT_EQ(follower_.push(node, true, anywhere), NodeProblem::ends_in_motion);
-  EXPECT_EQ(follower_.push(node, false, [](std::size_t, std::int64_t) { return false; }), NodeProblem::outside_travel);
-  for (std::size_t i = 0; i < Follower::kNodes; ++i)
-    ASSERT_EQ(follower_.push(node, false, anywhere), NodeProblem::none);
-  EXPECT_EQ(follower_.push(node, false, anywhere), NodeProblem::no_room);
+  EXPECT_EQ(follower_.push(node, true, anywhere), Refusal::path_ends_in_motion);
+  EXPECT_EQ(follower_.push(node, false, [](std::size_t, std::int64_t) { return false; }), Refusal::outside_travel);
+  for (std::size_t i = 0; i < Follower::kNodes; ++i) ASSERT_EQ(follower_.push(node, false, anywhere), Refusal::none);
+  EXPECT_EQ(follower_.push(node, false, anywhere), Refusal::path_full);
 }
 
 }  // namespace

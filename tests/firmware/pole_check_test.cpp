@@ -109,7 +109,7 @@ TEST(PoleCheck, AnEstimatorThatLooksAtNothingIsRefused) {
   auto p = paper();
   p.Kobs = {};
   EXPECT_EQ(firmware::estimator_problem(p), PoleProblem::unstable);
-  EXPECT_EQ(firmware::check_poles(p), firmware::ParameterError::estimator_poles);
+  EXPECT_EQ(firmware::check_poles(p), firmware::Refusal::estimator_poles);
   p = paper();
   for (auto& row : p.Kobs)
     for (float& gain : row) gain *= 1e-5f;
@@ -127,7 +127,7 @@ TEST(PoleCheck, ALoopThatRingsAtHalfTheSampleRateIsRefused) {
   auto p = paper();
   p.Kc[1] = 1.95f / p.drive.Bd2;  // its fast pole at -0.95
   EXPECT_EQ(firmware::loop_problem(p), PoleProblem::undamped);
-  EXPECT_EQ(firmware::check_poles(p), firmware::ParameterError::loop_poles);
+  EXPECT_EQ(firmware::check_poles(p), firmware::Refusal::loop_poles);
   p.Kc[1] = 2.1f / p.drive.Bd2;
   EXPECT_EQ(firmware::loop_problem(p), PoleProblem::unstable);
 }

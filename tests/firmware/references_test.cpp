@@ -17,11 +17,10 @@ using firmware::CountPosition;
 using firmware::Increment;
 using firmware::kFractionBits;
 using firmware::kOneCount;
-using firmware::MotionLimitError;
 using firmware::MotionLimits;
-using firmware::MovePlanError;
 using firmware::plan_move;
 using firmware::ReferenceGenerator;
+using firmware::Refusal;
 
 /// Limits from slow and stiff to fast and soft: each spans many orders of magnitude.
 rc::Gen<MotionLimits> any_limits() {
@@ -35,7 +34,7 @@ rc::Gen<MotionLimits> any_limits() {
                                         [](const std::tuple<Increment, Increment, Increment>& t) {
                                           return MotionLimits{std::get<0>(t), std::get<1>(t), std::get<2>(t)};
                                         }),
-                           [](const MotionLimits& limits) { return check(limits) == MotionLimitError::none; });
+                           [](const MotionLimits& limits) { return check(limits) == Refusal::none; });
 }
 
 /// Watches increments: velocity is the increment, acceleration and jerk its differences.
@@ -81,7 +80,7 @@ RC_GTEST_PROP(Move, EndsExactlyAtItsTargetAndKeepsEveryLimit, ()) {
   const MotionLimits limits = *any_limits();
   const CountPosition distance = any_distance();
   const auto [plan, error] = plan_move(distance, limits);
-  RC_PRE(error == MovePlanError::none && plan.samples() < kAffordable);
+  RC_PRE(error == Refusal::none && plan.samples() < kAffordable);
   ReferenceGenerator generator;
   generator.configure(limits);
   RC_ASSERT(generator.start(plan));
@@ -110,7 +109,7 @@ RC_GTEST_PROP(Move, TakesNoLongerThanItMust, ()) {
   const Increment longest = *ratio(1, 8000);
   for (Increment k = 0; k < longest; ++k) distance.advance(limits.velocity);
   const auto [plan, error] = plan_move(distance, limits);
-  RC_ASSERT(error == MovePlanError::none);
+  RC_ASSERT(error == Refusal::none);
   const double D = static_cast<double>(limits.velocity) * static_cast<double>(longest);
   const double v = static_cast<double>(limits.velocity), a = static_cast<double>(acceleration),
                j = static_cast<double>(jerk);
@@ -158,7 +157,7 @@ RC_GTEST_PROP(Move, CanBeStoppedOrTurnedIntoAJogAtAnySample, ()) {
   const MotionLimits limits = *any_limits();
   const CountPosition distance = any_distance();
   const auto [plan, error] = plan_move(distance, limits);
-  RC_PRE(error == MovePlanError::none && plan.samples() < kAffordable / 4);
+  RC_PRE(error == Refusal::none && plan.samples() < kAffordable / 4);
   ReferenceGenerator generator;
   generator.configure(limits);
   RC_ASSERT(generator.start(plan));
@@ -195,7 +194,7 @@ TEST(Move, OfThePapersAxisTakesTheTimeThatItsLimitsAllow) {
   };
   const MotionLimits limits{units(170.0, 1), units(2000.0, 2), units(50000.0, 3)};
   const auto [plan, error] = plan_move(CountPosition::at(40960), limits);
-  ASSERT_EQ(error, MovePlanError::none);
+  ASSERT_EQ(error, Refusal::none);
   EXPECT_GE(plan.samples(), 713);
   EXPECT_LE(plan.samples(), 716);
 }
@@ -225,18 +224,17 @@ TEST(Move, OfNoDistanceIsOverAtOnce) {
 
 TEST(Move, ThatWouldTakeForeverIsRefused) {
   const MotionLimits slow{16, 16, 16};
-  EXPECT_EQ(plan_move(CountPosition::at(1), slow).error, MovePlanError::too_long);
+  EXPECT_EQ(plan_move(CountPosition::at(1), slow).refusal, Refusal::move_too_long);
 }
 
 TEST(MotionLimits, AreCheckedOneByOne) {
   const MotionLimits good{kOneCount, kOneCount, kOneCount};
-  EXPECT_EQ(check(good), MotionLimitError::none);
-  EXPECT_EQ(check({0, good.acceleration, good.jerk}), MotionLimitError::velocity_out_of_range);
-  EXPECT_EQ(check({(kOneCount << 14) + 1, good.acceleration, good.jerk}), MotionLimitError::velocity_out_of_range);
-  EXPECT_EQ(check({good.velocity, -5, good.jerk}), MotionLimitError::acceleration_out_of_range);
-  EXPECT_EQ(check({good.velocity, good.acceleration, 15}), MotionLimitError::jerk_out_of_range);
-  EXPECT_EQ(check({good.velocity, good.acceleration, firmware::kLeastMotion}),
-            MotionLimitError::jerk_time_out_of_range);
+  EXPECT_EQ(check(good), Refusal::none);
+  EXPECT_EQ(check({0, good.acceleration, good.jerk}), Refusal::velocity_limit);
+  EXPECT_EQ(check({(kOneCount << 14) + 1, good.acceleration, good.jerk}), Refusal::velocity_limit);
+  EXPECT_EQ(check({good.velocity, -5, good.jerk}), Refusal::acceleration_limit);
+  EXPECT_EQ(check({good.velocity, good.acceleration, 15}), Refusal::jerk_limit);
+  EXPECT_EQ(check({good.velocity, good.acceleration, firmware::kLeastMotion}), Refusal::jerk_time);
 }
 
 TEST(CountPosition, AddsWithoutLossOverManySamples) {

@@ -28,20 +28,54 @@ TEST(FaultTable, HasCauseAndRemedyForEveryFault) {
   }
 }
 
+/// Hosts and records know faults by their numbers. Later ones follow these.
 TEST(FaultTable, NumbersAreFrozen) {
-  EXPECT_EQ(static_cast<int>(AxisFault::encoder_invalid), 1);
-  EXPECT_EQ(static_cast<int>(AxisFault::following_error), 6);
-  EXPECT_EQ(static_cast<int>(AxisFault::emergency_stop), 16);
-  EXPECT_EQ(static_cast<int>(AxisFault::other_axis_stopped), 23);
-  EXPECT_EQ(static_cast<int>(AxisFault::command_without_motion), 24);
-  EXPECT_EQ(static_cast<int>(AxisFault::limit_cycle), 25);
-  EXPECT_EQ(static_cast<int>(AxisFault::converter_not_as_set), 26);
-  EXPECT_EQ(static_cast<int>(AxisFault::homing_switch_not_found), 27);
-  EXPECT_EQ(static_cast<int>(AxisFault::homing_index_not_found), 28);
-  EXPECT_EQ(static_cast<int>(AxisFault::homing_travel_exceeded), 29);
-  EXPECT_EQ(static_cast<int>(AxisFault::amplifier_not_ready), 30);
-  EXPECT_EQ(static_cast<int>(AxisFault::index_mismatch), 31);
-  EXPECT_EQ(firmware::kFaults.size(), 32u) << "a new fault takes the next number; freeze it here too";
+  constexpr const char* kFrozen[] = {"none",
+                                     "encoder_invalid",
+                                     "tachometer_invalid",
+                                     "control_signal_not_a_number",
+                                     "dac_write_failed",
+                                     "parameters_missing",
+                                     "following_error",
+                                     "encoder_tachometer_disagreement",
+                                     "encoder_jump",
+                                     "feedback_polarity",
+                                     "overspeed",
+                                     "travel_limit",
+                                     "limit_switch_positive",
+                                     "limit_switch_negative",
+                                     "saturation_too_long",
+                                     "drive_fault",
+                                     "emergency_stop",
+                                     "state_not_a_number",
+                                     "control_overrun",
+                                     "host_heartbeat_lost",
+                                     "parameter_store_damaged",
+                                     "supply_low",
+                                     "reference_out_of_limits",
+                                     "other_axis_stopped",
+                                     "command_without_motion",
+                                     "limit_cycle",
+                                     "converter_not_as_set",
+                                     "homing_switch_not_found",
+                                     "homing_index_not_found",
+                                     "homing_travel_exceeded",
+                                     "amplifier_not_ready",
+                                     "index_mismatch"};
+  int number = 0;
+  for (const char* name : kFrozen) {
+    const auto& info = firmware::fault_info(static_cast<AxisFault>(number));
+    EXPECT_STREQ(info.name, name);
+    EXPECT_EQ(static_cast<int>(info.fault), number++);
+  }
+}
+
+TEST(FaultTable, SaysAfterWhichNobodyKnowsThePosition) {
+  std::set<std::string_view> lost;
+  for (const auto& info : firmware::kFaults)
+    if (firmware::loses_position(info.fault)) lost.insert(info.name);
+  EXPECT_EQ(lost, (std::set<std::string_view>{"encoder_invalid", "encoder_jump", "encoder_tachometer_disagreement",
+                                              "command_without_motion", "index_mismatch"}));
 }
 
 TEST(StateTable, IsWhatTheDocumentationSays) {
@@ -85,7 +119,7 @@ class Board : public testing::Test {
     for (std::size_t i = 0; i < 2; ++i) {
       io[i].encoder().reading = {0, true};
       io[i].tachometer().reading = {0, true};
-      EXPECT_EQ(axes[i].configure(parameters(i)), firmware::ParameterError::none);
+      EXPECT_EQ(axes[i].configure(parameters(i)), firmware::Refusal::none);
     }
   }
   static firmware::AxisParameters<float> parameters(std::size_t axis) {
@@ -311,7 +345,7 @@ TEST_F(Board, ReadsBothEncodersBeforeItComputesEither) {
   Log log;
   LoggedAxis x(log), y(log);
   firmware::AxisGroup<float, LoggedAxis, 2> group([&](std::size_t index) -> LoggedAxis& { return index == 0 ? x : y; });
-  for (std::size_t i = 0; i < 2; ++i) ASSERT_EQ(group[i].configure(parameters(i)), firmware::ParameterError::none);
+  for (std::size_t i = 0; i < 2; ++i) ASSERT_EQ(group[i].configure(parameters(i)), firmware::Refusal::none);
   log.text.clear();
   group.step({});
   EXPECT_EQ(log.text, "eedd");

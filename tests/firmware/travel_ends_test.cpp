@@ -68,9 +68,9 @@ TEST(EndsOfTravel, AMoveBeyondIsRefusedBeforeItStarts) {
   const auto target = [](double mm) {
     return CountPosition::at(std::llround(mm / firmware_test::kEncoderResolution_mm));
   };
-  EXPECT_EQ(axis.axis.plan_move_to(target(50.0)).error, firmware::MovePlanError::outside_travel);
-  EXPECT_EQ(axis.axis.plan_move_to(target(-10.1)).error, firmware::MovePlanError::outside_travel);
-  EXPECT_EQ(axis.axis.plan_move_to(target(9.9)).error, firmware::MovePlanError::none);
+  EXPECT_EQ(axis.axis.plan_move_to(target(50.0)).refusal, firmware::Refusal::outside_travel);
+  EXPECT_EQ(axis.axis.plan_move_to(target(-10.1)).refusal, firmware::Refusal::outside_travel);
+  EXPECT_EQ(axis.axis.plan_move_to(target(9.9)).refusal, firmware::Refusal::none);
 }
 
 class TwoAxes : public testing::Test {
@@ -79,7 +79,7 @@ class TwoAxes : public testing::Test {
     for (std::size_t i = 0; i < 2; ++i) {
       io[i].encoder().reading = {0, true};
       io[i].tachometer().reading = {0, true};
-      EXPECT_EQ(axes[i].configure(parameters(1000.0)), firmware::ParameterError::none);
+      EXPECT_EQ(axes[i].configure(parameters(1000.0)), firmware::Refusal::none);
     }
     run(firmware::kSelfTestSamples + 1);
   }
@@ -127,7 +127,7 @@ TEST(MotionLimits, AreKeptToAHundredthAtEveryRate) {
           jerk / firmware_test::kEncoderResolution_mm / std::pow(rate_Hz, 3) * static_cast<double>(firmware::kOneCount);
       const auto as_float = firmware::motion_limits(p), as_fixed = firmware::motion_limits(firmware::to_fixed(p));
       EXPECT_EQ(as_fixed.jerk, as_float.jerk) << rate_Hz << ' ' << jerk;
-      if (firmware::check(as_fixed) != firmware::MotionLimitError::none) continue;
+      if (firmware::check(as_fixed) != firmware::Refusal::none) continue;
       ++accepted;
       EXPECT_NEAR(static_cast<double>(as_fixed.jerk) / exact, 1.0, 0.002) << rate_Hz << ' ' << jerk;
     }

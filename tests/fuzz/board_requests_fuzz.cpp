@@ -47,12 +47,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     server.poll(board.usb());
     hal::HidReport reply;
     firmware::Message message;
-    if (!board.usb().host_receive(reply) || firmware::decode(reply, message) != firmware::DecodeProblem::none)
-      std::abort();
+    if (!board.usb().host_receive(reply) || firmware::decode(reply, message) != firmware::Status::ok) std::abort();
     application.control_period();
     server.poll(board.usb());
     while (board.usb().host_receive(reply)) continue;
-    if (firmware::check<float>(application.active()).kind != firmware::SetProblemKind::none) std::abort();
+    if (firmware::check<float>(application.active()).kind != firmware::ValueRefusal::none) std::abort();
     for (std::size_t axis = 0; axis < hal::kAxisCount; ++axis)
       if (board.axis(axis).drive_enable().is_on() && !application.is_fitted(axis)) std::abort();
   }

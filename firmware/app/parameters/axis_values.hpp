@@ -9,13 +9,6 @@ namespace firmware {
 
 namespace axis_values {
 
-/// Travel as encoder counts; beyond what 32 bits hold, the last that they do.
-constexpr std::int64_t whole_counts(float travel, float encoder_resolution) {
-  constexpr float kMost = 2147483520.0F;  // the largest float below 2^31
-  const float counts = travel / encoder_resolution;
-  return static_cast<std::int32_t>(counts > kMost ? kMost : (counts < -kMost ? -kMost : counts));
-}
-
 /// To the nearest count.
 constexpr std::int64_t nearest_counts(float travel, float encoder_resolution) {
   return whole_counts(travel + (travel < 0 ? -0.5F : 0.5F) * encoder_resolution, encoder_resolution);
@@ -44,27 +37,6 @@ constexpr DriveSequenceParameters sequence(const AxisValues& v) {
           .brake_application = samples(v.get<"brake.apply_time">())};
 }
 
-constexpr MonitorLimits<float> monitor_limits(const AxisValues& v) {
-  const float sample_period_s = v.get<"drive.sample_period">();
-  const float samples_a_second = 1.0F / sample_period_s;
-  MonitorLimits<float> m;
-  m.following_error_floor = v.get<"monitor.following_error">();
-  m.following_error_per_velocity = v.get<"monitor.following_error_per_speed">();
-  m.disagreement_floor = v.get<"monitor.disagreement">();
-  m.disagreement_share = v.get<"monitor.disagreement_share">();
-  m.encoder_jump = v.get<"monitor.encoder_jump">();
-  m.overspeed = v.get<"monitor.overspeed">();
-  m.polarity_command_V = v.get<"monitor.polarity_command">();
-  m.oscillation_V = v.get<"monitor.oscillation">();
-  set_filters(m, sample_period_s);
-  m.travel_min_counts = whole_counts(v.get<"monitor.travel_min">(), v.get<"drive.encoder_resolution">());
-  m.travel_max_counts = whole_counts(v.get<"monitor.travel_max">(), v.get<"drive.encoder_resolution">());
-  m.index_spacing = v.get<"encoder.index_spacing">();
-  m.saturation_samples = ScalarTraits<float>::nearest_product(v.get<"monitor.saturation_time">(), samples_a_second);
-  m.capture_stride = capture_stride(samples_a_second);
-  return m;
-}
-
 /// A number of counts that motion may reach as a whole and a fraction; 0 where it is out of range.
 constexpr Increment bounded_counts(float counts) {
   constexpr float kMost = 16384;  // 2^14
@@ -74,7 +46,8 @@ constexpr Increment bounded_counts(float counts) {
 constexpr CompensationParameters<float> compensation(const AxisValues& v, float volts_per_effort) {
   const float encoder_resolution = v.get<"drive.encoder_resolution">();
   const auto harmonic = [&](float cosine, float sine, float period) {
-    return TravelHarmonic<float>{cosine, sine, bounded_counts(encoder_resolution / period)};
+    return TravelHarmonic<float>{
+        .cosine = cosine, .sine = sine, .turns_per_count = bounded_counts(encoder_resolution / period)};
   };
   CompensationParameters<float> c;
   c.cogging_on = v.get<"cogging.on">();
@@ -87,12 +60,16 @@ constexpr CompensationParameters<float> compensation(const AxisValues& v, float 
   c.position_friction_on = v.get<"position_friction.on">();
   c.position_friction = harmonic(v.get<"position_friction.cosine">(), v.get<"position_friction.sine">(),
                                  v.get<"position_friction.period">());
-  c.presliding = {v.get<"presliding.on">(), v.get<"presliding.stiffness">() * volts_per_effort,
-                  v.get<"presliding.damping">() * volts_per_effort};
+  c.presliding = {.on = v.get<"presliding.on">(),
+                  .stiffness_V_per_rad = v.get<"presliding.stiffness">() * volts_per_effort,
+                  .damping_V_s_per_rad = v.get<"presliding.damping">() * volts_per_effort};
+  const float sample_period_s = v.get<"drive.sample_period">();
+  const float samples_a_second = 1.0F / sample_period_s;
   c.backlash = {
-      v.get<"backlash.on">(), bounded_counts(v.get<"backlash.gap">() / encoder_resolution),
-      bounded_counts(v.get<"backlash.wind_up">() / encoder_resolution),
-      ScalarTraits<float>::nearest_product(v.get<"backlash.crossing_time">(), 1.0F / v.get<"drive.sample_period">())};
+      .on = v.get<"backlash.on">(),
+      .gap = bounded_counts(v.get<"backlash.gap">() / encoder_resolution),
+      .wind_up = bounded_counts(v.get<"backlash.wind_up">() / encoder_resolution),
+      .crossing_samples = ScalarTraits<float>::nearest_product(v.get<"backlash.crossing_time">(), samples_a_second)};
   return c;
 }
 
@@ -141,19 +118,24 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.tachometer_gain = v.get<"tachometer.gain">() * true_per_read;
   const float offset = v.get<"tachometer.offset">(), offset_besides = v.get<"calibration.tachometer_offset">();
   p.tachometer_offset = (offset + offset_besides) * true_per_read;
-  p.drive = {v.get<"model.a12">(), v.get<"model.a22">(), v.get<"model.b1">(), v.get<"model.b2">()};
+  p.drive = {.Ad12 = v.get<"model.a12">(),
+             .Ad22 = v.get<"model.a22">(),
+             .Bd1 = v.get<"model.b1">(),
+             .Bd2 = v.get<"model.b2">()};
   p.Kobs = {{{v.get<"kalman.k11">(), v.get<"kalman.k12">()},
              {v.get<"kalman.k21">(), v.get<"kalman.k22">()},
              {v.get<"kalman.k31">(), v.get<"kalman.k32">()}}};
   p.Kc = {v.get<"feedback.k1">(), v.get<"feedback.k2">()};
-  p.friction.positive = {v.get<"friction.static_positive">() * volts_per_effort,
-                         v.get<"friction.coulomb_positive">() * volts_per_effort,
-                         v.get<"friction.viscous_positive">() * volts_per_effort, v.get<"friction.omega1_positive">(),
-                         v.get<"friction.omega2_positive">()};
-  p.friction.negative = {v.get<"friction.static_negative">() * volts_per_effort,
-                         v.get<"friction.coulomb_negative">() * volts_per_effort,
-                         v.get<"friction.viscous_negative">() * volts_per_effort, v.get<"friction.omega1_negative">(),
-                         v.get<"friction.omega2_negative">()};
+  p.friction.positive = {.static_V = v.get<"friction.static_positive">() * volts_per_effort,
+                         .coulomb_V = v.get<"friction.coulomb_positive">() * volts_per_effort,
+                         .viscous_V_s_per_rad = v.get<"friction.viscous_positive">() * volts_per_effort,
+                         .omega1_rad_s = v.get<"friction.omega1_positive">(),
+                         .omega2_rad_s = v.get<"friction.omega2_positive">()};
+  p.friction.negative = {.static_V = v.get<"friction.static_negative">() * volts_per_effort,
+                         .coulomb_V = v.get<"friction.coulomb_negative">() * volts_per_effort,
+                         .viscous_V_s_per_rad = v.get<"friction.viscous_negative">() * volts_per_effort,
+                         .omega1_rad_s = v.get<"friction.omega1_negative">(),
+                         .omega2_rad_s = v.get<"friction.omega2_negative">()};
   p.friction.blend_velocity_rad_s = v.get<"friction.blend">();
   p.compensation = compensation(v, volts_per_effort);
   p.filters = filters(v);
@@ -165,7 +147,8 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.jerk_limit = v.get<"limits.jerk">();
   p.homing = homing(v);
   p.sequence = sequence(v);
-  p.monitors = monitor_limits(v);
+  p.monitors = monitor_limits<float>([&](auto id) { return v.with_id<decltype(id)::value>(); }, p.encoder_resolution,
+                                     p.sample_period_s);
   return p;
 }
 

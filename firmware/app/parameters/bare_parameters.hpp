@@ -34,7 +34,8 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float r
              kLittle * unit.velocity / unit.volts};
   p.Kobs = {{{0.5F, 0}, {0.1F / (p.lead * p.sample_period_s), 0}, {0, 0}}};
   MonitorLimits<float>& m = p.monitors;
-  set_filters(m, p.sample_period_s);
+  m = monitor_limits<float>([&](auto id) { return v.with_id<decltype(id)::value>(); }, p.encoder_resolution,
+                            p.sample_period_s);
   const bool knows_scale = velocity_per_count > 0 && velocity > 0;
   m.disagreement_floor = knows_scale ? std::max(0.25F * velocity, 4 * velocity_per_count) : kNever;
   m.disagreement_share = 0.1F;

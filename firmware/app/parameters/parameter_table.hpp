@@ -1,11 +1,13 @@
 // The one table of parameters. Storage, checks, ids of store and protocol, help, documentation and the schema hash all
-// come from it: a new parameter is a new row here and its use by name, values.get<"group.name">().
+// come from it: a new parameter is a new row here and its use by name, values.get<"group.name">(). The thresholds of
+// monitors are declared with their faults, firmware/core/supervision/monitored_faults.hpp (ids 144 to 159 and 251).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
-#include "firmware/app/parameters/parameter_info.hpp"
+#include "firmware/core/supervision/monitor_limits.hpp"
 
 namespace firmware {
 
@@ -17,7 +19,7 @@ using enum ParameterChange;
 
 // Ranges keep nonsense out (a sign, a factor of a thousand); whether values fit each other is checked when a whole set
 // is taken over. Where rotary and linear drives differ in unit, the range covers both.
-inline constexpr std::array kRows = std::to_array<ParameterInfo>({
+inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     // id scope  name                        type    unit            linear     minimum maximum initial  change
     {1, board, "control.rate", whole, "Hz", "Hz", 250, 20000, 1000, while_disabled,
      "control periods a second; 1 / drive.sample_period of every fitted axis"},
@@ -102,29 +104,6 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {129, axis, "limits.acceleration", real, "mm/s^2", "m/s^2", 1e-6F, 1e8F, 2000, while_disabled, "of references"},
     {130, axis, "limits.jerk", real, "mm/s^3", "m/s^3", 1e-6F, 1e10F, 50000, while_disabled, "of references"},
 
-    // Thresholds: firmware/core/supervision/monitor_limits.hpp. None can be switched off.
-    {144, axis, "monitor.following_error", real, "mm", "m", 1e-9F, 1e4F, 0.5F, while_disabled,
-     "largest following error at standstill"},
-    {145, axis, "monitor.following_error_per_speed", real, "mm/(rad/s)", "m/(m/s)", 0, 1e3F, 0.005F, while_disabled,
-     "what the speed of the reference adds to it"},
-    {146, axis, "monitor.disagreement", real, "rad/s", "m/s", 1e-9F, 1e4F, 10, while_disabled,
-     "largest difference of encoder and tachometer at standstill"},
-    {147, axis, "monitor.disagreement_share", real, "1", "1", 0, 1, 0.1F, while_disabled,
-     "share of the speed that is added to it"},
-    {148, axis, "monitor.encoder_jump", real, "rad/s", "m/s", 1e-9F, 1e4F, 62.5F, while_disabled,
-     "largest such difference in one sample"},
-    {149, axis, "monitor.overspeed", real, "rad/s", "m/s", 1e-9F, 1e4F, 300, while_disabled, "largest speed"},
-    {150, axis, "monitor.polarity_command", real, "V", "V", 1e-3F, 1e3F, 3, while_disabled,
-     "command beyond any friction: it must accelerate the drive"},
-    {151, axis, "monitor.travel_min", real, "mm", "m", -1e6F, 1e6F, -1e5F, while_disabled,
-     "end of travel; watched once homed"},
-    {152, axis, "monitor.travel_max", real, "mm", "m", -1e6F, 1e6F, 1e5F, while_disabled,
-     "end of travel; watched once homed"},
-    {153, axis, "monitor.saturation_time", real, "s", "s", 1e-3F, 10, 0.1F, while_disabled,
-     "longest time at the D/A converter's limit"},
-    {154, axis, "monitor.oscillation", real, "V", "V", 1e-3F, 1e3F, 2.5F, while_disabled,
-     "rms that the feedback's command may swing by while no motion asks for it"},
-
     // What identification finds a drive to do besides: firmware/core/compensation.
     {160, axis, "calibration.tachometer_gain", real, "1", "1", 0.5F, 2, 1, while_disabled,
      "what the tachometer reads of the true speed; 1: it is right"},
@@ -188,9 +167,6 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
     {250, axis, "brake.apply_time", real, "s", "s", 0, 5, 0.1F, while_disabled,
      "until an applied brake holds: the enable stays as long"},
 
-    {251, axis, "encoder.index_spacing", whole, "", "", 0, 1e6F, 0, while_disabled,
-     "counts from one index pulse to the next, which then are watched; 0: no index is wired"},
-
     // Behind the feedback: firmware/core/control/control_filter.hpp.
     {272, axis, "notch.on", toggle, "", "", 0, 1, 0, while_disabled, "take a resonance's frequency out of the command"},
     {273, axis, "notch.frequency", real, "Hz", "Hz", 1, 1e4F, 100, while_disabled, "below 0.45 of the control rate"},
@@ -201,6 +177,29 @@ inline constexpr std::array kRows = std::to_array<ParameterInfo>({
      "of its two poles; below 0.45 of the control rate"},
     {278, axis, "low_pass.damping", real, "1", "1", 0.1F, 2, 0.7F, while_disabled, "of its two poles"},
 });
+
+inline constexpr std::size_t kThresholds = [] {
+  std::size_t count = 0;
+  for_each_threshold([&count](auto, auto) { ++count; });
+  return count;
+}();
+
+using Rows = std::array<ParameterInfo, kOwnRows.size() + kThresholds>;
+
+/// With the monitors' thresholds, in the order of the ids.
+constexpr Rows with_thresholds() {
+  Rows rows{};
+  std::size_t place = 0;
+  for (const ParameterInfo& row : kOwnRows) rows[place++] = row;
+  for_each_threshold([&](auto declared, auto index) {
+    using Declaration = decltype(declared);
+    rows[place++] = std::get<index()>(Declaration::template kThresholds<float>).row.parameter();
+  });
+  std::ranges::sort(rows, {}, &ParameterInfo::id);
+  return rows;
+}
+
+inline constexpr Rows kRows = with_thresholds();
 
 }  // namespace parameter_rows
 
@@ -214,7 +213,7 @@ constexpr bool is_in_order() {
     if (row.id == 0 || row.id > 0xFFF || (i > 0 && row.id <= kRows[i - 1].id)) return false;
     if (i > 0 && kRows[i - 1].scope == axis && row.scope == board) return false;
     const ParameterRule rule{row.id, row.type, row.change, row.minimum, row.maximum, row.initial};
-    if (check_value(rule, row.initial) != ValueProblem::none || !(row.minimum < row.maximum)) return false;
+    if (check_value(rule, row.initial) != ValueRefusal::none || !(row.minimum < row.maximum)) return false;
     for (std::size_t other = 0; other < i; ++other)
       if (kRows[other].name == row.name) return false;
   }

@@ -120,6 +120,15 @@ class AxisValues {
     return parameter_rows::typed<name>(first_[kRow - parameter_rows::kBoardRows]);
   }
 
+  /// As it is kept, for lists of parameters.
+  template <std::uint16_t id>
+  constexpr float with_id() const {
+    constexpr auto kRow = static_cast<std::size_t>(std::ranges::find(parameter_rows::kRules, id, &ParameterRule::id) -
+                                                   parameter_rows::kRules.begin());
+    static_assert(kRow >= parameter_rows::kBoardRows && kRow < parameter_rows::kRules.size());
+    return first_[kRow - parameter_rows::kBoardRows];
+  }
+
  private:
   const float* first_;
 };

@@ -66,9 +66,9 @@ enum class Status : std::uint8_t {
   malformed = 2,          ///< the payload has not the request's length, or names an axis that is not there
   damaged = 3,            ///< checksum or length of the report
   wrong_version = 4,      ///< of the protocol
-  bad_value = 5,          ///< ProblemPayload says which and why
-  unknown_parameter = 6,  ///< ProblemPayload says which
-  drive_enabled = 7,      ///< refused while a drive is enabled; ProblemPayload may say which parameter
+  bad_value = 5,          ///< RefusedValuePayload says which and why
+  unknown_parameter = 6,  ///< RefusedValuePayload says which
+  drive_enabled = 7,      ///< refused while a drive is enabled; RefusedValuePayload may say which parameter
   set_differs = 8,        ///< the staged set is not the one that was to be committed
   wrong_state = 9,        ///< the axis is not in a state that allows this
   not_fitted = 10,
@@ -79,7 +79,7 @@ enum class Status : std::uint8_t {
   no_such_row = 15,
   others_motion = 16,  ///< another client moves the axes: wait, stop them, or take over
   restarting = 17,
-  outside_travel = 18,  ///< a move or a jog beyond a limit of travel; ProblemPayload says which limit
+  outside_travel = 18,  ///< a move or a jog beyond a limit of travel; RefusedValuePayload says which limit
   not_standing = 19,    ///< an axis that is to be enabled moves
   not_homed = 20,       ///< a move to a position, of an axis that does not know where it is
   homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
@@ -192,9 +192,9 @@ struct CommitRequest {
   std::uint32_t crc = 0;
 };
 
-struct ProblemPayload {
+struct RefusedValuePayload {
   std::uint16_t key = 0;
-  std::uint8_t kind = 0;  ///< SetProblemKind
+  std::uint8_t kind = 0;  ///< ValueRefusal
   std::uint8_t reserved = 0;
   std::uint32_t bits = 0;
 };

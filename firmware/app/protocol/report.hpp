@@ -48,8 +48,6 @@ struct Message {
   bool operator==(const Message&) const = default;
 };
 
-enum class DecodeProblem : std::uint8_t { none, wrong_version, wrong_length, wrong_crc };
-
 inline hal::HidReport encode(const Message& message) {
   hal::HidReport report{};
   report[0] = std::byte{kProtocolVersion};
@@ -68,13 +66,13 @@ inline hal::HidReport encode(const Message& message) {
 }
 
 /// Any 64 bytes. The checksum is looked at first: of a report that was damaged nothing can be believed.
-inline DecodeProblem decode(const hal::HidReport& report, Message& message) {
+inline Status decode(const hal::HidReport& report, Message& message) {
   std::uint32_t crc = 0;
   std::memcpy(&crc, report.data() + kCrcOffset, sizeof crc);
-  if (crc32(std::span(report).first(kCrcOffset)) != crc) return DecodeProblem::wrong_crc;
-  if (report[0] != std::byte{kProtocolVersion}) return DecodeProblem::wrong_version;
+  if (crc32(std::span(report).first(kCrcOffset)) != crc) return Status::damaged;
+  if (report[0] != std::byte{kProtocolVersion}) return Status::wrong_version;
   const auto length = std::to_integer<std::uint8_t>(report[5]);
-  if (length > kPayloadSize) return DecodeProblem::wrong_length;
+  if (length > kPayloadSize) return Status::damaged;
   message = {};
   message.type = static_cast<MessageType>(report[1]);
   message.sequence =
@@ -84,7 +82,7 @@ inline DecodeProblem decode(const hal::HidReport& report, Message& message) {
       static_cast<std::uint16_t>(std::to_integer<unsigned>(report[6]) | std::to_integer<unsigned>(report[7]) << 8);
   message.length = length;
   std::memcpy(message.payload.data(), report.data() + kPayloadOffset, length);
-  return DecodeProblem::none;
+  return Status::ok;
 }
 
 }  // namespace firmware

@@ -61,11 +61,11 @@ class ProtocolServer {
     ++reports_;
     Message request;
     Message reply;
-    const DecodeProblem problem = decode(report, request);
-    if (problem != DecodeProblem::none) {
+    const Status envelope = decode(report, request);
+    if (envelope != Status::ok) {
       ++rejected_;
       reply.type = MessageType::rejected;
-      reply.status = problem == DecodeProblem::wrong_version ? Status::wrong_version : Status::damaged;
+      reply.status = envelope;
       return encode(reply);
     }
     reply.type = reply_to(request.type);
@@ -367,10 +367,10 @@ class ProtocolServer {
     for (std::size_t i = 0; i < request.count; ++i) {
       const ParameterKey key{request.key[i]};
       const auto place = app_.staged().place_of(key);
-      const auto problem =
-          place ? check_value(rule_at(*place), std::bit_cast<float>(request.bits[i])) : ValueProblem::none;
-      if (!place || problem != ValueProblem::none) {
-        reply.put(ProblemPayload{key.code, static_cast<std::uint8_t>(problem), 0, request.bits[i]});
+      const auto refusal =
+          place ? check_value(rule_at(*place), std::bit_cast<float>(request.bits[i])) : ValueRefusal::none;
+      if (!place || refusal != ValueRefusal::none) {
+        reply.put(RefusedValuePayload{key.code, static_cast<std::uint8_t>(refusal), 0, request.bits[i]});
         return place ? Status::bad_value : Status::unknown_parameter;
       }
     }
@@ -381,9 +381,9 @@ class ProtocolServer {
 
   Status commit(const CommitRequest& request, Message& reply) {
     if (set_crc(app_.staged()) != request.crc) return Status::set_differs;
-    ProblemPayload problem;
-    const Status status = app_.commit(problem);
-    if (status != Status::ok) reply.put(problem);
+    RefusedValuePayload refused;
+    const Status status = app_.commit(refused);
+    if (status != Status::ok) reply.put(refused);
     return status;
   }
 

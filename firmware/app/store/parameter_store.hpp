@@ -194,7 +194,7 @@ class ParameterStore {
       const StoredEntry stored = *entry(i);
       const auto place = values.place_of({stored.key});
       const auto value = std::bit_cast<float>(stored.value_bits);
-      if (place && check_value(rule_at(*place), value) == ValueProblem::none)
+      if (place && check_value(rule_at(*place), value) == ValueRefusal::none)
         values.set(*place, value);
       else
         ++report_.not_migrated;

@@ -30,13 +30,24 @@ namespace firmware::boards {
 
 using Converter = hal::Ad5752<hal::stm32f4::SpiPort>;
 
-/// One axis's share of the board.
+/// One axis's share of the board. A sensor that `core` asks for by a concept of its own is a part more: here, in the
+/// constructor, among the accessors, and in both of the wirings below.
 class BoardAxisHal {
  public:
-  BoardAxisHal(hal::stm32f4::Timer& timer, const hal::stm32f4::TachometerSamples& samples, std::uint32_t channel,
-               Converter::Channel& dac, const hal::stm32f4::DriveLines& lines,
-               const hal::stm32f4::SwitchInputs& switches)
-      : encoder_(timer), tachometer_(samples, channel), dac_(dac), lines_(lines), switches_(switches) {}
+  struct Wiring {
+    hal::stm32f4::Timer& encoder;
+    const hal::stm32f4::TachometerSamples& samples;
+    std::uint32_t tachometer_channel;
+    Converter::Channel& dac;
+    hal::stm32f4::DriveLines::Pins lines;
+    hal::stm32f4::SwitchInputs::Pins switches;
+  };
+  explicit BoardAxisHal(const Wiring& w)
+      : encoder_(w.encoder),
+        tachometer_(w.samples, w.tachometer_channel),
+        dac_(w.dac),
+        lines_(w.lines),
+        switches_(w.switches) {}
 
   void start() {
     lines_.start();
@@ -123,19 +134,27 @@ class Board {
   hal::stm32f4::SpiPort spi_{hal::stm32f4::spi1(), pins::dac_select()};
   Converter converter_{spi_};
   BoardAxisHal x_{
-      hal::stm32f4::timer2(),
-      samples_,
-      0,
-      converter_.a(),
-      hal::stm32f4::DriveLines({pins::enable_x(), pins::drive_fault_x(), pins::drive_ready_x(), pins::brake_x()}),
-      {pins::positive_end_x(), pins::negative_end_x(), pins::home_x()}};
+      {.encoder = hal::stm32f4::timer2(),
+       .samples = samples_,
+       .tachometer_channel = 0,
+       .dac = converter_.a(),
+       .lines = {.enable = pins::enable_x(),
+                 .fault = pins::drive_fault_x(),
+                 .ready = pins::drive_ready_x(),
+                 .brake = pins::brake_x()},
+       .switches = {
+           .positive_end = pins::positive_end_x(), .negative_end = pins::negative_end_x(), .home = pins::home_x()}}};
   BoardAxisHal y_{
-      hal::stm32f4::timer5(),
-      samples_,
-      1,
-      converter_.b(),
-      hal::stm32f4::DriveLines({pins::enable_y(), pins::drive_fault_y(), pins::drive_ready_y(), pins::brake_y()}),
-      {pins::positive_end_y(), pins::negative_end_y(), pins::home_y()}};
+      {.encoder = hal::stm32f4::timer5(),
+       .samples = samples_,
+       .tachometer_channel = 1,
+       .dac = converter_.b(),
+       .lines = {.enable = pins::enable_y(),
+                 .fault = pins::drive_fault_y(),
+                 .ready = pins::drive_ready_y(),
+                 .brake = pins::brake_y()},
+       .switches = {
+           .positive_end = pins::positive_end_y(), .negative_end = pins::negative_end_y(), .home = pins::home_y()}}};
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
   hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer4()};

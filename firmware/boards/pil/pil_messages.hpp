@@ -63,7 +63,7 @@ struct PilReply {
 
 static_assert(sizeof(PilRequest) == 68 && sizeof(PilReply) == 180, "the same layout on both computers");
 
-/// Answer to the parameters: one ParameterError an axis.
+/// Answer to the parameters: one Refusal an axis.
 struct PilConfigured {
   std::array<std::uint32_t, hal::kAxisCount> error{};
 };

@@ -69,7 +69,7 @@ class PilStation {
       case PilCommand::move: {
         const auto target = static_cast<std::int64_t>(std::uint64_t{request.operand_high} << 32 | request.operand_low);
         const MovePlanResult planned = axis.plan_move_to(CountPosition::at(target));
-        return planned.error == MovePlanError::none && axis.start(planned.plan);
+        return planned.refusal == Refusal::none && axis.start(planned.plan);
       }
       case PilCommand::stop:
         axis.stop();

@@ -81,4 +81,9 @@ struct ScalarTraits<Real> {
   }
 };
 
+template <typename Scalar>
+constexpr bool is_positive(Scalar value) {
+  return value > Scalar(0) && ScalarTraits<Scalar>::is_finite(value);
+}
+
 }  // namespace firmware

@@ -157,10 +157,10 @@ constexpr bool are_filters_sound(const AxisParameters<Scalar>& p) {
 }
 
 template <typename Scalar>
-constexpr ParameterError check_poles(const AxisParameters<Scalar>& p) {
-  if (estimator_problem(p) != PoleProblem::none) return ParameterError::estimator_poles;
-  if (loop_problem(p) != PoleProblem::none) return ParameterError::loop_poles;
-  return are_filters_sound(p) ? ParameterError::none : ParameterError::filters;
+constexpr Refusal check_poles(const AxisParameters<Scalar>& p) {
+  if (estimator_problem(p) != PoleProblem::none) return Refusal::estimator_poles;
+  if (loop_problem(p) != PoleProblem::none) return Refusal::loop_poles;
+  return are_filters_sound(p) ? Refusal::none : Refusal::filters;
 }
 
 }  // namespace firmware

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "firmware/core/arithmetic/count_position.hpp"
+#include "firmware/core/refusal.hpp"
 
 namespace firmware {
 
@@ -14,27 +15,20 @@ struct MotionLimits {
   Increment jerk = 0;
 };
 
-enum class MotionLimitError : std::uint8_t {
-  none,
-  velocity_out_of_range,      ///< above 2^14 counts a sample, or too small to be represented
-  acceleration_out_of_range,  ///< above 2^14 counts a sample^2, or too small to be represented
-  jerk_out_of_range,          ///< above 2^14 counts a sample^3, or too small to be represented
-  jerk_time_out_of_range,     ///< acceleration / jerk is so long that one ramp would pass 2^14 counts a sample
-};
-
 inline constexpr Increment kMostMotion = Increment{1} << (kFractionBits + 14);
 /// Plans take up to four units off a limit, and a conversion cuts one: a limit of so many units is kept to 1 %.
 inline constexpr Increment kLeastMotion = 512;
 
-constexpr MotionLimitError check(const MotionLimits& limits) {
+/// An Increment above 2^14 counts a sample (sample^2, sample^3), or too small to be represented, is refused.
+constexpr Refusal check(const MotionLimits& limits) {
   const auto in_range = [](Increment value) { return value >= kLeastMotion && value <= kMostMotion; };
-  if (!in_range(limits.velocity)) return MotionLimitError::velocity_out_of_range;
-  if (!in_range(limits.acceleration)) return MotionLimitError::acceleration_out_of_range;
-  if (!in_range(limits.jerk)) return MotionLimitError::jerk_out_of_range;
+  if (!in_range(limits.velocity)) return Refusal::velocity_limit;
+  if (!in_range(limits.acceleration)) return Refusal::acceleration_limit;
+  if (!in_range(limits.jerk)) return Refusal::jerk_limit;
   // A ramp to full acceleration and back adds acceleration * steps to the velocity, where steps rounds up.
   const Increment steps = limits.acceleration / limits.jerk + 2;
-  if (steps > kMostMotion / limits.acceleration) return MotionLimitError::jerk_time_out_of_range;
-  return MotionLimitError::none;
+  if (steps > kMostMotion / limits.acceleration) return Refusal::jerk_time;
+  return Refusal::none;
 }
 
 }  // namespace firmware

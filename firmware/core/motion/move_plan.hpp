@@ -24,15 +24,9 @@ struct MovePlan {
   constexpr std::int32_t samples() const { return N1 == 0 ? 0 : N1 + N2 + N3 - 1; }
 };
 
-enum class MovePlanError : std::uint8_t {
-  none,
-  too_long,        ///< would last more than 2^30 samples: raise the velocity limit or split the move
-  outside_travel,  ///< the target is beyond a limit of travel
-};
-
 struct MovePlanResult {
   MovePlan plan{};
-  MovePlanError error = MovePlanError::none;
+  Refusal refusal = Refusal::none;
 };
 
 namespace move_planning {
@@ -102,7 +96,7 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
   MovePlan plan;
   plan.negative = distance.counts < 0;
   if (plan.negative) distance = CountPosition{} - distance;
-  if (distance == CountPosition{}) return {plan, MovePlanError::none};
+  if (distance == CountPosition{}) return {plan, Refusal::none};
 
   // Spreading remainders adds at most one unit of velocity, two of acceleration and four of jerk.
   const MotionLimits reduced{limits.velocity - 1, limits.acceleration - 2, limits.jerk - 4};
@@ -110,7 +104,7 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
   std::int64_t admissible = 2;
   while (!is_admissible(distance, admissible, reduced)) {
     admissible *= 2;
-    if (admissible > kLongest) return {plan, MovePlanError::too_long};
+    if (admissible > kLongest) return {plan, Refusal::move_too_long};
   }
   // A longer N1 means a slower move with a shorter ramp, so admissibility is monotone and the shortest is found by
   // halving.
@@ -130,7 +124,7 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
   plan.jerk_remainder = static_cast<std::int32_t>(acceleration % ramp.N3);
   plan.acceleration_remainder = static_cast<std::int32_t>(velocity.quotient % ramp.N2);
   plan.velocity_remainder = static_cast<std::int32_t>(velocity.remainder);
-  return {plan, MovePlanError::none};
+  return {plan, Refusal::none};
 }
 
 }  // namespace firmware

@@ -5,6 +5,7 @@
 
 #include "firmware/core/path/path_clock.hpp"
 #include "firmware/core/path/path_piece.hpp"
+#include "firmware/core/refusal.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 
 namespace firmware {
@@ -25,16 +26,6 @@ enum class PathEnd : std::uint8_t {
   starved = 3,    ///< the host sent too little, too late
   host_lost = 4,  ///< the host is silent
   fault = 5,      ///< an axis stopped for a reason of its own, and left the path
-};
-
-/// What can be wrong with a node.
-enum class NodeProblem : std::uint8_t {
-  none,
-  not_open,
-  no_room,
-  too_fast,        ///< a word or the duration is out of range
-  ends_in_motion,  ///< the last node, and it is not at rest
-  outside_travel,  ///< of a homed axis
 };
 
 /// Nodes come in by push() and wait in a ring of `nodes`; prepare() makes the next few polynomials of them; both in the
@@ -104,19 +95,19 @@ class PathFollower {
 
   /// The next node; `last`: nothing comes after it. `is_inside(axis, counts)` says whether an axis may go there.
   template <typename IsInside>
-  constexpr NodeProblem push(const Node& node, bool last, IsInside is_inside) {
-    if ((phase_ != PathPhase::open && phase_ != PathPhase::running) || is_complete_) return NodeProblem::not_open;
-    if (ring_count_ == nodes) return NodeProblem::no_room;
+  constexpr Refusal push(const Node& node, bool last, IsInside is_inside) {
+    if ((phase_ != PathPhase::open && phase_ != PathPhase::running) || is_complete_) return Refusal::path_not_open;
+    if (ring_count_ == nodes) return Refusal::path_full;
     if (node.duration < kShortestPiece || node.duration > kLongestPiece ||
         !PathPiece<axes>::between(newest_, node, units_))
-      return NodeProblem::too_fast;
-    if (last && !node.is_at_rest()) return NodeProblem::ends_in_motion;
+      return Refusal::path_too_fast;
+    if (last && !node.is_at_rest()) return Refusal::path_ends_in_motion;
     std::array<CountPosition, axes> there = planned_;
     for (std::size_t i = 0; i < axes; ++i) {
       there[i].counts += node.axis[i].travel >> units_.travel_bits;
       const std::int64_t part = node.axis[i].travel & ((std::int64_t{1} << units_.travel_bits) - 1);
       there[i].advance(part << (kFractionBits - units_.travel_bits));
-      if (is_led(i) && !is_inside(i, there[i].counts)) return NodeProblem::outside_travel;
+      if (is_led(i) && !is_inside(i, there[i].counts)) return Refusal::outside_travel;
     }
     planned_ = there;
     newest_ = node.axis;
@@ -125,7 +116,7 @@ class PathFollower {
     accepted_ += node.duration;
     ends_at_rest_ = node.is_at_rest();
     is_complete_ = last;
-    return NodeProblem::none;
+    return Refusal::none;
   }
 
   // The background, at any time.

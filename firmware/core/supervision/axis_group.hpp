@@ -33,7 +33,7 @@ class AxisGroup {
     const Readings readings = read_encoders();
     if (outer == AxisFault::control_overrun) bridge_gap(readings);
 #pragma GCC unroll 4
-    for (std::size_t i = 0; i < kAxes; ++i) settle(i, [&] { axes_[i].step(fault_for(i, outer), readings[i]); });
+    for (std::size_t i = 0; i < kAxes; ++i) step_axis(i, [&] { axes_[i].step(fault_for(i, outer), readings[i]); });
   }
 
   /// One control period; an interpolator leads all axes.
@@ -42,7 +42,7 @@ class AxisGroup {
     const Readings readings = read_encoders();
     if (outer == AxisFault::control_overrun) bridge_gap(readings);
     for (std::size_t i = 0; i < kAxes; ++i)
-      settle(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer), readings[i]); });
+      step_axis(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer), readings[i]); });
   }
 
   /// Enables all axes of the mask or none of them; returns the first that refuses, or kAxes. An axis that is enabled
@@ -87,7 +87,7 @@ class AxisGroup {
   }
 
   template <typename Step>
-  constexpr void settle(std::size_t index, Step step) {
+  constexpr void step_axis(std::size_t index, Step step) {
     step();
     if (!axes_[index].take_new_fault()) return;
     for (std::size_t other = 0; other < kAxes; ++other)

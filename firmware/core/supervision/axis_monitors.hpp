@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 
 #include "firmware/core/axis_parameters.hpp"
 #include "firmware/core/axis_telemetry.hpp"
@@ -34,6 +35,17 @@ class AxisMonitors {
     travel_.restart();
   }
 
+  /// What the parts of the axis's hardware say of themselves.
+  template <typename Hal>
+  constexpr AxisFault watch_parts(Hal& hal) {
+    return first_of([&](auto& watch) {
+      if constexpr (requires { watch.watch_part(hal, limits_); })
+        return watch.watch_part(hal, limits_);
+      else
+        return AxisFault::none;
+    });
+  }
+
   /// Faults of the sensors, which count whether the loop is closed or not.
   constexpr AxisFault watch_sensors(const AxisTelemetry<Scalar>& seen) {
     const Scalar measured = tachometer_fitted_ ? seen.tachometer_velocity : seen.estimate.velocity;
@@ -60,11 +72,7 @@ class AxisMonitors {
       return AxisFault::overspeed;
     const AxisFault effort = effort_.watch(seen, encoder_velocity_);
     if (effort != AxisFault::none) return effort;
-    if (!seen.saturated)
-      saturated_samples_ = 0;
-    else if (++saturated_samples_ > limits_.saturation_samples)
-      return AxisFault::saturation_too_long;
-    return AxisFault::none;
+    return watch_declared(seen);
   }
 
   template <hal::LimitInputs Switches>
@@ -110,8 +118,28 @@ class AxisMonitors {
     return error <= floor || error <= floor + limits_.following_error_per_velocity * magnitude(reference_velocity);
   }
 
+  /// By the monitors that stand with their faults' declarations; the first that finds something.
+  constexpr AxisFault watch_declared(const AxisTelemetry<Scalar>& seen) {
+    return first_of([&](auto& watch) {
+      if constexpr (requires { watch.watch(seen, limits_); })
+        return watch.watch(seen, limits_);
+      else
+        return AxisFault::none;
+    });
+  }
+
+  template <typename Watched>
+  constexpr AxisFault first_of(Watched watched) {
+    AxisFault found = AxisFault::none;
+    const auto until_found = [&](auto&... watch) {
+      static_cast<void>((((found = watched(watch)) != AxisFault::none) || ...));
+    };
+    std::apply(until_found, declared_);
+    return found;
+  }
+
   constexpr void restart_motion() {
-    saturated_samples_ = 0;
+    std::apply([](auto&... watch) { (watch.restart(), ...); }, declared_);
     effort_.restart(encoder_velocity_);
   }
 
@@ -121,10 +149,10 @@ class AxisMonitors {
   Scalar disagreement_{};
   Scalar high_water_{};
   Scalar noted_error_{};  ///< up to here an error is neither a fault nor new
-  std::int32_t saturated_samples_ = 0;
   bool tachometer_fitted_ = true;
   EffortMonitor<Scalar> effort_;
   TravelMonitor<Scalar> travel_;
+  MonitoredFaults::Watches<Scalar> declared_;
 };
 
 }  // namespace firmware

@@ -62,7 +62,7 @@ class BoardWatch {
     const bool late = is_primed_ && inputs.now_us - last_us_ > limits_.longest_period_us;
     last_us_ = inputs.now_us;
     is_primed_ = true;
-    if (stop_.settle(inputs.emergency_stop)) return AxisFault::emergency_stop;
+    if (stop_.filtered(inputs.emergency_stop)) return AxisFault::emergency_stop;
     if (inputs.supply_low) return AxisFault::supply_low;
     if (late) return AxisFault::control_overrun;
     if (inputs.store_damaged) return AxisFault::parameter_store_damaged;

@@ -1,149 +1,170 @@
-// Every fault in one table: what it is called, what causes it, what mends it, and how the axis is stopped.
+// Every fault in one table, by its number.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 
-#include "firmware/core/axis_fault.hpp"
+#include "firmware/core/supervision/monitored_faults.hpp"
 
 namespace firmware {
 
-enum class FaultReaction : std::uint8_t {
-  none,         ///< nothing to stop: the axis is not let go
-  ramp_stop,    ///< the control still works: slow down within the limits of references, then drop the enable
-  drop_enable,  ///< the control cannot be trusted, or has lost the drive: 0 V and enable off in the same sample
-};
-
-struct FaultInfo {
-  AxisFault fault;
-  const char* name;
-  const char* cause;
-  const char* remedy;
-  FaultReaction reaction;
-};
-
-/// In the order of their numbers.
-inline constexpr std::array<FaultInfo, 32> kFaults{{
-    {AxisFault::none, "none", "no fault", "", FaultReaction::none},
-    {AxisFault::encoder_invalid, "encoder_invalid",
-     "the encoder's input reports a broken wire, an illegal edge or a bus error",
-     "check the encoder's cable, plug, supply and shield", FaultReaction::drop_enable},
-    {AxisFault::tachometer_invalid, "tachometer_invalid",
-     "the tachometer's converter gave no reading or one out of range, although a tachometer is fitted",
-     "check its cable; switch the parameter off for a drive without one", FaultReaction::drop_enable},
-    {AxisFault::control_signal_not_a_number, "control_signal_not_a_number",
-     "the control law computed a value that is no number", "design the gains again and load them; report the capture",
-     FaultReaction::drop_enable},
-    {AxisFault::dac_write_failed, "dac_write_failed", "the D/A converter did not take its word",
-     "check the converter's supply and bus", FaultReaction::drop_enable},
-    {AxisFault::parameters_missing, "parameters_missing", "enable was asked for before parameters were accepted",
-     "load the parameters of this axis", FaultReaction::none},
-    {AxisFault::following_error, "following_error",
-     "the axis is farther from its reference than it may be at this speed: blocked, overloaded, or its drive is weak",
-     "free the axis; check load and amplifier; lower acceleration; raise the limit only if the high-water mark of "
-     "sound moves is near it",
-     FaultReaction::drop_enable},
-    {AxisFault::encoder_tachometer_disagreement, "encoder_tachometer_disagreement",
-     "encoder and tachometer report different speeds: one is dead, reversed, offset, or its wires are swapped",
-     "turn the shaft by hand and compare both readings; calibrate the tachometer; check coupling and wires",
-     FaultReaction::drop_enable},
-    {AxisFault::encoder_jump, "encoder_jump",
-     "the encoder left the drive's motion within one sample: wires cut or interchanged, counts lost, noise",
-     "check shield and earth, the encoder's frequency limit and its supply", FaultReaction::drop_enable},
-    {AxisFault::feedback_polarity, "feedback_polarity",
-     "the drive accelerates against its command: motor or both sensors the wrong way round, the D/A output stuck, or a "
-     "load that is stronger than the drive",
-     "swap the motor's leads, or the sign of encoder and tachometer", FaultReaction::drop_enable},
-    {AxisFault::overspeed, "overspeed", "the drive is faster than its limit",
-     "look for a stuck D/A output or a wrong gain; check the limit against the velocity limit",
-     FaultReaction::drop_enable},
-    {AxisFault::travel_limit, "travel_limit", "the axis would leave its travel",
-     "move back inside; check the target and the home position", FaultReaction::ramp_stop},
-    {AxisFault::limit_switch_positive, "limit_switch_positive",
-     "the switch at the positive end is actuated, or its wire is broken", "move in the negative direction; check wire",
-     FaultReaction::ramp_stop},
-    {AxisFault::limit_switch_negative, "limit_switch_negative",
-     "the switch at the negative end is actuated, or its wire is broken", "move in the positive direction; check wire",
-     FaultReaction::ramp_stop},
-    {AxisFault::saturation_too_long, "saturation_too_long",
-     "the D/A converter stayed at its limit: blocked axis, weak drive, or limits that ask too much",
-     "free the axis; lower acceleration or the gains", FaultReaction::drop_enable},
-    {AxisFault::drive_fault, "drive_fault", "the amplifier reports a fault, or its wire is broken",
-     "read the amplifier's own display", FaultReaction::drop_enable},
-    {AxisFault::emergency_stop, "emergency_stop", "the stop circuit is open",
-     "remove the danger, release the button, clear the fault", FaultReaction::drop_enable},
-    {AxisFault::state_not_a_number, "state_not_a_number", "the estimator's state is no number",
-     "design the estimator again and load it; report the capture", FaultReaction::drop_enable},
-    {AxisFault::control_overrun, "control_overrun", "a control period came late or took too long",
-     "lower the control rate; report the capture", FaultReaction::ramp_stop},
-    {AxisFault::host_heartbeat_lost, "host_heartbeat_lost",
-     "the host that commands the motion has gone silent: cable, program or computer",
-     "connect again; raise the time-out if the host is slow", FaultReaction::ramp_stop},
-    {AxisFault::parameter_store_damaged, "parameter_store_damaged", "the stored parameters fail their check",
-     "load the parameters from their file and save them", FaultReaction::ramp_stop},
-    {AxisFault::supply_low, "supply_low", "the board's supply is below its threshold", "check supply and wiring",
-     FaultReaction::drop_enable},
-    {AxisFault::reference_out_of_limits, "reference_out_of_limits",
-     "an interpolator asked for more than the velocity limit, or for a jump",
-     "check the path and its feed; check the limit", FaultReaction::ramp_stop},
-    {AxisFault::other_axis_stopped, "other_axis_stopped", "the other axis has a fault, and both stop together",
-     "see the other axis", FaultReaction::ramp_stop},
-    {AxisFault::command_without_motion, "command_without_motion",
-     "the command should long have moved the axis, and the encoder does not show it: a dead encoder, an axis that is "
-     "blocked, a motor without current or with the wrong one",
-     "turn the shaft by hand and watch the position; free the axis; check the motor's leads and the encoder's coupling",
-     FaultReaction::drop_enable},
-    {AxisFault::limit_cycle, "limit_cycle",
-     "the feedback swings the command to and fro without motion that asks for it: the loop is unstable or nearly so",
-     "design the gains again with less bandwidth; check inertia, delay and resonances; raise the limit only if the "
-     "tachometer's noise is what swings",
-     FaultReaction::drop_enable},
-    {AxisFault::converter_not_as_set, "converter_not_as_set",
-     "the D/A converter, read back, is not as it was set: its supply broke down, an output is shorted, it is too hot, "
-     "or a "
-     "wire to it is broken",
-     "look at the report on the service port; check the converter's supplies, the cable to the amplifier and its load",
-     FaultReaction::drop_enable},
-    {AxisFault::homing_switch_not_found, "homing_switch_not_found",
-     "the home switch did not act within the longest way of a search",
-     "check the switch and its wire; check the sign of homing.velocity, and homing.travel", FaultReaction::ramp_stop},
-    {AxisFault::homing_index_not_found, "homing_index_not_found",
-     "no index pulse came within the way that one turn takes",
-     "check the encoder's index wires; homing.index_travel is a turn and a little more", FaultReaction::ramp_stop},
-    {AxisFault::homing_travel_exceeded, "homing_travel_exceeded",
-     "the home switch stayed actuated over the longest way of a search",
-     "check the switch, which may be stuck or shorted; check the sign of homing.velocity, and homing.travel",
-     FaultReaction::ramp_stop},
-    {AxisFault::amplifier_not_ready, "amplifier_not_ready",
-     "the amplifier did not become ready after its enable, or was ready no longer, or its wire is broken",
-     "read the amplifier's own display; check the ready contact and its wire; check amplifier.ready_time",
-     FaultReaction::drop_enable},
-    {AxisFault::index_mismatch, "index_mismatch",
-     "the counts between two index pulses are no whole turns, or a turn passed without a pulse: counts lost or gained, "
-     "or a dead index line",
-     "check shield and earth, the encoder's frequency limit and the index wires; check encoder.index_spacing",
-     FaultReaction::drop_enable},
-}};
-
+/// Those that are found where their cause is handled; what a monitor finds is declared in monitored_faults.hpp.
 namespace fault_table {
 
-constexpr bool numbers_are_positions() {
-  for (std::size_t i = 0; i < kFaults.size(); ++i)
-    if (static_cast<std::size_t>(kFaults[i].fault) != i) return false;
-  return true;
+inline constexpr std::array kOthers = std::to_array<FaultInfo>({
+    {.fault = AxisFault::none, .name = "none", .cause = "no fault", .remedy = "", .reaction = FaultReaction::none},
+    {.fault = AxisFault::encoder_invalid,
+     .name = "encoder_invalid",
+     .cause = "the encoder's input reports a broken wire, an illegal edge or a bus error",
+     .remedy = "check the encoder's cable, plug, supply and shield",
+     .reaction = FaultReaction::drop_enable,
+     .loses_position = true},
+    {.fault = AxisFault::tachometer_invalid,
+     .name = "tachometer_invalid",
+     .cause = "the tachometer's converter gave no reading or one out of range, although a tachometer is fitted",
+     .remedy = "check its cable; switch the parameter off for a drive without one",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::control_signal_not_a_number,
+     .name = "control_signal_not_a_number",
+     .cause = "the control law computed a value that is no number",
+     .remedy = "design the gains again and load them; report the capture",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::dac_write_failed,
+     .name = "dac_write_failed",
+     .cause = "the D/A converter did not take its word",
+     .remedy = "check the converter's supply and bus",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::parameters_missing,
+     .name = "parameters_missing",
+     .cause = "enable was asked for before parameters were accepted",
+     .remedy = "load the parameters of this axis",
+     .reaction = FaultReaction::none},
+    {.fault = AxisFault::limit_switch_positive,
+     .name = "limit_switch_positive",
+     .cause = "the switch at the positive end is actuated, or its wire is broken",
+     .remedy = "move in the negative direction; check wire",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::limit_switch_negative,
+     .name = "limit_switch_negative",
+     .cause = "the switch at the negative end is actuated, or its wire is broken",
+     .remedy = "move in the positive direction; check wire",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::drive_fault,
+     .name = "drive_fault",
+     .cause = "the amplifier reports a fault, or its wire is broken",
+     .remedy = "read the amplifier's own display",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::emergency_stop,
+     .name = "emergency_stop",
+     .cause = "the stop circuit is open",
+     .remedy = "remove the danger, release the button, clear the fault",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::state_not_a_number,
+     .name = "state_not_a_number",
+     .cause = "the estimator's state is no number",
+     .remedy = "design the estimator again and load it; report the capture",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::control_overrun,
+     .name = "control_overrun",
+     .cause = "a control period came late or took too long",
+     .remedy = "lower the control rate; report the capture",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::host_heartbeat_lost,
+     .name = "host_heartbeat_lost",
+     .cause = "the host that commands the motion has gone silent: cable, program or computer",
+     .remedy = "connect again; raise the time-out if the host is slow",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::parameter_store_damaged,
+     .name = "parameter_store_damaged",
+     .cause = "the stored parameters fail their check",
+     .remedy = "load the parameters from their file and save them",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::supply_low,
+     .name = "supply_low",
+     .cause = "the board's supply is below its threshold",
+     .remedy = "check supply and wiring",
+     .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::reference_out_of_limits,
+     .name = "reference_out_of_limits",
+     .cause = "an interpolator asked for more than the velocity limit, or for a jump",
+     .remedy = "check the path and its feed; check the limit",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::other_axis_stopped,
+     .name = "other_axis_stopped",
+     .cause = "the other axis has a fault, and both stop together",
+     .remedy = "see the other axis",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::homing_switch_not_found,
+     .name = "homing_switch_not_found",
+     .cause = "the home switch did not act within the longest way of a search",
+     .remedy = "check the switch and its wire; check the sign of homing.velocity, and homing.travel",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::homing_index_not_found,
+     .name = "homing_index_not_found",
+     .cause = "no index pulse came within the way that one turn takes",
+     .remedy = "check the encoder's index wires; homing.index_travel is a turn and a little more",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::homing_travel_exceeded,
+     .name = "homing_travel_exceeded",
+     .cause = "the home switch stayed actuated over the longest way of a search",
+     .remedy = "check the switch, which may be stuck or shorted; check the sign of homing.velocity, and homing.travel",
+     .reaction = FaultReaction::ramp_stop},
+    {.fault = AxisFault::amplifier_not_ready,
+     .name = "amplifier_not_ready",
+     .cause = "the amplifier did not become ready after its enable, or was ready no longer, or its wire is broken",
+     .remedy = "read the amplifier's own display; check the ready contact and its wire; check amplifier.ready_time",
+     .reaction = FaultReaction::drop_enable},
+});
+
+inline constexpr std::size_t kCount = [] {
+  std::size_t count = kOthers.size();
+  MonitoredFaults::for_each([&](auto declared) {
+    using Declaration = decltype(declared);
+    count += Declaration::kFaults.size();
+  });
+  return count;
+}();
+
+/// A row for every number below kCount; nameless where a number was left out or given twice.
+constexpr std::array<FaultInfo, kCount> by_number() {
+  std::array<FaultInfo, kCount> rows{};
+  const auto put = [&rows](const FaultInfo& row) {
+    const auto number = static_cast<std::size_t>(row.fault);
+    if (number < kCount) rows[number] = row;
+  };
+  for (const FaultInfo& row : kOthers) put(row);
+  MonitoredFaults::for_each([&](auto declared) {
+    using Declaration = decltype(declared);
+    for (const FaultInfo& row : Declaration::kFaults) put(row);
+  });
+  return rows;
 }
-static_assert(numbers_are_positions(), "each fault has one row, in the order of the numbers");
 
 }  // namespace fault_table
 
+/// In the order of their numbers.
+inline constexpr std::array<FaultInfo, fault_table::kCount> kFaults = fault_table::by_number();
+
 namespace fault_table {
+
+static_assert(std::ranges::none_of(kFaults, [](const FaultInfo& row) { return row.name == nullptr; }),
+              "each fault has one row, and its number is the next");
+static_assert(kFaults.size() <= 64);
 
 constexpr std::array<FaultReaction, kFaults.size()> reactions_alone() {
   std::array<FaultReaction, kFaults.size()> reactions{};
   std::ranges::transform(kFaults, reactions.begin(), &FaultInfo::reaction);
   return reactions;
 }
+
+/// A bit for each.
+inline constexpr std::uint64_t kPositionLost = [] {
+  std::uint64_t bits = 0;
+  for (const FaultInfo& row : kFaults)
+    if (row.loses_position) bits |= std::uint64_t{1} << static_cast<unsigned>(row.fault);
+  return bits;
+}();
 
 }  // namespace fault_table
 
@@ -155,11 +176,8 @@ constexpr const FaultInfo& fault_info(AxisFault fault) {
   return kFaults[number < kFaults.size() ? number : 0];
 }
 
-/// After these nobody knows whether all counts were counted: the axis is no longer homed.
 constexpr bool loses_position(AxisFault fault) {
-  return fault == AxisFault::encoder_invalid || fault == AxisFault::encoder_jump ||
-         fault == AxisFault::encoder_tachometer_disagreement || fault == AxisFault::command_without_motion ||
-         fault == AxisFault::index_mismatch;
+  return (fault_table::kPositionLost >> static_cast<unsigned>(fault) & 1u) != 0;
 }
 
 constexpr FaultReaction reaction_to(AxisFault fault) { return kFaultReactions[static_cast<std::size_t>(fault)]; }

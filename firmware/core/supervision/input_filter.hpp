@@ -25,7 +25,7 @@ class InputFilter {
   }
 
   /// Once a control period, at least while the input is active or pending.
-  constexpr bool settle(bool is_active) {
+  constexpr bool filtered(bool is_active) {
     if (!is_active)
       active_samples_ = 0;
     else if (active_samples_ < samples_)

@@ -1,39 +1,27 @@
-// The thresholds of the monitors. Every monitor is on: there is no value that switches one off.
+// What the monitors are told: the thresholds, and what a sample is of the times that they filter over.
 #pragma once
 
 #include <cstdint>
+#include <tuple>
+#include <utility>
 
-#include "firmware/core/arithmetic/scalar.hpp"
 #include "firmware/core/supervision/input_filter.hpp"
+#include "firmware/core/supervision/monitored_faults.hpp"
 
 namespace firmware {
 
-/// Lengths in mm (m), velocities of the drive in rad/s (m/s), times in samples.
+/// The members of every declaration's Limits, and these.
 template <typename Scalar>
-struct MonitorLimits {
-  Scalar following_error_floor{};         ///< following error that is allowed at standstill, > 0
-  Scalar following_error_per_velocity{};  ///< what each rad/s (m/s) of reference velocity adds to it, mm s/rad (s)
-  Scalar disagreement_floor{};            ///< difference of encoder and tachometer, allowed at standstill, > 0
-  Scalar disagreement_share{};            ///< what it may grow to, as a share of the speed; 0..1
-  Scalar encoder_jump{};                  ///< the same difference within one sample, > disagreement_floor
-  Scalar overspeed{};                     ///< > 0
-  Scalar polarity_command_V{};            ///< a command beyond any friction: it must accelerate the drive; > 0
-  Scalar oscillation_V{};                 ///< rms that the feedback may swing by, > 0
-  Scalar load_share{};                    ///< of a sample in kLoadTime_s, 0..1
-  Scalar swing_share{};                   ///< of a sample in kTransientTime_s, 0..1/2
-  std::int64_t travel_min_counts = 0;     ///< encoder counts
-  std::int64_t travel_max_counts = 0;     ///< > travel_min_counts
-  std::int32_t index_spacing = 0;         ///< counts from one index pulse to the next; 0: not watched
-  std::int32_t saturation_samples = 0;    ///< longest time at the D/A converter's limit, > 0
-  std::int32_t input_samples = 2;         ///< that a switch or a fault line must be active in, > 0
-  std::int32_t capture_stride = 1;        ///< samples from one row of the capture to the next, > 0
+struct MonitorLimits : MonitoredFaults::Limits<Scalar> {
+  Scalar load_share{};              ///< of a sample in kLoadTime_s, 0..1
+  Scalar swing_share{};             ///< of a sample in kTransientTime_s, 0..1/2
+  std::int32_t input_samples = 2;   ///< that a switch or a fault line must be active in, > 0
+  std::int32_t capture_stride = 1;  ///< samples from one row of the capture to the next, > 0
 };
 
 /// Time constant of the filter over the difference of encoder and tachometer: 16 samples leave an eighteenth of the
 /// tachometer's noise power, and a sixteenth of an encoder count a sample.
 inline constexpr int kDisagreementShift = 4;
-/// A command that lasts as long is what the load needs (effort_monitor.hpp).
-inline constexpr float kLoadTime_s = 0.5f;
 /// The feedback's swing is what is left without the mean of this time, and is averaged over the longer one: ramps of
 /// references last longer than the first, and friction's jump at a reversal is small within the second.
 inline constexpr float kTransientTime_s = 0.008f, kSwingTime_s = 0.1f;
@@ -55,34 +43,59 @@ constexpr void set_filters(MonitorLimits<Real>& limits, Real sample_period_s) {
   if (limits.swing_share > Real(0.5f)) limits.swing_share = Real(0.5f);
 }
 
-/// Where nothing better is known. Following error: the way of 2 ms at the velocity limit, and 5 ms of the present
-/// speed; state feedback without any feed-forward is some 1 ms late. Disagreement: 4 % of the velocity limit and 10 %
-/// of the speed (tachometers are within 2 %, ripple included); a jump: a quarter of the limit; neither below what the
-/// encoder's steps look like. Overspeed: a fifth above the limit. Polarity: 30 % of the converter, well above any
-/// friction that can still be overcome. Oscillation: 25 % of the converter. Saturation: 0.1 s. Travel: all that an
-/// encoder counter holds. `velocity_limit` mm/s (m/s), `lead` mm/rad (1).
-template <typename Real>
-constexpr MonitorLimits<Real> default_monitor_limits(Real velocity_limit, Real lead, Real encoder_resolution,
-                                                     Real sample_period_s, Real dac_limit_V) {
-  const Real fastest = velocity_limit / lead;
-  const Real count = encoder_resolution / (lead * sample_period_s);
-  const auto larger = [](Real a, Real b) { return a > b ? a : b; };
+namespace monitored {
+
+template <typename Declaration, typename Visit, std::size_t... index>
+constexpr void visit_thresholds([[maybe_unused]] Visit visit, std::index_sequence<index...>) {
+  (visit(Declaration{}, std::integral_constant<std::size_t, index>{}), ...);
+}
+
+}  // namespace monitored
+
+/// `visit`: a generic function that is told each threshold, as its declaration and, as a type, its place in
+/// kThresholds.
+template <typename Visit>
+constexpr void for_each_threshold(Visit visit) {
+  MonitoredFaults::for_each([&](auto declared) {
+    using Declaration = decltype(declared);
+    using Thresholds = std::remove_cvref_t<decltype(Declaration::template kThresholds<float>)>;
+    monitored::visit_thresholds<Declaration>(visit, std::make_index_sequence<std::tuple_size_v<Thresholds>>());
+  });
+}
+
+/// Of parameters: `value_of` is a generic function that is told a parameter's id, as a type.
+template <typename Real, typename ValueOf>
+constexpr MonitorLimits<Real> monitor_limits(ValueOf value_of, float encoder_resolution, float sample_period_s) {
   MonitorLimits<Real> limits;
-  limits.following_error_floor = velocity_limit * Real(0.002f);
-  limits.following_error_per_velocity = lead * Real(0.005f);
-  limits.disagreement_floor = larger(fastest * Real(0.04f), count * Real(2));
-  limits.disagreement_share = Real(0.1f);
-  limits.encoder_jump = larger(fastest * Real(0.25f), count * Real(8));
-  limits.overspeed = larger(fastest * Real(1.2f), fastest + count * Real(2));
-  limits.polarity_command_V = dac_limit_V * Real(0.3f);
-  limits.oscillation_V = dac_limit_V * Real(0.25f);
-  set_filters(limits, sample_period_s);
-  limits.travel_min_counts = -(std::int64_t{1} << 31);
-  limits.travel_max_counts = std::int64_t{1} << 31;
-  const std::int32_t samples = ScalarTraits<Real>::truncate(Real(0.1f) / sample_period_s + Real(0.5f));
-  limits.saturation_samples = samples;
-  limits.capture_stride = capture_stride(Real(1) / sample_period_s);
+  const float samples_a_second = 1.0F / sample_period_s;
+  for_each_threshold([&](auto declared, auto index) {
+    using Declaration = decltype(declared);
+    constexpr auto kThreshold = std::get<index()>(Declaration::template kThresholds<Real>);
+    auto& kept = limits.*kThreshold.field;
+    const float value = value_of(std::integral_constant<std::uint16_t, kThreshold.row.id>{});
+    kept = threshold_units::kept<std::remove_reference_t<decltype(kept)>>(value, kThreshold.row.quantity,
+                                                                          encoder_resolution, samples_a_second);
+  });
+  set_filters(limits, static_cast<Real>(sample_period_s));
+  limits.capture_stride = capture_stride(samples_a_second);
   return limits;
+}
+
+/// The same limits in fixed-point units (core/fixed_units.hpp).
+template <typename Real, typename Units>
+constexpr MonitorLimits<FixedPoint> fixed_limits(const MonitorLimits<Real>& limits, const Units& unit) {
+  MonitorLimits<FixedPoint> fixed;
+  for_each_threshold([&](auto declared, auto index) {
+    using Declaration = decltype(declared);
+    constexpr auto kFrom = std::get<index()>(Declaration::template kThresholds<Real>);
+    constexpr auto kTo = std::get<index()>(Declaration::template kThresholds<FixedPoint>);
+    fixed.*kTo.field = threshold_units::fixed(limits.*kFrom.field, kFrom.row.quantity, unit);
+  });
+  fixed.load_share = FixedPoint::from(limits.load_share);
+  fixed.swing_share = FixedPoint::from(limits.swing_share);
+  fixed.input_samples = limits.input_samples;
+  fixed.capture_stride = limits.capture_stride;
+  return fixed;
 }
 
 }  // namespace firmware

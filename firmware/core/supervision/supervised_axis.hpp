@@ -37,16 +37,16 @@ class SupervisedAxis {
 
   /// Takes new parameters and begins the self-test, or says what is wrong and keeps the old. Only while the outputs are
   /// off.
-  constexpr ParameterError configure(const AxisParameters<Scalar>& parameters) {
-    if (outputs_are_on(state_)) return ParameterError::controller_is_enabled;
-    const ParameterError error = check_supervised(parameters);
-    return error == ParameterError::none ? take(parameters) : error;
+  constexpr Refusal configure(const AxisParameters<Scalar>& parameters) {
+    if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
+    const Refusal error = check_supervised(parameters);
+    return error == Refusal::none ? take(parameters) : error;
   }
 
   /// Likewise for an axis that has no controller yet and is to be excited in open loop alone: gains and thresholds mean
   /// nothing, and whoever lets it be enabled otherwise is wrong.
-  constexpr ParameterError configure_bare(const AxisParameters<Scalar>& parameters) {
-    return outputs_are_on(state_) ? ParameterError::controller_is_enabled : take(parameters);
+  constexpr Refusal configure_bare(const AxisParameters<Scalar>& parameters) {
+    return outputs_are_on(state_) ? Refusal::controller_is_enabled : take(parameters);
   }
 
   // What comes of a request shows in the next control period. False where the state does not allow it.
@@ -72,7 +72,7 @@ class SupervisedAxis {
     axis_.clear_fault();
     capture_.restart();
     begin_self_test();
-    happen(SupervisorEvent::clear_request);
+    advance_by(SupervisorEvent::clear_request);
     return true;
   }
 
@@ -90,12 +90,12 @@ class SupervisedAxis {
   }
   /// A homed axis plans no move beyond its travel; an axis that is not homed knows of none.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
-    if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, MovePlanError::outside_travel};
+    if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_to(target);
   }
   constexpr MovePlanResult plan_move_by(std::int64_t counts) const {
     const std::int64_t here = axis_.telemetry().reference.counts;
-    if (is_homed() && !monitors_.travel().has_way(here, counts)) return {{}, MovePlanError::outside_travel};
+    if (is_homed() && !monitors_.travel().has_way(here, counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_by(counts);
   }
   /// False at a limit of travel that a jog of this velocity would pass.
@@ -204,9 +204,9 @@ class SupervisedAxis {
   static constexpr std::int32_t kStandingSamples = 20;
   static constexpr std::int32_t kIndexSamples = 16;  ///< from one look at the index to the next
 
-  constexpr ParameterError take(const AxisParameters<Scalar>& parameters) {
-    const ParameterError error = axis_.configure(parameters);
-    if (error != ParameterError::none) return error;
+  constexpr Refusal take(const AxisParameters<Scalar>& parameters) {
+    const Refusal error = axis_.configure(parameters);
+    if (error != Refusal::none) return error;
     monitors_.configure(parameters, axis_.farthest_stop());
     homing_.configure(parameters.homing);
     sequence_.configure(parameters.sequence);
@@ -220,7 +220,7 @@ class SupervisedAxis {
     longest_stop_ = longest_ramp(limits) + kLongestSettling;
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
-    happen(SupervisorEvent::configured);
+    advance_by(SupervisorEvent::configured);
     return error;
   }
 
@@ -254,7 +254,9 @@ class SupervisedAxis {
     return true;
   }
 
-  constexpr void happen(SupervisorEvent event) { enter(next_state(state_, event | event, fault_ != AxisFault::none)); }
+  constexpr void advance_by(SupervisorEvent event) {
+    enter(next_state(state_, event | event, fault_ != AxisFault::none));
+  }
 
   /// Of an axis that is led or looks for home.
   [[gnu::noinline]] constexpr void step_guided(AxisFault outer, const hal::EncoderReading& encoder) {
@@ -268,7 +270,7 @@ class SupervisedAxis {
   [[gnu::noinline]] constexpr AxisFault guide_home() {
     HomingInputs seen;
     seen.counts = axis_.telemetry().encoder_counts;
-    seen.at_switch = home_switch_.settle(hal_.limits().read().home);
+    seen.at_switch = home_switch_.filtered(hal_.limits().read().home);
     seen.at_rest = axis_.is_at_rest();
     if constexpr (kHasIndex) {
       const hal::IndexReading index = hal_.encoder().read_index();
@@ -323,15 +325,16 @@ class SupervisedAxis {
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
     const bool says_fault = hal_.drive_enable().is_faulted();
-    if ((says_fault || drive_fault_.is_pending()) && drive_fault_.settle(says_fault)) return AxisFault::drive_fault;
-    if (!hal_.dac().is_healthy()) return AxisFault::converter_not_as_set;
+    if ((says_fault || drive_fault_.is_pending()) && drive_fault_.filtered(says_fault)) return AxisFault::drive_fault;
+    const AxisFault parts = monitors_.watch_parts(hal_);
+    if (parts != AxisFault::none) return parts;
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return sensors;
     if (!seen.enabled) {
       watch_standstill(seen);
       return monitors_.watch_rest(seen);
     }
-    if (sequence_.parameters().ready_input && drive_unready_.settle(!is_ready(hal_.drive_enable())))
+    if (sequence_.parameters().ready_input && drive_unready_.filtered(!is_ready(hal_.drive_enable())))
       return AxisFault::amplifier_not_ready;
     const AxisFault motion = monitors_.watch_motion(seen);
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
@@ -358,7 +361,7 @@ class SupervisedAxis {
       case DriveStartStep::started:
         return SupervisorEvent::started | SupervisorEvent::started;
       case DriveStartStep::late:
-        return note(AxisFault::amplifier_not_ready) | SupervisorEvent::drop_fault;
+        return latch(AxisFault::amplifier_not_ready) | SupervisorEvent::drop_fault;
     }
     return 0;
   }
@@ -370,7 +373,7 @@ class SupervisedAxis {
     if (state_ == SupervisorState::off && events == 0) return;
     if (outer == AxisFault::other_axis_stopped && own != AxisFault::none) outer = AxisFault::none;
     for (const AxisFault found : {outer, own})
-      if (found != AxisFault::none) events = events | note(found);
+      if (found != AxisFault::none) events = events | latch(found);
     if (state_ == SupervisorState::self_test && ++self_test_samples_ >= kSelfTestSamples)
       events = events | SupervisorEvent::test_passed;
     if (state_ == SupervisorState::starting && events == 0) events = start_drive();
@@ -381,18 +384,18 @@ class SupervisedAxis {
 
   /// The first fault is the one that is reported; of those that follow before the outputs are off, the first of the
   /// worst kind is reported beside it.
-  constexpr SupervisorEvent note(AxisFault found) {
+  constexpr SupervisorEvent latch(AxisFault found) {
     const bool drops = reaction_to(found) != FaultReaction::ramp_stop;
     if (loses_position(found)) axis_.forget_home();
     if (fault_ == AxisFault::none)
-      latch(found);
+      latch_first(found);
     else if (found != fault_ && outputs_are_on(state_) &&
              (second_fault_ == AxisFault::none || (drops && reaction_to(second_fault_) == FaultReaction::ramp_stop)))
       second_fault_ = found;
     return drops ? SupervisorEvent::drop_fault : SupervisorEvent::ramp_fault;
   }
 
-  constexpr void latch(AxisFault found) {
+  constexpr void latch_first(AxisFault found) {
     fault_ = found;
     is_fault_new_ = true;
     capture_.freeze(axis_.telemetry());
@@ -433,7 +436,7 @@ class SupervisedAxis {
       if (axis_.enable()) {
         release_brake(true);
       } else {
-        latch(axis_.telemetry().fault);
+        latch_first(axis_.telemetry().fault);
         state_ = SupervisorState::fault;
       }
     }

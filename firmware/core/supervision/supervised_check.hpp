@@ -8,12 +8,12 @@ namespace firmware {
 
 /// The first check that fails.
 template <typename Scalar>
-constexpr ParameterError check_supervised(const AxisParameters<Scalar>& parameters) {
-  ParameterError error = check(parameters);
-  if (error == ParameterError::none) error = check_homing(parameters.homing);
-  if (error == ParameterError::none) error = check_sequence(parameters.sequence);
-  if (error == ParameterError::none) error = check_monitors(parameters);
-  if (error == ParameterError::none) error = check_poles(parameters);
+constexpr Refusal check_supervised(const AxisParameters<Scalar>& parameters) {
+  Refusal error = check(parameters);
+  if (error == Refusal::none) error = check_homing(parameters.homing);
+  if (error == Refusal::none) error = check_sequence(parameters.sequence);
+  if (error == Refusal::none) error = check_monitors(parameters);
+  if (error == Refusal::none) error = check_poles(parameters);
   return error;
 }
 

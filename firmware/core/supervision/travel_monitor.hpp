@@ -83,8 +83,8 @@ class TravelMonitor {
  private:
   [[gnu::noinline]] constexpr AxisFault watch_ends(const AxisTelemetry<Scalar>& seen, const hal::LimitState& switches) {
     const std::int64_t counts = seen.encoder_counts;
-    const bool at_positive_end = positive_end_.settle(switches.positive_end);
-    const bool at_negative_end = negative_end_.settle(switches.negative_end);
+    const bool at_positive_end = positive_end_.filtered(switches.positive_end);
+    const bool at_negative_end = negative_end_.filtered(switches.negative_end);
     const bool is_above = at_positive_end || (seen.homed && counts > max_counts_);
     const bool is_below = at_negative_end || (seen.homed && counts < min_counts_);
     is_near_end_ =

@@ -60,7 +60,7 @@ TYPED_TEST(BoardParameters, ASetThatDoesNotFitTogetherChangesNothing) {
   set(other, "x.drive.sample_period", 0.002);
   const firmware::Message reply = bench.download(other);
   EXPECT_EQ(reply.status, Status::bad_value);
-  firmware::ProblemPayload problem;
+  firmware::RefusedValuePayload problem;
   ASSERT_TRUE(reply.get(problem));
   EXPECT_EQ(problem.key, firmware::key_at(place_named("x.drive.sample_period")).code);
   EXPECT_EQ(bench.application.active(), this->paper_values());
@@ -77,10 +77,10 @@ TYPED_TEST(BoardParameters, AReportWithOneBadValueStagesNone) {
   part.bits[1] = std::bit_cast<std::uint32_t>(5.2F);
   const firmware::Message reply = bench.ask(MessageType::stage, part);
   EXPECT_EQ(reply.status, Status::bad_value);
-  firmware::ProblemPayload problem;
+  firmware::RefusedValuePayload problem;
   ASSERT_TRUE(reply.get(problem));
   EXPECT_EQ(problem.key, part.key[1]);
-  EXPECT_EQ(problem.kind, static_cast<std::uint8_t>(firmware::ValueProblem::above_maximum));
+  EXPECT_EQ(problem.kind, static_cast<std::uint8_t>(firmware::ValueRefusal::above_maximum));
   EXPECT_EQ(bench.application.staged(), bench.application.active());
   part.key[1] = 0x1FFF;
   EXPECT_EQ(bench.ask(MessageType::stage, part).status, Status::unknown_parameter);
@@ -221,7 +221,7 @@ void expect_all_rows(const firmware::CaptureRequest& request, std::size_t words)
     hal::HidReport report;
     while (bench.board.usb().host_receive(report)) {
       firmware::Message message;
-      ASSERT_EQ(firmware::decode(report, message), firmware::DecodeProblem::none);
+      ASSERT_EQ(firmware::decode(report, message), firmware::Status::ok);
       ASSERT_EQ(message.type, MessageType::samples);
       std::uint32_t first = 0;
       std::memcpy(&first, message.payload.data(), 4);
@@ -358,7 +358,7 @@ TYPED_TEST(BoardProtocol, AnswersWhatItDoesNotKnow) {
   hal::HidReport noise{};
   noise.fill(std::byte{0xA5});
   firmware::Message reply;
-  ASSERT_EQ(firmware::decode(bench.server.answer(noise), reply), firmware::DecodeProblem::none);
+  ASSERT_EQ(firmware::decode(bench.server.answer(noise), reply), firmware::Status::ok);
   EXPECT_EQ(reply.type, MessageType::rejected);
   EXPECT_EQ(reply.status, Status::damaged);
 }

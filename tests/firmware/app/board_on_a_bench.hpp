@@ -96,7 +96,7 @@ struct BoardOnABench {
   firmware::Message ask(firmware::Message request) {
     request.client = client;
     firmware::Message reply;
-    EXPECT_EQ(firmware::decode(server.answer(firmware::encode(request)), reply), firmware::DecodeProblem::none);
+    EXPECT_EQ(firmware::decode(server.answer(firmware::encode(request)), reply), firmware::Status::ok);
     EXPECT_EQ(reply.type, firmware::reply_to(request.type));
     EXPECT_EQ(reply.sequence, request.sequence);
     EXPECT_EQ(reply.client, request.client);

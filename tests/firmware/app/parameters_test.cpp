@@ -16,8 +16,8 @@ namespace {
 
 using firmware::ParameterKey;
 using firmware::ParameterValues;
-using firmware::SetProblem;
-using firmware::SetProblemKind;
+using firmware::SetRefusal;
+using firmware::ValueRefusal;
 using firmware_test::kPaperX;
 using firmware_test::paper_values;
 using firmware_test::place_named;
@@ -39,14 +39,14 @@ sim::DriveDescription machine() {
 /// Everything that the machine notices of a set: whether it is refused, every word put out in both directions of
 /// motion, with limits and saturation reached, and where the monitors trip.
 template <typename Scalar>
-std::pair<SetProblem, std::vector<std::int32_t>> behaviour(const ParameterValues& values) {
-  const SetProblem problem = firmware::check<Scalar>(values);
+std::pair<SetRefusal, std::vector<std::int32_t>> behaviour(const ParameterValues& values) {
+  const SetRefusal problem = firmware::check<Scalar>(values);
   std::vector<std::int32_t> words;
-  if (problem.kind != SetProblemKind::none || !values.axis(0).get<"drive.fitted">()) return {problem, words};
+  if (problem.kind != ValueRefusal::none || !values.axis(0).get<"drive.fitted">()) return {problem, words};
   sim::Plant plant(machine(), 1);
   hal::pc::SimulatedAxis wires(plant);
   firmware::Axis<Scalar, hal::pc::SimulatedAxis> axis(wires);
-  EXPECT_EQ(axis.configure(firmware::axis_parameters<Scalar>(values.axis(0))), firmware::ParameterError::none);
+  EXPECT_EQ(axis.configure(firmware::axis_parameters<Scalar>(values.axis(0))), firmware::Refusal::none);
   for (int k = 0; k < 500; ++k) {
     if (k == 5) {
       axis.set_home(0);
@@ -101,11 +101,11 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   set(values, "x.monitor.polarity_command", 2.0);
   set(values, "x.monitor.oscillation", 1.5);
   const auto before = behaviour<TypeParam>(values);
-  ASSERT_EQ(before.first, SetProblem{});
+  ASSERT_EQ(before.first, SetRefusal{});
   ParameterValues compensated = values;  // presliding takes the place of friction.blend
   compensate(compensated);
   const auto before_compensated = behaviour<TypeParam>(compensated);
-  ASSERT_EQ(before_compensated.first, SetProblem{});
+  ASSERT_EQ(before_compensated.first, SetRefusal{});
   for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
     // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
@@ -138,24 +138,24 @@ TYPED_TEST(Parameters, AmplifierAndBrakeAreWaitedForInControlPeriods) {
   EXPECT_EQ(sequence.amplifier_wait, 250);
   EXPECT_EQ(sequence.brake_release, 40);
   EXPECT_EQ(sequence.brake_application, 60);
-  EXPECT_EQ(firmware::check<TypeParam>(values), SetProblem{});
+  EXPECT_EQ(firmware::check<TypeParam>(values), SetRefusal{});
   set(values, "x.amplifier.ready_time", 0);
   EXPECT_EQ(firmware::check<TypeParam>(values),
-            (SetProblem{SetProblemKind::refused_by_core, firmware::key_at(place_named("x.amplifier.ready_time"))}));
+            (SetRefusal{ValueRefusal::refused_by_core, firmware::key_at(place_named("x.amplifier.ready_time"))}));
 }
 
 TYPED_TEST(Parameters, ASlowerControlRateIsTakenTogetherWithItsPeriod) {
   ParameterValues values = paper_values();
   set(values, "control.rate", 500);
   EXPECT_EQ(firmware::check<TypeParam>(values),
-            (SetProblem{SetProblemKind::rate_disagrees, firmware::key_at(place_named("x.drive.sample_period"))}));
+            (SetRefusal{ValueRefusal::rate_disagrees, firmware::key_at(place_named("x.drive.sample_period"))}));
   set(values, "x.drive.sample_period", 1.0 / 500);
-  EXPECT_EQ(firmware::check<TypeParam>(values), SetProblem{});
+  EXPECT_EQ(firmware::check<TypeParam>(values), SetRefusal{});
 }
 
 TYPED_TEST(Parameters, InitialValuesFitNoAxisAndAreAdmissible) {
   const ParameterValues initial;
-  EXPECT_EQ(firmware::check<TypeParam>(initial), SetProblem{});
+  EXPECT_EQ(firmware::check<TypeParam>(initial), SetRefusal{});
   for (std::size_t axis = 0; axis < hal::kAxisCount; ++axis) EXPECT_FALSE(initial.axis(axis).get<"drive.fitted">());
 }
 
@@ -163,7 +163,7 @@ TYPED_TEST(Parameters, AnAxisThatIsFittedButNotDesignedIsRefused) {
   ParameterValues values;
   set(values, "y.drive.fitted", 1);
   EXPECT_EQ(firmware::check<TypeParam>(values),
-            (SetProblem{SetProblemKind::refused_by_core, firmware::key_at(place_named("y.model.a12"))}));
+            (SetRefusal{ValueRefusal::refused_by_core, firmware::key_at(place_named("y.model.a12"))}));
 }
 
 TYPED_TEST(Parameters, ValuesBeyondTheirRangeAreNamed) {
@@ -171,13 +171,13 @@ TYPED_TEST(Parameters, ValuesBeyondTheirRangeAreNamed) {
     const firmware::ParameterRule& rule = firmware::rule_at(place);
     const float infinity = std::numeric_limits<float>::infinity();
     for (const auto& [value, kind] :
-         {std::pair{rule.maximum * 1.01F + 1.0F, SetProblemKind::above_maximum},
-          std::pair{rule.minimum - std::abs(rule.minimum) * 0.01F - 1e-12F, SetProblemKind::below_minimum},
-          std::pair{infinity, SetProblemKind::not_a_number}, std::pair{-infinity, SetProblemKind::not_a_number},
-          std::pair{std::numeric_limits<float>::quiet_NaN(), SetProblemKind::not_a_number}}) {
+         {std::pair{rule.maximum * 1.01F + 1.0F, ValueRefusal::above_maximum},
+          std::pair{rule.minimum - std::abs(rule.minimum) * 0.01F - 1e-12F, ValueRefusal::below_minimum},
+          std::pair{infinity, ValueRefusal::not_a_number}, std::pair{-infinity, ValueRefusal::not_a_number},
+          std::pair{std::numeric_limits<float>::quiet_NaN(), ValueRefusal::not_a_number}}) {
       ParameterValues values = paper_values();
       values.set(place, value);
-      EXPECT_EQ(firmware::check<TypeParam>(values), (SetProblem{kind, firmware::key_at(place)})) << place;
+      EXPECT_EQ(firmware::check<TypeParam>(values), (SetRefusal{kind, firmware::key_at(place)})) << place;
     }
   }
 }
@@ -191,19 +191,66 @@ TYPED_TEST(Parameters, CompensationThatMakesNoSenseIsRefusedOnlyWhereItIsOn) {
     compensate(values);
     set(values, std::string("x.") + wrong, value);
     EXPECT_EQ(firmware::check<TypeParam>(values),
-              (SetProblem{SetProblemKind::refused_by_core, firmware::key_at(place_named(std::string("x.") + wrong))}));
+              (SetRefusal{ValueRefusal::refused_by_core, firmware::key_at(place_named(std::string("x.") + wrong))}));
     set(values, std::string("x.") + part + ".on", 0);
-    EXPECT_EQ(firmware::check<TypeParam>(values), SetProblem{}) << part;
+    EXPECT_EQ(firmware::check<TypeParam>(values), SetRefusal{}) << part;
   }
+}
+
+/// The core knows parameters by their ids alone.
+TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
+  using firmware::Refusal;
+  for (const auto& [refusal, name] : {std::pair{Refusal::sample_period, "drive.sample_period"},
+                                      {Refusal::lead, "drive.lead"},
+                                      {Refusal::encoder_resolution, "drive.encoder_resolution"},
+                                      {Refusal::dac_resolution, "drive.dac_resolution"},
+                                      {Refusal::dac_limit, "drive.dac_limit"},
+                                      {Refusal::tachometer_gain, "tachometer.gain"},
+                                      {Refusal::drive_model, "model.a12"},
+                                      {Refusal::kalman_gain, "kalman.k11"},
+                                      {Refusal::estimator_poles, "kalman.k11"},
+                                      {Refusal::state_feedback, "feedback.k1"},
+                                      {Refusal::loop_poles, "feedback.k1"},
+                                      {Refusal::friction_curve, "friction.static_positive"},
+                                      {Refusal::friction_blend, "friction.blend"},
+                                      {Refusal::velocity_limit, "limits.velocity"},
+                                      {Refusal::acceleration_limit, "limits.acceleration"},
+                                      {Refusal::jerk_limit, "limits.jerk"},
+                                      {Refusal::jerk_time, "limits.jerk"},
+                                      {Refusal::following_error, "monitor.following_error"},
+                                      {Refusal::disagreement, "monitor.disagreement"},
+                                      {Refusal::overspeed, "monitor.overspeed"},
+                                      {Refusal::polarity_command, "monitor.polarity_command"},
+                                      {Refusal::travel, "monitor.travel_max"},
+                                      {Refusal::saturation_time, "monitor.saturation_time"},
+                                      {Refusal::oscillation, "monitor.oscillation"},
+                                      {Refusal::cogging, "cogging.period_1"},
+                                      {Refusal::presliding, "presliding.stiffness"},
+                                      {Refusal::position_friction, "position_friction.period"},
+                                      {Refusal::backlash, "backlash.gap"},
+                                      {Refusal::backlash_crossing, "backlash.crossing_time"},
+                                      {Refusal::homing, "homing.velocity"},
+                                      {Refusal::amplifier_ready, "amplifier.ready_time"},
+                                      {Refusal::index_spacing, "encoder.index_spacing"},
+                                      {Refusal::filters, "notch.frequency"}}) {
+    const auto* const row =
+        std::ranges::find(firmware::kParameters, firmware::parameter_behind(refusal), &firmware::ParameterInfo::id);
+    ASSERT_NE(row, firmware::kParameters.end()) << name;
+    EXPECT_EQ(row->name, name);
+  }
+  for (const Refusal refusal :
+       {Refusal::none, Refusal::controller_is_enabled, Refusal::move_too_long, Refusal::outside_travel,
+        Refusal::path_not_open, Refusal::path_full, Refusal::path_too_fast, Refusal::path_ends_in_motion})
+    EXPECT_EQ(firmware::parameter_behind(refusal), 0);
 }
 
 TEST(ParameterTable, WholeNumbersAndSwitchesTakeNoFractions) {
   ParameterValues values;
   set(values, "control.rate", 1000.5);
-  EXPECT_EQ(firmware::check<float>(values).kind, SetProblemKind::not_whole);
+  EXPECT_EQ(firmware::check<float>(values).kind, ValueRefusal::not_whole);
   set(values, "control.rate", 1000);
   set(values, "x.drive.fitted", 0.5);
-  EXPECT_EQ(firmware::check<float>(values).kind, SetProblemKind::not_whole);
+  EXPECT_EQ(firmware::check<float>(values).kind, ValueRefusal::not_whole);
 }
 
 TEST(ParameterTable, KeysAndPlacesAreOneToOne) {

@@ -7,9 +7,9 @@
 
 namespace {
 
-using firmware::DecodeProblem;
 using firmware::Message;
 using firmware::MessageType;
+using firmware::Status;
 
 hal::HidReport report_of(std::initializer_list<int> head, std::initializer_list<int> crc) {
   hal::HidReport report{};
@@ -31,7 +31,7 @@ TEST(Report, IsThePagesBytes) {
   message.put(firmware::JogRequest{1, {}, -12.5F});
   EXPECT_EQ(firmware::encode(message), kJog);
   Message decoded;
-  ASSERT_EQ(firmware::decode(kJog, decoded), DecodeProblem::none);
+  ASSERT_EQ(firmware::decode(kJog, decoded), Status::ok);
   EXPECT_EQ(decoded, message);
   firmware::JogRequest jog;
   ASSERT_TRUE(decoded.get(jog));
@@ -45,7 +45,7 @@ TEST(Report, NoFlippedBitPasses) {
       hal::HidReport damaged = kJog;
       damaged[byte] ^= static_cast<std::byte>(1 << bit);
       Message message;
-      EXPECT_EQ(firmware::decode(damaged, message), DecodeProblem::wrong_crc) << byte << " " << bit;
+      EXPECT_EQ(firmware::decode(damaged, message), Status::damaged) << byte << " " << bit;
     }
   }
 }
@@ -60,10 +60,10 @@ TEST(Report, AnotherVersionAndALengthThatCannotBeAreRefused) {
   Message message;
   hal::HidReport other = kJog;
   other[0] = std::byte{2};
-  EXPECT_EQ(firmware::decode(sealed(other), message), DecodeProblem::wrong_version);
+  EXPECT_EQ(firmware::decode(sealed(other), message), Status::wrong_version);
   other = kJog;
   other[5] = std::byte{53};
-  EXPECT_EQ(firmware::decode(sealed(other), message), DecodeProblem::wrong_length);
+  EXPECT_EQ(firmware::decode(sealed(other), message), Status::damaged);
 }
 
 TEST(Report, APayloadOfAnotherLengthIsNotTaken) {

@@ -115,7 +115,7 @@ class Day {
     request.type = type;
     request.client = 1;
     (request.put(payload), ...);
-    EXPECT_EQ(firmware::decode(server_.answer(firmware::encode(request)), reply), firmware::DecodeProblem::none);
+    EXPECT_EQ(firmware::decode(server_.answer(firmware::encode(request)), reply), firmware::Status::ok);
     return reply.status;
   }
 

@@ -4,7 +4,7 @@ namespace parts {
 
 namespace {
 
-// Timing characteristics, in ns.
+// Timing characteristics, in ns; kSelectHigh (t6), kSelectHighReading (t17) and kAnswerDelay (t16) from memory.
 constexpr double kCycle = 33, kClockHalf = 13, kSelectHigh = 100, kSelectHighReading = 200, kSetup = 7, kHold = 2,
                  kAnswerDelay = 40, kPowerUp = 10'000;
 constexpr double kTolerance = 1e-3;

@@ -65,7 +65,7 @@ TEST_F(Lines, AnOpenStopCircuitIsAPressedStop) {
 }
 
 TEST_F(Lines, EndSwitchesOpenWhenActuatedAndTheHomeSwitchCloses) {
-  SwitchInputs switches(Pin(gpio_b(), 12), Pin(gpio_b(), 13), Pin(gpio_b(), 14));
+  SwitchInputs switches({.positive_end = {gpio_b(), 12}, .negative_end = {gpio_b(), 13}, .home = {gpio_b(), 14}});
   switches.start();
   EXPECT_TRUE(switches.read().positive_end);
   EXPECT_TRUE(switches.read().negative_end);

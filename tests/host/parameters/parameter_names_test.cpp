@@ -11,10 +11,10 @@
 
 namespace {
 
-using firmware::SetProblemKind;
+using firmware::ValueRefusal;
 using testing::HasSubstr;
 
-std::string complaint(const char* name, SetProblemKind kind, float value) {
+std::string complaint(const char* name, ValueRefusal kind, float value) {
   return host::describe(firmware::key_at(host::require_place(name)), static_cast<std::uint8_t>(kind), value);
 }
 
@@ -37,15 +37,14 @@ TEST(ParameterNames, AnUnknownNameIsAnsweredWithTheNearest) {
 }
 
 TEST(ParameterNames, ErrorsNameParameterRangeAndUnit) {
-  EXPECT_EQ(complaint("x.kalman.k11", SetProblemKind::above_maximum, 5.2F),
+  EXPECT_EQ(complaint("x.kalman.k11", ValueRefusal::above_maximum, 5.2F),
             "x.kalman.k11 = 5.2 is above its maximum 2.0 (1)");
-  EXPECT_EQ(complaint("y.drive.sample_period", SetProblemKind::below_minimum, 1e-5F),
+  EXPECT_EQ(complaint("y.drive.sample_period", ValueRefusal::below_minimum, 1e-5F),
             "y.drive.sample_period = 1e-05 is below its minimum 5e-05 (s)");
-  EXPECT_EQ(complaint("x.feedback.k1", SetProblemKind::below_minimum, -1.0F),
+  EXPECT_EQ(complaint("x.feedback.k1", ValueRefusal::below_minimum, -1.0F),
             "x.feedback.k1 = -1.0 is below its minimum 0.0 (V/mm; linear drive: V/m)");
-  EXPECT_EQ(complaint("x.drive.fitted", SetProblemKind::above_maximum, 2.0F),
-            "x.drive.fitted = 2 must be true or false");
-  EXPECT_THAT(complaint("x.drive.sample_period", SetProblemKind::rate_disagrees, 0.002F),
+  EXPECT_EQ(complaint("x.drive.fitted", ValueRefusal::above_maximum, 2.0F), "x.drive.fitted = 2 must be true or false");
+  EXPECT_THAT(complaint("x.drive.sample_period", ValueRefusal::rate_disagrees, 0.002F),
               HasSubstr("set control.rate = 500"));
 }
 

@@ -70,7 +70,7 @@ std::vector<PathPoint> followed(const host::PlannedPath& path) {
       const auto& word = words.nodes[sent];
       EXPECT_EQ(follower->push({word.duration, {word.axis[0], word.axis[1]}}, sent + 1 == words.nodes.size(),
                                [](std::size_t, std::int64_t) { return true; }),
-                firmware::NodeProblem::none);
+                firmware::Refusal::none);
       if (testing::Test::HasFailure()) return points;
     }
     follower->prepare();

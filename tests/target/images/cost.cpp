@@ -275,7 +275,7 @@ void count_path() {
       firmware::PathNode<Axes::kAxes> node;
       node.duration = 10 * firmware::kShortestPiece;
       for (auto& axis : node.axis) axis = {(speed + next) * 5 << 16, next << 24, 0};
-      if (path.push(node, false, [](std::size_t, std::int64_t) { return true; }) != firmware::NodeProblem::none) break;
+      if (path.push(node, false, [](std::size_t, std::int64_t) { return true; }) != firmware::Refusal::none) break;
       speed = next;
       ++piece;
     }

@@ -14,7 +14,7 @@ enum class ParameterType : std::uint8_t { real = 0, whole = 1, toggle = 2 };
 
 enum class ParameterChange : std::uint8_t { any_time = 0, while_disabled = 1 };
 
-/// One row of the table (parameter_table.hpp).
+/// One row of the table (app/parameters/parameter_table.hpp).
 struct ParameterInfo {
   std::uint16_t id;  ///< 1..4095, permanent: of a parameter that goes, the id is never given to another
   ParameterScope scope;
@@ -35,22 +35,25 @@ struct ParameterRule {
   float minimum, maximum, initial;
 };
 
-enum class ValueProblem : std::uint8_t {
+/// Why a value, or a set of them, is refused. Numbers are permanent.
+enum class ValueRefusal : std::uint8_t {
   none = 0,
   not_a_number = 1,
   below_minimum = 2,
   above_maximum = 3,
-  not_whole = 4
+  not_whole = 4,
+  rate_disagrees = 5,  ///< drive.sample_period is not 1 / control.rate
+  refused_by_core = 6  ///< for a Refusal: the parameter does not go with the others of its axis
 };
 
-constexpr ValueProblem check_value(const ParameterRule& rule, float value) {
+constexpr ValueRefusal check_value(const ParameterRule& rule, float value) {
   // By the bits, before any comparison: an infinity or not-a-number must not reach one.
   constexpr std::uint32_t kExponent = 0x7F800000;
-  if ((std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent) return ValueProblem::not_a_number;
-  if (value < rule.minimum) return ValueProblem::below_minimum;
-  if (value > rule.maximum) return ValueProblem::above_maximum;
-  if (rule.type == ParameterType::real) return ValueProblem::none;
-  return static_cast<float>(static_cast<std::int32_t>(value)) == value ? ValueProblem::none : ValueProblem::not_whole;
+  if ((std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent) return ValueRefusal::not_a_number;
+  if (value < rule.minimum) return ValueRefusal::below_minimum;
+  if (value > rule.maximum) return ValueRefusal::above_maximum;
+  if (rule.type == ParameterType::real) return ValueRefusal::none;
+  return static_cast<float>(static_cast<std::int32_t>(value)) == value ? ValueRefusal::none : ValueRefusal::not_whole;
 }
 
 }  // namespace firmware

@@ -1,0 +1,23 @@
+// What is said of a fault: how it is called, what causes and what mends it, and how the axis is stopped.
+#pragma once
+
+#include "firmware/core/axis_fault.hpp"
+
+namespace firmware {
+
+enum class FaultReaction : std::uint8_t {
+  none,         ///< nothing to stop: the axis is not let go
+  ramp_stop,    ///< the control still works: slow down within the limits of references, then drop the enable
+  drop_enable,  ///< the control cannot be trusted, or has lost the drive: 0 V and enable off in the same sample
+};
+
+struct FaultInfo {
+  AxisFault fault = AxisFault::none;
+  const char* name = nullptr;
+  const char* cause = nullptr;
+  const char* remedy = nullptr;
+  FaultReaction reaction = FaultReaction::none;
+  bool loses_position = false;  ///< nobody knows whether all counts were counted: the axis is no longer homed
+};
+
+}  // namespace firmware
