@@ -37,7 +37,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
 
     # The standard headers that the microcontroller build allows: nothing that allocates, throws or does I/O.
     count = split("algorithm array atomic bit climits cmath compare concepts cstddef cstdint cstring initializer_list " \
-                  "iterator limits numbers numeric optional ratio span tuple type_traits utility variant version", names)
+                  "iterator limits numbers numeric optional ratio span string_view tuple type_traits utility variant version", names)
     for (i = 1; i <= count; i++) freestanding[names[i]] = 1
   }
 
