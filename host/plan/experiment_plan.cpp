@@ -218,8 +218,7 @@ class Planner {
       for (std::size_t other = 0; other < rivals_.size(); ++other) {
         odds[truth][other] = 0.5 * (decision.chi_square[other] - decision.chi_square[truth]);
         const double found = odds[truth][other];
-        const bool may_have_more =
-            other != truth && found < kSure && log_odds(chosen_, truth, other) > found + kHope;
+        const bool may_have_more = other != truth && found < kSure && log_odds(chosen_, truth, other) > found + kHope;
         if (!may_have_more) continue;
         as_expected = false;
         bent.emplace_back(other, decision.rivals[other].model);
