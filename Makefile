@@ -42,17 +42,18 @@ install-cpp: ## Install the library, its headers and its CMake package (find_pac
 	cmake --install $(BUILD) --component development --prefix $(PREFIX)
 
 .PHONY: deb
-deb: ## Make the Debian package build/axistool_VERSION_ARCHITECTURE.deb, and let lintian look at it
+deb: ## Make the Debian packages axistool and python3-axistool (build/*.deb), and let lintian look at them
 	$(NEED) build package
 	$(call configure,$(BUILD),-DAXIS_ZSH_DIR=share/zsh/vendor-completions)
 	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents
+	rm -f $(BUILD)/*axistool_*.deb
 	cd $(BUILD) && cpack -G DEB --config CPackConfig.cmake
-	lintian --fail-on error,warning $(BUILD)/axistool_*.deb
+	lintian --fail-on error,warning $(BUILD)/*axistool_*.deb
 
 .PHONY: deb-check
-deb-check: deb ## Install the package in a fresh Debian 12, use it, remove it (as root; downloads some 100 MB)
+deb-check: deb ## Install the packages in a fresh Debian 12, use them, remove them (as root; downloads some 150 MB)
 	$(NEED) package
-	cmake/package/in_fresh_debian.sh $(BUILD)/axistool_*.deb
+	cmake/package/in_fresh_debian.sh $(BUILD)/*axistool_*.deb
 
 .PHONY: demo
 demo: ## Identify a real record, control both axes in simulation, show the result (EMPS=DIR adds the public benchmark)

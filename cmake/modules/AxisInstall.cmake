@@ -23,6 +23,11 @@ install(FILES "${DOCUMENTS}/axistool.fish" DESTINATION share/fish/vendor_complet
 install(FILES "${DOCUMENTS}/70-axis.rules" DESTINATION lib/udev/rules.d ${IN_PACKAGE})
 install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/axistool ${IN_PACKAGE})
 
+# The Python package, of the component "python": in the Debian package python3-axistool; elsewhere pip installs it.
+install(DIRECTORY "${AXIS_ROOT}/host/python/axistool" DESTINATION lib/python3/dist-packages COMPONENT python
+  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/python3-axistool COMPONENT python)
+
 # The library for C++, of the component "development": find_package(axis), target axis::host.
 set(FOR_CPP COMPONENT development)
 install(TARGETS axis_host axis_sim axis_hal_usbip ARCHIVE DESTINATION lib/axis ${FOR_CPP})
@@ -38,21 +43,21 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME axistool)
 set(CPACK_PACKAGE_VERSION "${AXIS_VERSION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};axis;axistool;/")
-set(CPACK_COMPONENTS_ALL axistool)
-set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_COMPONENTS_ALL axistool python)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_AXISTOOL_PACKAGE_NAME axistool)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The axis maintainers <maintainers@axis.invalid>")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libhidapi-hidraw0")  # loaded at run time, as these are
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libmatio11")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "dfu-util, openocd")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "identify feed drives and find the physical effect a model lacks
+set(CPACK_DEBIAN_AXISTOOL_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_AXISTOOL_PACKAGE_DEPENDS "libhidapi-hidraw0")  # loaded at run time, as these are
+set(CPACK_DEBIAN_AXISTOOL_PACKAGE_RECOMMENDS "libmatio11")
+set(CPACK_DEBIAN_AXISTOOL_PACKAGE_SUGGESTS "dfu-util, openocd")
+set(CPACK_DEBIAN_AXISTOOL_DESCRIPTION "identify feed drives and find the physical effect a model lacks
 axistool identifies the drives of machine tools from measurements (inertia,
 friction, tachometer, noise), compares models with records, names the physical
 effect that a model lacks, and designs the estimator and controller of an
@@ -60,4 +65,15 @@ axis board.
 
 It sets the parameters of boards over USB, moves their axes and captures
 records; a simulated board takes the place of a real one for trying it out.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-axistool)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "axistool (>= ${AXIS_VERSION}), python3 (>= 3.11), python3:any, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "identify feed drives from Python
+The analysis of axistool as functions of Python with typed results: records
+as NumPy arrays, models, identify, compare, diagnose, add, improve, design,
+and captures from boards. The figures are those of the command line.")
+# Byte code comes and goes with the package, as dh_python3 has it.
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${AXIS_ROOT}/cmake/package/postinst;${AXIS_ROOT}/cmake/package/prerm")
 include(CPack)

@@ -1,9 +1,9 @@
 #!/bin/bash
-# in_fresh_debian.sh PACKAGE.deb [MIRROR]: installs the package in a Debian 12 that holds nothing else, uses it as its
-# user would, removes it, and says what is left behind. As root; mmdebstrap makes the system in a temporary folder.
+# in_fresh_debian.sh PACKAGE.deb ...: installs the packages in a Debian 12 that holds nothing else, uses them as their
+# user would, removes them, and says what is left behind. As root; mmdebstrap makes the system in a temporary folder, from
+# MIRROR.
 set -euo pipefail
-package=$(realpath "$1")
-mirror=${2:-http://deb.debian.org/debian}
+mirror=${MIRROR:-http://deb.debian.org/debian}
 root=$(mktemp -d)
 trap 'umount "$root/system/proc" 2> /dev/null || true; rm -rf "$root"' EXIT
 
@@ -13,11 +13,14 @@ files() { (cd "$root/system" && find etc usr opt srv var/lib -not -path 'var/lib
 
 mount -t proc proc "$root/system/proc"
 inside apt-get -qq update
-# What the package needs comes first, so that only its own files are compared.
-inside apt-get -qq install -y --no-install-recommends $(dpkg-deb -f "$package" Depends | sed -e 's/([^)]*)//g' -e 's/|[^,]*//g' -e 's/,/ /g') > /dev/null 2>&1
+# What the packages need comes first, so that only their own files are compared.
+needs=$(for package in "$@"; do dpkg-deb -f "$package" Depends; done |
+  sed -e 's/([^)]*)//g' -e 's/|[^,]*//g' -e 's/:any//g' -e 's/,/ /g' -e 's/\baxistool\b//g')
+inside apt-get -qq install -y --no-install-recommends $needs > /dev/null 2>&1
 files > "$root/before"
-cp "$package" "$root/system/root/axistool.deb"
-inside apt-get -qq install -y --no-install-recommends /root/axistool.deb > /dev/null
+mkdir "$root/system/root/packages"
+cp "$@" "$root/system/root/packages"
+inside sh -c 'apt-get -qq install -y --no-install-recommends /root/packages/*.deb' > /dev/null
 
 echo "version:    $(inside axistool --version)"
 inside sh -c 'cd /root && axistool demo' > "$root/demo.txt"
@@ -27,7 +30,10 @@ echo "scenario:   $(inside sh -c 'axistool hil square | tail -2 | head -1')"
 echo "bash:       $(inside bash -c '. /usr/share/bash-completion/bash_completion; _completion_loader axistool
   COMP_WORDS=(axistool effects cog); COMP_CWORD=2; compopt() { :; }; _axistool; echo "${COMPREPLY[@]}"')"
 echo "fish:       $(inside fish -c 'complete -C "axistool set-params x.kalman.k1"' | head -2 | cut -f1 | tr '\n' ' ')"
+echo "python:     $(inside sh -c 'cd /root && python3 -c "
+import axistool
+print(axistool.__file__, axistool.compare(\"/usr/share/axistool/drive/model.toml\", \"/usr/share/axistool/drive/validate.csv\").combined)"')"
 echo "udev rule:  $(inside cat /usr/lib/udev/rules.d/70-axis.rules | grep -c uaccess) lines give access"
-inside apt-get -qq purge -y axistool > /dev/null
+inside apt-get -qq purge -y axistool python3-axistool > /dev/null
 files > "$root/after"
 diff "$root/before" "$root/after" > "$root/left" && echo "removed:    nothing is left" || { echo "left behind:"; cat "$root/left"; exit 1; }

@@ -36,9 +36,8 @@ void add_help(CLI::App& app) {
   CLI::App* command = app.add_subcommand("help", "what a command does, its options and examples");
   command->add_option("COMMAND", *name, "the command; without it, the list of all");
   command->footer("Example:\n  axistool help identify");
-  command->callback([name, &app] {
-    fmt::print("{}", name->empty() ? app.help() : command_named(app, *name).help(app.get_name() + " " + *name));
-  });
+  command->callback(
+      [name, &app] { fmt::print("{}", name->empty() ? app.help() : command_named(app, *name).help(app.get_name())); });
 }
 
 }  // namespace axistool

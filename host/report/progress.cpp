@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "host/report/terminal.hpp"
@@ -22,7 +23,10 @@ Progress::Progress(std::string what, std::size_t total, std::FILE* stream, std::
       total_(std::max<std::size_t>(total, 1)),
       stream_(stream),
       patience_(patience),
-      shows_(terminal_of(stream).is_terminal) {}
+      in_lines_(std::getenv("AXIS_PROGRESS") != nullptr),
+      shows_(in_lines_ || terminal_of(stream).is_terminal) {
+  if (in_lines_) patience_ = std::chrono::milliseconds(0);
+}
 
 Progress::~Progress() {
   if (!has_line_) return;
@@ -47,6 +51,12 @@ void Progress::add_steps(std::size_t steps) {
 void Progress::draw(std::string_view detail, Clock::time_point now) {
   const double elapsed_s = std::chrono::duration<double>(now - begun_).count();
   const double share = static_cast<double>(done_) / static_cast<double>(total_);
+  drawn_ = now;
+  if (in_lines_) {
+    fmt::print(stream_, "progress {:.4f} {}{}{}\n", share, what_, detail.empty() ? "" : ": ", detail);
+    std::fflush(stream_);
+    return;
+  }
   std::string line = fmt::format("{}: {:.0f} %", what_, 100.0 * share);
   if (done_ > 0) line += fmt::format(", about {:.0f} s left", elapsed_s * (1.0 - share) / share);
   if (!detail.empty()) line += fmt::format(" ({})", detail);
@@ -55,7 +65,6 @@ void Progress::draw(std::string_view detail, Clock::time_point now) {
   std::fputs(wipe_line, stream_);
   std::fputs(line.c_str(), stream_);
   std::fflush(stream_);
-  drawn_ = now;
   has_line_ = true;
 }
 

@@ -12,6 +12,8 @@ namespace host {
 
 /// One line, rewritten in place, on a terminal only (never in a log or a pipe), and only once the work has taken longer
 /// than `patience`. All functions may be called from several threads. The line is wiped when the object dies.
+/// For programs, the environment variable AXIS_PROGRESS makes it lines of their own, on any stream and without
+/// patience: "progress SHARE WHAT", SHARE from 0 to 1.
 class Progress {
  public:
   /// `total`: number of steps that advance() will count, > 0.
@@ -38,6 +40,7 @@ class Progress {
   std::size_t done_ = 0;
   std::FILE* stream_;
   std::chrono::milliseconds patience_;
+  bool in_lines_;
   bool shows_;
   bool has_line_ = false;
   Clock::time_point begun_ = Clock::now();

@@ -1,16 +1,17 @@
-"""identify, compare, diagnose, improve, design. `json` of every result is the program's whole answer."""
+"""identify, compare, diagnose, add, improve, design. `json` of every result is the program's whole answer."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .model import Model
-from .program import ModelLike, RecordLike, Workspace, run
+from .program import ModelLike, Progress, RecordLike, Workspace, run
 from .record import Record
 
 Records = RecordLike | Iterable[RecordLike]
@@ -62,6 +63,25 @@ class Diagnosis:
     explanation: str
     next_experiment: str
     candidates: Sequence[Candidate]
+    json: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A parameter as a fit left it."""
+
+    value: float
+    deviation: float  # standard deviation, in the parameter's unit
+    determined: bool  # by these data
+
+
+@dataclass(frozen=True)
+class Addition:
+    model: Model
+    before: float  # combined, on validation data
+    after: float
+    confidence: float
+    parameters: Mapping[str, Fitted]
     json: Mapping[str, Any]
 
 
@@ -122,15 +142,36 @@ def predict(model: ModelLike, record: RecordLike, window_s: float | None = None)
         return Record.read(output)
 
 
-def _trained(command: str, space: Workspace, model: ModelLike, train: Records, validate: Records | None) -> list[str]:
-    arguments = [command, space.model(model), "--train", *space.records(train)]
+def _each(option: str, values: Iterable[str]) -> list[str]:
+    return [word for value in values for word in (option, value)]
+
+
+def _trained(command: list[str], space: Workspace, train: Records, validate: Records | None) -> list[str]:
+    arguments = [*command, "--train", *space.records(train)]
     return arguments if validate is None else [*arguments, "--validate", *space.records(validate)]
 
 
-def diagnose(model: ModelLike, train: Records, validate: Records | None = None) -> Diagnosis:
-    """Which physical effect the model lacks. Without `validate`, blocks of the training data are kept back to judge."""
+def _known(hold: Iterable[str], prior: Mapping[str, float], absent: Iterable[str]) -> list[str]:
+    beliefs = [f"{name}={deviation!r}" for name, deviation in prior.items()]
+    return [*_each("--hold", hold), *_each("--prior", beliefs), *_each("--absent", absent)]
+
+
+def diagnose(
+    model: ModelLike,
+    train: Records,
+    validate: Records | None = None,
+    *,
+    hold: Iterable[str] = (),
+    prior: Mapping[str, float] = MappingProxyType({}),
+    absent: Iterable[str] = (),
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Which physical effect the model lacks. Without `validate`, blocks of the training data are kept back to judge.
+    `hold`: parameters that stay ("J_kg_m2"); `prior`: standard deviations of what the model says; `absent`: effects that
+    this machine is known not to have."""
     with Workspace() as space:
-        answer = run(_trained("diagnose", space, model, train, validate))
+        command = ["diagnose", space.model(model)]
+        answer = run(_trained(command, space, train, validate) + _known(hold, prior, absent), progress)
     verdict = answer["verdict"]
     candidates = [Candidate(one["kinds"], one["before"], one["after"], one["confidence"], one["parameters"])
                   for one in answer["candidates"]]
@@ -138,11 +179,35 @@ def diagnose(model: ModelLike, train: Records, validate: Records | None = None) 
                      candidates, answer)
 
 
-def improve(model: ModelLike, train: Records, validate: Records | None = None) -> Improvement:
-    """Adds effects while each earns its place on validation data."""
+def add(
+    model: ModelLike, kind: str, train: Records, validate: Records | None = None, *, over: str | None = None
+) -> Addition:
+    """Adds one effect at a word and fits all parameters again. `over`: coordinate of a free_curve. Raises Refused where
+    no stretch of the records judges it."""
     with Workspace() as space:
         output = space.path(".toml")
-        answer = run([*_trained("improve", space, model, train, validate), "-o", str(output)])
+        arguments = _trained(["add", space.model(model), kind], space, train, validate) + ["-o", str(output)]
+        answer = run(arguments + ([] if over is None else ["--over", over]))
+        parameters = {one["name"]: Fitted(one["value"], one["deviation"], one["determined"])
+                      for one in answer["parameters"]}
+        return Addition(Model.read(output), answer["before"], answer["after"], answer["confidence"], parameters, answer)
+
+
+def improve(
+    model: ModelLike,
+    train: Records,
+    validate: Records | None = None,
+    *,
+    hold: Iterable[str] = (),
+    prior: Mapping[str, float] = MappingProxyType({}),
+    absent: Iterable[str] = (),
+    progress: Progress | None = None,
+) -> Improvement:
+    """Adds effects while each earns its place on validation data; the arguments are those of diagnose."""
+    with Workspace() as space:
+        output = space.path(".toml")
+        arguments = _trained(["improve", space.model(model)], space, train, validate) + _known(hold, prior, absent)
+        answer = run([*arguments, "-o", str(output)], progress)
         ladder = [Rung(one["added"], one["train"], one["validate"]) for one in answer["ladder"]]
         return Improvement(Model.read(output), ladder, answer["stopped_because"], answer)
 

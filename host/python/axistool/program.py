@@ -8,9 +8,10 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterable
+import threading
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import IO, Any, TypeAlias
 
 from .errors import NoSuchDevice, error_of
 from .model import Model
@@ -18,6 +19,9 @@ from .record import Record
 
 RecordLike: TypeAlias = Record | str | os.PathLike[str]
 ModelLike: TypeAlias = Model | str | os.PathLike[str]
+# Called now and then, in the caller's thread, with the share that is done (0 to 1) and what is being done; what it raises
+# ends the program.
+Progress: TypeAlias = Callable[[float, str], None]
 
 
 def program() -> str:
@@ -76,16 +80,39 @@ def end(child: subprocess.Popen[str]) -> None:
         child.wait()
 
 
-def run(arguments: list[str]) -> dict[str, Any]:
+def _complaints(lines: IO[str], progress: Progress | None) -> str:
+    """What the program says on its error stream, without the lines that tell its progress."""
+    said = ""
+    for line in lines:
+        mark, _, rest = line.partition(" ")
+        if progress is None or mark != "progress":
+            said += line
+            continue
+        share, _, what = rest.strip().partition(" ")
+        progress(float(share), what)
+    return said
+
+
+def run(arguments: list[str], progress: Progress | None = None) -> dict[str, Any]:
     """The document that `--json -` prints. Ctrl-C ends the program and comes through as KeyboardInterrupt."""
+    environment = {name: value for name, value in os.environ.items() if name != "AXIS_PROGRESS"}
+    if progress is not None:
+        environment["AXIS_PROGRESS"] = "lines"
     with subprocess.Popen([program(), *arguments, "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, encoding="utf-8") as child:
+                          text=True, encoding="utf-8", env=environment) as child:
+        assert child.stdout is not None and child.stderr is not None
+        said: list[str] = []
+        reader = threading.Thread(target=lambda lines: said.extend(lines), args=(child.stdout,), daemon=True)
+        reader.start()
         try:
-            said, complaint = child.communicate()
+            complaint = _complaints(child.stderr, progress)
+            child.wait()
         except BaseException:
             end(child)
             raise
+        finally:
+            reader.join()
     if child.returncode not in (0, 1):
         raise error_of(child.returncode, complaint)
-    document: dict[str, Any] = json.loads(said)
+    document: dict[str, Any] = json.loads("".join(said))
     return document

@@ -64,9 +64,41 @@ class SameFigures(unittest.TestCase):
         case = CASES / "none" / "case-01"
         train, judge = case / "train-jog.csv", case / "validate.csv"
         told = command_line("diagnose", case / "model.toml", "--train", train, "--validate", judge)
-        found = axistool.diagnose(case / "model.toml", train, judge)
+        told_of: list[tuple[float, str]] = []
+        found = axistool.diagnose(case / "model.toml", train, judge, progress=lambda *now: told_of.append(now))
         self.assertEqual(found.status, told["verdict"]["status"])
+        shares = [share for share, _ in told_of]
+        self.assertEqual(shares, sorted(shares))
+        self.assertTrue(shares and 0.0 <= shares[0] and shares[-1] <= 1.0, shares)
+        self.assertEqual({what for _, what in told_of}, {"diagnose"})
         self.assertEqual([one.after for one in found.candidates], [one["after"] for one in told["candidates"]])
+
+
+    def test_add(self) -> None:
+        case = CASES / "single" / "case-00"
+        jog, drive = case / "train-jog.csv", case / "model.toml"
+        with tempfile.TemporaryDirectory() as folder:
+            told = command_line("add", drive, "cogging", "--train", jog, "-o", Path(folder) / "x.toml")
+        found = axistool.add(drive, "cogging", axistool.Record.read(jog))
+        self.assertEqual({**found.json, "model": ""}, {**told, "model": ""})
+        self.assertIn("cogging", found.model.kinds)
+        one = told["parameters"][0]
+        self.assertEqual(found.parameters[one["name"]].value, one["value"])
+
+
+class ABoard(unittest.TestCase):
+    def test_simulated_around_a_model_is_captured_as_it_jogs(self) -> None:
+        with axistool.simulated_board(CASE / "model.toml") as device:
+            axistool.set_parameters(axistool.design(CASE / "model.toml").parameters, "x", device)
+            axistool.enable("x", device)
+            record = axistool.capture(0.0, device, jog="20:0.3,-20:0.3")
+            axistool.disable(device)
+        self.assertGreater(len(record), 500)
+        self.assertGreater(np.ptp(record["x_mm"]), 2.0)
+
+    def test_that_does_not_come_up_says_why(self) -> None:
+        with self.assertRaisesRegex(axistool.BadInput, "no-such.toml"), axistool.simulated_board("no-such.toml"):
+            pass
 
 
 class BothWays(unittest.TestCase):
@@ -106,11 +138,23 @@ class Errors(unittest.TestCase):
         with self.assertRaises(axistool.NoSuchDevice):
             axistool.capture(0.1, device="socket:/nowhere/at/all")
 
+    def test_of_a_callback_end_the_program(self) -> None:
+        def enough(share: float, what: str) -> None:
+            raise ZeroDivisionError(what)
+
+        case = CASES / "pairs" / "case-00"
+        with self.assertRaises(ZeroDivisionError):
+            axistool.improve(case / "model.toml", case / "train-jog.csv", case / "validate.csv", progress=enough)
+        self.assert_nothing_runs()
+
     def test_interrupted_the_program_ends_too(self) -> None:
         case = CASES / "pairs" / "case-00"
         threading.Thread(target=interrupt_once_it_runs, daemon=True).start()
         with self.assertRaises(KeyboardInterrupt):
             axistool.improve(case / "model.toml", case / "train-jog.csv", case / "validate.csv")
+        self.assert_nothing_runs()
+
+    def assert_nothing_runs(self) -> None:
         children = Path(f"/proc/self/task/{os.getpid()}/children")
         if children.exists():  # not on every kernel
             self.assertEqual(children.read_text().split(), [], "nothing goes on behind")
