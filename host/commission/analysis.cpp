@@ -57,8 +57,9 @@ CommissionStepResult diagnose_machine(CommissionSession& session) {
   const Computing computing(session);
   const std::string path = session.folder().require("model.toml", "friction");
   const sim::DriveDescription model = read_model(path);
-  const Measurements measured = read_measurements(session, model);
-  const Diagnosis diagnosis = diagnose(model, measured);
+  session.found = std::make_shared<CommissionFinding>(CommissionFinding{read_measurements(session, model), {}});
+  session.found->diagnosis = diagnose(model, session.found->measured);
+  const Diagnosis& diagnosis = session.found->diagnosis;
   session.folder().write_json("diagnosis.json", to_json(diagnosis));
   write_diagnosis_report(diagnosis, path, session.folder().path("diagnosis.html"));
   return {{"diagnosis.json", "diagnosis.html"}, named(diagnosis.verdict)};
@@ -71,8 +72,11 @@ CommissionStepResult improve_model(CommissionSession& session) {
   const std::string path = is_decided ? session.folder().require("decided.toml", "separate")
                                       : session.folder().require("model.toml", "friction");
   const sim::DriveDescription model = read_model(path);
-  const Measurements measured = read_measurements(session, model);
-  const Improvement improvement = improve(model, measured);
+  std::optional<Measurements> anew;
+  const bool is_known = !is_decided && session.found && session.folder().document().value("runs", 0) == 0;
+  if (!is_known) anew = read_measurements(session, model);
+  const Improvement improvement =
+      is_known ? improve(model, session.found->measured, {}, {}, session.found->diagnosis) : improve(model, *anew);
   const std::string output = session.folder().path("improved.toml");
   write_model(improvement.model, output);
   const nlohmann::json document = to_json(improvement, output);

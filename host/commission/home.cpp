@@ -43,6 +43,7 @@ std::vector<CompensationParameter> CommissionSession::homing_parameters() const 
 void CommissionSession::find_home() {
   const auto begin = board_.now();
   enable();
+  go_back();  // the longest way of a search is half the box's
   std::int64_t last = counts();
   home_and_wait(board_, options_.axis, [&] {
     const auto status = board_.status().axis.at(options_.axis);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <numeric>
 
 #include "host/commission/steps.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
@@ -55,7 +56,27 @@ class Separation {
  private:
   void find_rivals() {
     const Computing computing(session_);
-    rivals_ = rivals_of(diagnose(model_, measured_), all_);
+    const nlohmann::json diagnosis = session_.folder().read_json("diagnosis.json");
+    const auto group = diagnosis.at("verdict").at("effects").get<std::vector<std::string>>();
+    const auto groups = diagnosis.at("verdict").at("alternatives").get<std::vector<std::vector<std::string>>>();
+    const auto is_open = [&](const std::string& kind) {
+      const auto has = [&](const std::vector<std::string>& list) {
+        return std::ranges::find(list, kind) != list.end();
+      };
+      return has(group) || std::ranges::any_of(groups, has);
+    };
+    std::vector<std::vector<std::string>> kinds;
+    std::vector<double> believed;
+    for (const auto& candidate : diagnosis.at("candidates")) {
+      const auto names = candidate.at("kinds").get<std::vector<std::string>>();
+      if (names.size() != 1 || !is_open(names.front())) continue;
+      kinds.push_back(names);
+      believed.push_back(candidate.at("probability"));
+    }
+    if (kinds.size() < 2) return;
+    rivals_ = fit_rivals(model_, all_, kinds);
+    const double sum = std::accumulate(believed.begin(), believed.end(), 0.0);
+    for (std::size_t k = 0; k < rivals_.size() && sum > 0.0; ++k) rivals_[k].probability = believed[k] / sum;
   }
 
   Plan planned(const ExcitationLimits& box) const {
@@ -85,6 +106,7 @@ class Separation {
     session_.download(session_.design(model_, session_.first_loop(model_), "planned-params.toml"));
     Record made = session_.record_plan(plan.run, record);
     files_.insert(files_.end(), {run_file, record});
+    folder.put("runs", round + 1);
     decide_by(std::move(made), plan, round);
     return true;
   }
@@ -127,6 +149,7 @@ CommissionStepResult separate(CommissionSession& session) {
   const nlohmann::json verdict = folder.read_json("diagnosis.json").at("verdict");
   folder.put("verdict", verdict);
   folder.put("decided", nullptr);
+  folder.put("runs", 0);
   if (verdict.at("status") != status_name(Status::ambiguous)) return {{}, "Nothing is left to separate."};
   return Separation(session, read_model(folder.require("model.toml", "friction"))).run();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "host/commission/folder.hpp"
 #include "host/device/board_client.hpp"
 #include "host/device/excitation.hpp"
+#include "host/diagnose/diagnosis.hpp"
 #include "host/identify/axis_design.hpp"
 #include "host/parameters/board_parameters.hpp"
 #include "host/parameters/control_filters.hpp"
@@ -60,6 +62,12 @@ struct CommissionRun {
 struct CommissionLoop {
   AxisDesign design;
   ControlFilterChoice filters;
+};
+
+/// What the step that diagnoses leaves to those after it, as long as one command makes them.
+struct CommissionFinding {
+  Measurements measured;  ///< what the diagnosis points into
+  Diagnosis diagnosis;
 };
 
 /// Functions throw what BoardClient throws, and Failure(refused) when the user stops.
@@ -118,6 +126,8 @@ class CommissionSession {
   void disable();
   /// Ends the faults that a controller made which is no longer wanted.
   void recover();
+
+  std::shared_ptr<CommissionFinding> found;
 
   double motion_s() const { return motion_s_; }
   /// The box of a motion of so many seconds, from where the command began: the axis goes there first.

@@ -62,14 +62,16 @@ std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const 
 }
 
 Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
-                    const std::vector<std::string>& absent) {
+                    const std::vector<std::string>& absent, std::optional<Diagnosis> known) {
   Improvement result;
   sim::DriveDescription current = model;
   for (int step = 0; step < kMostRungs; ++step) {
     const auto part = [&](double share) {
       if (progress) progress((step + share) / (step + 2.0));
     };
-    Diagnosis diagnosis = diagnose(current, measured, part, step == 0 ? nullptr : &result.first, absent);
+    Diagnosis diagnosis = step == 0 && known
+                              ? *std::move(known)
+                              : diagnose(current, measured, part, step == 0 ? nullptr : &result.first, absent);
     if (step == 0) result.ladder.push_back(rung_of(diagnosis, false, {}));
     result.verdict = diagnosis.verdict;
     result.model = diagnosis.best;

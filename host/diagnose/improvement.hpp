@@ -1,6 +1,7 @@
 // Diagnose and add, again and again, until nothing earns its place on validation data: the ladder of errors.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,10 @@ struct Improvement {
   Diagnosis first;  ///< the diagnosis that the ladder began with
 };
 
-/// Never adds what does not replicate on validation data, nor of the kinds in `absent`. Throws as diagnose() does.
+/// Never adds what does not replicate on validation data, nor of the kinds in `absent`. `known`: the diagnosis of this
+/// model on these measurements, where it is there already. Throws as diagnose() does.
 Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
-                    const std::vector<std::string>& absent = {});
+                    const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt);
 
 /// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.

@@ -215,7 +215,7 @@ void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& pla
   const PlantFit fit = fit_plant(frequency_response(records));
   for (const Resonance& mode : fit.resonances) {
     if (left_s < bands.least_s()) break;
-    part.box.time_s = std::min(left_s, 0.5 * plan.box.time_s * kShareOfBands);
+    part.box.time_s = std::max(bands.least_s(), std::min(left_s, 0.5 * plan.box.time_s * kShareOfBands));
     part.seed += 1000;
     const std::vector<Excitation> closer = plan_resonance(part, mode.f_Hz.value, scale, parameters);
     make_response_runs(board, axis, closer, values, scale, stop, records, progress);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -11,10 +12,12 @@
 #include "host/exit_codes.hpp"
 #include "host/simulated_board/simulated_link.hpp"
 
-/// A mass with Coulomb friction on a screw, in Nm, kg m^2, rad/s and mm.
+/// A mass with Coulomb friction on a screw, in Nm, kg m^2, rad/s and mm; with magnets or a weight, if so wanted.
 class OwnMachine : public sim::ForeignMotion {
  public:
   bool counts_backward = false;
+  double cogging_Nm = 0.0;  ///< every 4 mm
+  double weight_Nm = 0.0;
 
   void command(std::optional<double> u_V) override { u_V_ = u_V; }
   void advance(double duration_s) override {
@@ -30,7 +33,8 @@ class OwnMachine : public sim::ForeignMotion {
  private:
   void move(double dt) {
     constexpr double kEffort = 3.0, kInertia = 0.008, kFriction = 2.0, kLead = 1.6;
-    const double drive = kEffort * u_V_.value_or(0.0);
+    const double magnets = cogging_Nm * std::sin(2.0 * std::numbers::pi * x_ / 4.0);
+    const double drive = kEffort * u_V_.value_or(0.0) + magnets - weight_Nm;
     if (w_ == 0.0 && std::abs(drive) <= kFriction) return;
     const double way = w_ != 0.0 ? std::copysign(1.0, w_) : std::copysign(1.0, drive);
     const double w = w_ + dt / kInertia * (drive - 0.03 * w_ - kFriction * way);
@@ -102,11 +106,12 @@ inline host::CommissionOptions own_options() {
 /// Runs steps by name. Returns the failure's code and words, or done.
 inline std::pair<host::ExitCode, std::string> commission(OwnBoard& board, const std::string& folder_name,
                                                          const char* from, const char* to,
-                                                         const host::CommissionTalk& talk = {}) {
+                                                         const host::CommissionTalk& talk = {},
+                                                         const host::CommissionOptions& options = own_options()) {
   try {
     host::CommissionFolder folder(folder_name);
     host::BoardClient client = board.client();
-    host::commission_axis(client, own_options(), talk, folder, host::commission_step(from), host::commission_step(to));
+    host::commission_axis(client, options, talk, folder, host::commission_step(from), host::commission_step(to));
     return {host::ExitCode::done, ""};
   } catch (const host::Failure& failure) {
     return {failure.code, failure.what()};
