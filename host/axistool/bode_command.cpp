@@ -8,9 +8,11 @@
 #include "firmware/app/parameters/axis_values.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/motion_consent.hpp"
+#include "host/evidence/presumed_sheet.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/axis_parameters.hpp"
 #include "host/parameters/parameter_file.hpp"
@@ -24,7 +26,7 @@ namespace axistool {
 namespace {
 
 struct BodeArguments : DeviceArguments {
-  std::vector<std::string> what;
+  std::vector<std::string> what, accepted;
   std::string model, parameters, box, report, folder, model_output;
   host::ResponsePlan plan;
   int countdown_s = 3;
@@ -111,6 +113,17 @@ std::vector<host::Record> measure(const BodeArguments& arguments, Controlled& fo
   return records;
 }
 
+/// Through the gate; without a model the first record is held to be right in what it says of its drive.
+std::vector<host::Record> admitted(const BodeArguments& arguments, const Controlled& found) {
+  const sim::DriveDescription drive =
+      found.model ? *found.model : host::presumed_sheet(host::read_record(arguments.what.front()));
+  const host::Measurements measured = host::MeasurementGate(drive, {arguments.accepted}).read(arguments.what);
+  if (talks(arguments)) print_log(measured.log());
+  std::vector<host::Record> records;
+  for (const host::Record* record : measured.training_records()) records.push_back(*record);
+  return records;
+}
+
 void run(const BodeArguments& arguments) {
   Controlled found = controlled_by_files(arguments);
   const bool is_axis = names_an_axis(arguments);
@@ -119,7 +132,7 @@ void run(const BodeArguments& arguments) {
     records = measure(arguments, found);
     if (arguments.dry_run) return;
   } else {
-    for (const std::string& path : arguments.what) records.push_back(host::read_record(path));
+    records = admitted(arguments, found);
   }
   const host::AxisResponse axis = host::analyse_response(records, found.controller ? &*found.controller : nullptr);
   if (!arguments.json.empty()) write_json(host::response_json(axis), arguments.json);
@@ -171,6 +184,7 @@ void add_bode(CLI::App& app) {
   add_output(*command, "--model-output", arguments->model_output,
              "with --model: the model with compliance and delay as starts for a fit, where the response shows them");
   add_output(*command, "--report", arguments->report, "write an HTML page with plots to this file");
+  add_accept_option(*command, arguments->accepted);
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
