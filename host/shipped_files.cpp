@@ -36,7 +36,7 @@ std::vector<std::string> names_in(const std::string& folder) {
 /// `what`: "scenario".
 std::string file_or_shipped(const std::string& name, const std::string& folder, const std::string& what) {
   std::error_code fault;
-  if (fs::exists(name, fault)) return name;
+  if (fs::exists(name, fault) && !fs::is_directory(name, fault)) return name;
   const std::string stem = name.ends_with(".toml") ? name.substr(0, name.size() - 5) : name;
   const std::vector<std::string> shipped = names_in(folder);
   if (std::ranges::find(shipped, stem) != shipped.end()) return shipped_file(folder + "/" + stem + ".toml");

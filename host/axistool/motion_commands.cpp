@@ -171,7 +171,7 @@ void add_home(CLI::App& app) {
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);
   command->footer(
-      "Examples:\n  axistool set-params x.homing.mode=3 x.homing.velocity=-20 && axistool enable x && axistool home x\n"
+      "Examples:\n  axistool set-params x.homing.mode=3 x.homing.velocity=20 && axistool enable x && axistool home x\n"
       "  axistool home y --here\n"
       "By switch (homing.mode 1), index (2), or switch and then index (3). Until an axis is homed it takes no moves to "
       "a\nposition, and travel limits, cogging and friction along the travel do not act. A reset forgets home.");

@@ -17,8 +17,8 @@ def _of(device: str | None) -> list[str]:
 
 @contextmanager
 def simulated_board(x: ModelLike | None = None) -> Iterator[str]:
-    """Runs a simulated board of one axis around a model (by default the paper's x axis, with its parameters) and gives
-    what the other functions take as `device`. It keeps no parameters and ends with the block."""
+    """Runs a simulated board of one axis around a model (by default the paper's x axis) and gives what the other
+    functions take as `device`. It keeps no parameters (set_parameters gives it some) and ends with the block."""
     with Workspace() as space:
         socket = space.path(".socket")
         arguments = [program(), "sim", "--forget", "--axes", "1", "--socket", str(socket)]

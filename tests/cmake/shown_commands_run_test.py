@@ -1,0 +1,173 @@
+#!/usr/bin/python3
+"""Every command that README, CONTRIBUTING, the examples and `axistool help` show runs to its end as it is shown: in a
+folder of shipped records, against a simulated board. What needs more than that is listed with its reason, and
+shown_commands_test.sh then checks that it exists with the options shown."""
+
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(os.environ["AXIS_BUILD"]) / "bin" / "axistool"
+CASE = PROJECT / "tests/data/drive-cases/none/case-00"
+COGGING = PROJECT / "tests/data/drive-cases/single/case-00"
+PAGES = ["README.md", ".github/CONTRIBUTING.md", "host/examples/README.md"]
+
+NOT_RUN = [
+    (r"\bsudo\b|--usb\b", "as root"),
+    (r"\bflash\b|usb:|IMAGE|FILE\.bin", "a board, and an image for it"),
+    (r"\baxistool sim\b", "does not end by itself; the board of this test is one"),
+    (r"…|\b(COMMAND|KIND|MODEL)\b", "has a gap to fill in"),
+    (r"emps|EMPS|\.mat\b", "a data set that is not shipped"),
+    (r"--trigger|--last", "waits for something to happen to the machine"),
+    (r"\bbench\b", "ten minutes"),
+    (r"\bscoreboard\b", "minutes; make scoreboard"),
+    (r"\bcommission\b", "a minute and more; host/commission's tests run it"),
+    (r"\bbode\b", "two minutes of motion; host/response's tests run it"),
+    (r"\bplan\b|run\.(toml|csv)", "a minute and more; host/plan's tests run it"),
+    (r"--response", "needs what bode writes; host/response's tests run it"),
+    (r"\bimprove\b", "a minute; host/python's and host/diagnose's tests run it"),
+    (r"--method paper", "longer jogs than those that are shipped; host/identify's tests run it"),
+    (r"jittered|scope", "a log of another program; host/record's tests run it"),
+    (r"--before-after", "needs what improve writes; host/hil's tests run it"),
+    (r"^axistool demo$", "ten seconds; host/demo's tests run it"),
+]
+# What ends with another code than 0 here.
+ENDS = [
+    (r"--fail-above", {0, 1}),  # the answer, yes or no
+]
+# What asks on a terminal is answered yes; what `axistool enable` or an operator does before stands here too.
+ASKS = r"axistool (excite|enable|home|run part.ngc --capture)\b"
+BEFORE = [
+    (r"axistool (move|run) ", "axistool home x --here --yes && axistool home y --here --yes"),
+    (r"axistool (jog|move|capture .*--jog|run|excite x (ladder|multisine))", "axistool enable --yes"),
+    (r"^axistool home x$", "axistool set-params x.homing.mode=1 && axistool enable x --yes"),
+]
+BOARD = r"axistool (jog|move|home|capture|run|excite|set-params|reset-params|restore|save|backup|enable|disable|diff-params)"
+
+
+def shown() -> list[tuple[str, str]]:
+    """(where, command), each once."""
+    found: dict[str, str] = {}
+    for page in PAGES:
+        text = (PROJECT / page).read_text(encoding="utf-8")
+        for match in re.finditer(r"^ {4}((?:build/bin/|sudo )?axistool [a-z].*)$|`((?:build/bin/|sudo )?axistool [a-z][^`]*)`",
+                                 text, re.M):
+            found.setdefault(match.group(1) or match.group(2), page)
+    listed = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
+    for command in re.findall(r"^  ([a-z][a-z-]+) ", listed, re.M):
+        said = subprocess.run([PROGRAM, "help", command], capture_output=True, text=True).stdout.replace("\\\n", "")
+        for line in re.findall(r"^  ((?:sudo )?axistool [a-z].*)$", said, re.M):
+            found.setdefault(line, f"axistool help {command}")
+    return [(where, re.sub(r"^build/bin/|  +[#(].*$", "", line).strip()) for line, where in found.items()]
+
+
+def is_complete(command: str) -> bool:
+    """`axistool jog` in running text names a command, it does not show one."""
+    words = command.split()
+    return len(words) > 2 or words[1] in ("effects", "parameters", "list", "doctor", "faults", "disable", "save", "udev-rule")
+
+
+class Bench:
+    """A folder with what the examples name, and a simulated board for all of them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.environment = {**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}", "HOME": str(folder),
+                            "XDG_RUNTIME_DIR": str(folder), "AXIS_DEVICE": "sim", "AXIS_PATIENCE": "30", "C": str(CASE)}
+        for needed in ("firmware/core/supervision", "firmware/app/parameters", ".zfunc", ".config/fish/completions",
+                       ".local/share/bash-completion/completions"):
+            (folder / needed).mkdir(parents=True)
+        for plant in ("05-own-plant.py", "05-own-plant.toml"):
+            shutil.copy(PROJECT / "host/examples" / plant, folder)
+        shutil.copy(PROJECT / "host/hil/scenarios/square.toml", folder / "mine.toml")
+        (folder / "part.ngc").write_text("G21 G90 G1 F600 X1\nG1 X0\nM2\n", encoding="utf-8")
+        self.lay_out("")
+        self.must("axistool design x.toml -o stage-params.toml")
+        self.board = subprocess.Popen([PROGRAM, "sim", "--forget", "--x", "x.toml", "--y", "x.toml"], cwd=folder,
+                                      env=self.environment, stdout=subprocess.PIPE, text=True)
+        assert self.board.stdout is not None and self.board.stdout.readline()
+
+    def prepare(self) -> None:
+        for axis in "xy":
+            self.must(f"axistool set-params stage-params.toml --axis {axis}")
+            self.must(f"axistool home {axis} --here --yes")
+        self.must("axistool set-params host.timeout=10")  # a busy computer's patience
+        self.must("axistool backup machine.toml")
+
+    def lay_out(self, page: str) -> None:
+        """The files that examples name, as they were before any example wrote over them: a machine that cogs."""
+        for name in ("x.toml", "x2.toml", "better.toml", "x-drive.toml", "data-sheet.toml"):
+            shutil.copy(COGGING / "model.toml", self.folder / name)
+        for name in ("steps", "jog", "a", "log", "record", "slow", "fast"):
+            shutil.copy(COGGING / "train-jog.csv", self.folder / f"{name}.csv")
+        for name in ("validate", "b", "other"):
+            shutil.copy(COGGING / "validate.csv", self.folder / f"{name}.csv")
+        steps = CASE / "train-steps.csv" if page == "axistool help identify" else COGGING / "train-sweep.csv"
+        shutil.copy(steps, self.folder / "steps.csv")
+        for name in ("x-params.toml", "machine-7.toml"):
+            if (self.folder / "machine.toml").exists():
+                shutil.copy(self.folder / "machine.toml", self.folder / name)
+
+    def run(self, command: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, timeout=300,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def must(self, command: str) -> None:
+        done = self.run(command)
+        assert done.returncode == 0, f"{command}: {done.stdout}"
+
+    def end(self) -> None:
+        self.board.send_signal(signal.SIGINT)
+        self.board.wait()
+
+
+def try_all(bench: Bench) -> int:
+    bad = ran = 0
+    page = ""
+    for where, command in shown():
+        reason = next((why for pattern, why in NOT_RUN if re.search(pattern, command)), None)
+        if reason:
+            print(f"not run: {command}: {reason}")
+        if reason or not is_complete(command):
+            continue
+        if where != page:
+            bench.lay_out(where)
+            page = where
+        if re.search(BOARD, command):
+            bench.run("axistool clear-faults; axistool disable; axistool restore machine.toml --yes")
+        for pattern, first in BEFORE:
+            if re.search(pattern, command):
+                bench.must(first)
+        wanted = next((codes for pattern, codes in ENDS if re.search(pattern, command)), {0})
+        command = re.sub(rf"({ASKS}[^&]*?)(?: --yes)?( &&|$)", r"\1 --yes\3", command)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        done = bench.run(command)
+        cost_s = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        ran += 1
+        print(f"{cost_s:6.1f} s  {command}", flush=True)
+        if done.returncode not in wanted:
+            bad += 1
+            print(f"{where}: {command}\nends with {done.returncode}:\n{done.stdout}", flush=True)
+    print(f"{ran} commands ran")
+    return 1 if bad or ran < 40 else 0
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(Path(folder))
+        try:
+            bench.prepare()
+            return try_all(bench)
+        finally:
+            bench.end()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
