@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Inertia from a record of steps, with its 95 % interval."""
+"""Inertia from a record of steps."""
 import sys
 
 import axistool

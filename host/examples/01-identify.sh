@@ -1,5 +1,5 @@
 #!/bin/sh
-# Inertia from a record of steps, with its 95 % interval.
+# Inertia from a record of steps.
 set -eu
 drive=${1:-/usr/share/axistool/drive}
 model=$(mktemp)

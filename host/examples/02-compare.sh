@@ -2,4 +2,4 @@
 # Error over floor on a record that the model has not seen: about 1 for a perfect model.
 set -eu
 drive=${1:-/usr/share/axistool/drive}
-axistool compare "$drive/model.toml" "$drive/validate.csv" --json - | sed -n 's/^  "combined": \(.*\),/error over floor = \1/p'
+axistool compare "$drive/model.toml" "$drive/validate.csv" ${2:+--report "$2/02-compare.html"} --json - | sed -n 's/^  "combined": \(.*\),/error over floor = \1/p'

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A machine of one's own behind the simulated board (axis-plant/1): a screw with friction that cogs, in metres, newtons
-and seconds of its own. Try: axistool jog x 20 --for 1 --device "plant:05-own-plant.toml:python3 05-own-plant.py" """
+and seconds of its own. README.md has a command to try it with."""
 import math
 import random
 import sys

@@ -5,16 +5,22 @@ set -euo pipefail
 project=$(cd "$(dirname "$0")/../../.." && pwd)
 export PATH=$(dirname "${AXISTOOL:?names the program}"):$PATH
 drive=$project/tests/data/drive-cases/none/case-00
+pages=$(mktemp -d)
+trap 'rm -rf "$pages"' EXIT
 count=0
 for shell in "$project"/host/examples/*.sh; do
   python=${shell%.sh}.py
-  one=$("$shell" "$drive") other=$("$python" "$drive")
+  one=$("$shell" "$drive" "$pages") other=$("$python" "$drive")
   echo "$(basename "$shell" .sh): $one"
   if [ -z "$one" ] || [ "$one" != "$other" ]; then
     echo "$python prints: $other" >&2
     exit 1
   fi
-  grep -q "$(basename "$shell" .sh)" "$project/host/examples/README.md" || { echo "README.md does not name it" >&2; exit 1; }
+  # README's table names it with its figure, as far as it is written there, and with its page.
+  row=$(grep "^| $(basename "$shell" .sh) " "$project/host/examples/README.md") || { echo "README.md does not name it" >&2; exit 1; }
+  figure=$(sed 's/.*`\([^`]*\)` |$/\1/' <<< "$row")
+  [[ $one == "${figure%…}"* ]] || { echo "README.md says: $figure" >&2; exit 1; }
   count=$((count + 1))
 done
 test "$count" -ge 4
+for page in 02-compare 03-mass-off; do grep -q '<svg\|plot-0' "$pages/$page.html"; done
