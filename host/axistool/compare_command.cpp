@@ -80,7 +80,7 @@ host::ComparedModel compared(const std::string& path, const CompareArguments& ar
   const sim::DriveDescription read = host::read_model(path);
   const host::GateOptions as_logged{.accepted = arguments.accepted, .as_logged = true};
   host::Measurements measured = host::MeasurementGate(read, as_logged).read(arguments.records);
-  sim::DriveDescription model = host::with_measured_sensors(read, measured.training());
+  sim::DriveDescription model = host::with_measured_sensors(read, measured);
   host::RecordSet set = host::compare_on(measured.training_records(), model, arguments.window_s);
   host::ModelComparison comparison = host::compare_model(model, measured, set, arguments.window_s);
   return {path, std::move(model), std::move(measured), std::move(set), std::move(comparison)};

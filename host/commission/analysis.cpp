@@ -44,7 +44,7 @@ CommissionStepResult compare_first(CommissionSession& session) {
   const Computing computing(session);
   const sim::DriveDescription given = read_model(session.folder().require("model.toml", "friction"));
   const Measurements measured = MeasurementGate(given).read(paths(session, kJudgingFiles));
-  const sim::DriveDescription model = with_measured_sensors(given, measured.training());
+  const sim::DriveDescription model = with_measured_sensors(given, measured);
   const RecordSet set = compare_on(measured.training_records(), model, kWindow_s);
   const ModelComparison comparison = compare_model(model, measured, set, kWindow_s);
   session.folder().write_json("comparison.json", comparison_json(comparison));

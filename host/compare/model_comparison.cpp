@@ -116,17 +116,17 @@ double factor_in_file(const Record& record, std::vector<double> Record::*channel
 
 }  // namespace
 
-sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const std::vector<Record>& records) {
+sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const Measurements& measured) {
   sim::DriveDescription complete = model;
   if (!(complete.data.encoder_resolution > 0.0)) {
     double finest = HUGE_VAL;
-    for (const Record& record : records)
+    for (const Record& record : measured.training())
       if (const double step = encoder_step(record, model.data); step > 0.0) finest = std::min(finest, step);
     complete.data.encoder_resolution = std::isfinite(finest) ? std::max(finest, kFinestStep) : kFinestStep;
   }
   if (!complete.data.tach_noise_variance) {
     double variance = 0.0;
-    for (const Record& record : records)
+    for (const Record& record : measured.training())
       if (record.has_speed()) variance = std::max(variance, noise_variance(record.w));
     if (variance > 0.0) complete.data.tach_noise_variance = variance;
   }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/compare/model_comparison.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -138,8 +139,9 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
 
 }  // namespace
 
-Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
+Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                    const Diagnosis* before, const std::vector<std::string>& absent) {
+  const sim::DriveDescription model = with_measured_sensors(given, measured);
   Diagnosis diagnosis = diagnose_records(model, measured, progress, before, absent);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);

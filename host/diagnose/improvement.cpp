@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "host/compare/model_comparison.hpp"
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -103,6 +104,7 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
   }
   if (result.stopped_because.empty()) result.stopped_because = "the ladder has as many rungs as it may";
   document_fit(result.model, result.first.training);
+  result.model.data = model.data;
   return result;
 }
 
@@ -129,9 +131,7 @@ std::optional<Addition> add_by_effort(const sim::DriveDescription& model, const 
   return {};
 }
 
-}  // namespace
-
-Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured) {
+Addition curve_added(const sim::DriveDescription& model, const std::string& over, const Measurements& measured) {
   if (!over.empty() && std::ranges::find(sim::kCurveCoordinates, over) == std::end(sim::kCurveCoordinates))
     throw Failure(ExitCode::usage,
                   fmt::format("--over {}: give one of {}", over, fmt::join(sim::kCurveCoordinates, ", ")));
@@ -154,7 +154,7 @@ Addition add_free_curve(const sim::DriveDescription& model, const std::string& o
   return addition;
 }
 
-Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
+Addition effect_added(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const sim::EffectInfo* info = sim::find_effect(kind);
   if (info == nullptr) throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown", kind));
@@ -192,6 +192,25 @@ Addition add_effect(const sim::DriveDescription& model, const std::string& kind,
                                     error_of(sim::Drive(sets.base), sets.validation), 1);
   addition.estimates = document_fit(addition.judged.model, sets.training);
   return addition;
+}
+
+/// What `adding` makes of the model and of what its records show of the sensors; the data sheet stays as it was given.
+template <typename Adding>
+Addition on_measured_sensors(Adding adding, const sim::DriveDescription& model, const std::string& what,
+                             const Measurements& measured) {
+  Addition addition = adding(with_measured_sensors(model, measured), what, measured);
+  addition.judged.model.data = model.data;
+  return addition;
+}
+
+}  // namespace
+
+Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured) {
+  return on_measured_sensors(effect_added, model, kind, measured);
+}
+
+Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured) {
+  return on_measured_sensors(curve_added, model, over, measured);
 }
 
 }  // namespace host

@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
   const sim::DriveDescription read = host::read_model(drive + "/model.toml");
   const host::Measurements measured =
       host::MeasurementGate(read, {.accepted = {}, .as_logged = true}).read({drive + "/validate.csv"});
-  const sim::DriveDescription model = host::with_measured_sensors(read, measured.training());
+  const sim::DriveDescription model = host::with_measured_sensors(read, measured);
   const host::RecordSet set = host::compare_on(measured.training_records(), model);
   std::printf("error over floor = %.16g\n", host::compare_model(model, measured, set, host::kWindow_s).combined);
 } catch (const host::Failure& failure) {

@@ -47,6 +47,19 @@ TEST(Diagnosis, AnAxisThatStandsTellsNothing) {
   EXPECT_THAT(diagnosis.verdict.next_experiment, testing::HasSubstr("V"));
 }
 
+TEST(Diagnosis, ATachometerWithoutADataSheetHasTheNoiseThatItsRecordShows) {
+  host::Record record = HandMade::record(5.0);
+  std::ranges::fill(record.x, 12.0);
+  std::ranges::fill(record.u_V, 0.1);
+  for (std::size_t k = 0; k < record.size(); ++k) record.w[k] = 0.1 * std::sin(1.7 * static_cast<double>(k));
+  sim::DriveDescription model = HandMade::model();
+  model.data.tach_noise_variance.reset();
+  const host::Measurements measured = host::MeasurementGate(model).admit({record});
+  const host::Diagnosis diagnosis = host::diagnose(model, measured);
+  EXPECT_LT(diagnosis.given_train, 2.0) << "no axis stands without noise";
+  EXPECT_LT(diagnosis.given_validate, 2.0);
+}
+
 TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   // One slow record trains, one that is thrice as fast judges: the viscous coefficient of the first is far off there.

@@ -35,8 +35,11 @@ struct HandMade {
     return half < 2.0 ? -sign * 100.0 : 0.0;
   }
 
+  static host::Record record(double duration_s = 10.0) { return record(duration_s, acceleration); }
+
   /// The tachometer carries a fast sine of the size of its noise.
-  static host::Record record(double duration_s = 10.0) {
+  template <typename Acceleration>
+  static host::Record record(double duration_s, Acceleration acceleration) {
     const sim::DataSheet data = model().data;
     host::Record record;
     record.path = "hand-made.csv";
