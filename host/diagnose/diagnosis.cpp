@@ -94,13 +94,14 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
   const bool by_short_windows = before != nullptr && before->rough;
   PreparedSets split = by_short_windows ? PreparedSets{} : split_sets(model, training, validation);
   split.absent = absent;
+  std::shared_ptr<const EffortScreen> screen;
   const auto search = [&](PreparedSets sets) {
     sets.absent = absent;
     Diagnosis result = diagnose_by_search(std::move(sets), model, progress);
     result.log = measured.log();
+    result.screen = screen;
     return result;
   };
-  std::shared_ptr<const EffortScreen> screen;
   const auto by_effort = [&](bool rough) {
     std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, split, training, validation, screen, rough);
     if (diagnosis) diagnosis->log = measured.log();
@@ -114,13 +115,11 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
     if (diagnosis) {
       // Nothing that shows in the effort while the axis slides: a current limit, say, shows in the motion.
       over_long_windows = search(with_base_fitted(split));
-      over_long_windows->screen = screen;
       return *std::move(goes_beyond(*over_long_windows, *screen) ? over_long_windows : diagnosis);
     }
   }
   if (!by_short_windows) {
     over_long_windows = search(with_base_fitted(split));
-    over_long_windows->screen = screen;
     if (!over_long_windows->rough) return *std::move(over_long_windows);
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) return *std::move(diagnosis);
@@ -145,6 +144,7 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   Diagnosis diagnosis = diagnose_records(model, measured, progress, before, absent);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
+  name_what_a_curve_takes(diagnosis);
   for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
     diagnosis.verdict.data_sheet.push_back(conflict.words);
     diagnosis.verdict.explanation += " " + conflict.words;

@@ -12,6 +12,7 @@
 #include "host/effort/effort_terms.hpp"
 #include "host/effort/free_curve_fit.hpp"
 #include "host/record/columns.hpp"
+#include "host/report/text_format.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -60,11 +61,6 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
       verdict.explanation +=
           fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest, 0), 100.0 * closest.validate);
     }
-    if (const std::optional<FreeCurveFit> curve = fit_free_curve(screen))
-      verdict.explanation += fmt::format(
-          " It goes with {} most: a free curve of {} knots over it leaves {:.1f} % (axistool add MODEL free_curve "
-          "--over {}).",
-          curve->over, curve->knots, 100.0 * curve->model.validate, curve->over);
     verdict.next_experiment =
         "Repeat one motion ten times: what repeats a model can explain. Then jogs at several speeds over the whole "
         "travel, both ways.";
@@ -195,6 +191,32 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   append_channels(*screen, training, validation, diagnosis);
   diagnosis.screen = std::move(screen);
   return diagnosis;
+}
+
+void name_what_a_curve_takes(Diagnosis& diagnosis) {
+  // Less is what 25 knots take of anything, and no help to a reader.
+  constexpr double kLeastShare = 0.2;
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (verdict.status != Status::unexplained || !diagnosis.screen || diagnosis.screen->empty()) return;
+  const EffortScreen& screen = *diagnosis.screen;
+  const std::optional<FreeCurveFit> curve = fit_free_curve(screen);
+  if (!curve) return;
+  const double ratio = curve->model.validate / screen.best().validate, share = 1.0 - ratio * ratio;
+  if (share < kLeastShare) return;
+  verdict.explanation += fmt::format(
+      " A free curve of {} knots over {} takes {:.0f} % of the squared effort that is left (axistool add MODEL "
+      "free_curve --over {}).",
+      curve->knots, spaced(curve->over), 100.0 * share, curve->over);
+  const auto along = [&](const std::string& coordinate) {
+    return std::ranges::find(diagnosis.residual.dependences, coordinate, &ResidualDependence::coordinate);
+  };
+  const auto none = diagnosis.residual.dependences.end();
+  const auto named = along(verdict.coordinate), taken = along(curve->over);
+  // From one moment to the next everything lasts.
+  if (named != none && named->coordinate != "time" && named->share >= share) return;
+  if (verdict.coordinate == curve->over) return;
+  verdict.coordinate = curve->over;
+  verdict.where = taken == none ? "over all of it" : taken->where;
 }
 
 nlohmann::json effort_screen_json(const EffortScreen& screen) {

@@ -30,6 +30,13 @@ constexpr double kLeastFurtherPart = 0.5;
 /// And this part of the effort: below lies what no model of a machine is worth.
 constexpr double kLeastPart = 0.005;
 constexpr double kLeastConfidence = 0.99;
+/// Where the base leaves more than this part of the effort, what is missing is large: an effect must take half of the
+/// squared error there, or it stands for another one (a ripple for a current limit).
+constexpr double kBaseFails = 0.1;
+constexpr double kLeastGainWhereBaseFails = 0.29;
+/// A second mass bends to anything that lasts, a gap or a current limit too: it must take two thirds of the squared
+/// error, as it does where it is really there.
+constexpr double kLeastGainOfSpring = 0.42;
 /// What is left must stand so far above the sensors' noise: terms that smooth the motion take noise alone.
 constexpr double kAboveNoise = 2.0;
 /// Effects whose errors are so close are not told apart; the simpler one goes before.
@@ -393,8 +400,13 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     if (found.empty()) break;
     const ScreenedModel before = screen.best();
     const double further_gain = least_further_gain(screen);
-    const double least_gain = chosen.empty() ? kLeastGain : further_gain;
+    const double first_gain = screen.base.validate > kBaseFails ? kLeastGainWhereBaseFails : kLeastGain;
+    const double least_gain = chosen.empty() ? first_gain : further_gain;
     // Of those that are as good as the best one, the simplest.
+    std::erase_if(found, [&](const Tried& tried) {
+      return tried.model.kinds.back() == "compliance" && !earns_its_place(tried.model, before, kLeastGainOfSpring);
+    });
+    if (found.empty()) break;
     const Tried* best = &found.front();
     for (const Tried& tried : found)
       if (near(tried.model, found.front().model) && tried.model.factors < best->model.factors) best = &tried;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -157,6 +158,69 @@ TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
   EXPECT_THAT(diagnosis.verdict.effects, UnorderedElementsAre("constant_torque", "dac_offset", "coulomb_asymmetry"));
   EXPECT_EQ(diagnosis.best.find("inertia")->at("J"), 1.1 * kInertia);
   EXPECT_NEAR(diagnosis.best.find("constant_torque")->at("torque"), -0.006, 0.0005);
+}
+
+/// A drive in a position loop whose amplifier gives a sixth of what the loop asks for at most, in Euler steps of 0.1
+/// ms.
+template <typename Aim>
+host::Record limited_record(Aim aim, double duration_s) {
+  constexpr double kStep_s = 1e-4, kMost = 1.5, kHeavy = 0.004, kOil = 0.01, kDry = 0.4;
+  host::Record record;
+  record.path = "limited.csv";
+  record.sample_period_s = 0.001;
+  double x = 0.0, w = 0.0;
+  for (int k = 0; k < static_cast<int>(duration_s / record.sample_period_s); ++k) {
+    const double t_s = k * record.sample_period_s;
+    const auto [place, speed] = aim(t_s);
+    const double asked = std::clamp(30.0 * (place - x) + 0.8 * (speed - w), -6.0 * kMost, 6.0 * kMost);
+    record.t_s.push_back(t_s);
+    record.x.push_back(5e-4 * std::round(x / 5e-4));
+    record.i_A.push_back(asked / kPerAmpere);
+    for (int step = 0; step < 10; ++step) {
+      const double drives = std::clamp(asked, -kMost, kMost) - kOil * w;
+      const double resists = w != 0.0 ? std::copysign(kDry, w) : std::clamp(drives, -kDry, kDry);
+      const double next = w + kStep_s * (drives - resists) / kHeavy;
+      w = w * next < 0.0 ? 0.0 : next;
+      x += kStep_s * w;
+    }
+  }
+  return record;
+}
+
+/// Swings that become faster, as far as the speed of the first allows.
+std::pair<double, double> swings(double t_s) {
+  const double turn = kTurn * (0.5 + 0.28 * t_s) * t_s, faster = 1.0 + 1.125 * t_s;
+  return {4.0 / faster * std::sin(turn), kTurn * 2.0 * std::cos(turn)};
+}
+
+/// From place to place in 0.35 s, with rests between.
+std::pair<double, double> moves(const std::array<double, 6>& places, double t_s) {
+  constexpr double kMove_s = 0.35, kEvery_s = 0.65;
+  const auto n = static_cast<std::size_t>(t_s / kEvery_s);
+  if (n + 1 >= places.size()) return {places.back(), 0.0};
+  const double s = std::min(1.0, (t_s - kEvery_s * static_cast<double>(n)) / kMove_s), way = places[n + 1] - places[n];
+  return {places[n] + way * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
+          way * s * s * (30.0 - 60.0 * s + 30.0 * s * s) / kMove_s};
+}
+
+// Commands above a current limit do nothing. No regression knows that; a second mass or a ripple must not stand for it,
+// since the motion shows it.
+TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
+  sim::DriveDescription model = motor();
+  model.find("inertia")->parameters["J"] = 0.004;
+  model.find("viscous")->parameters["B"] = 0.01;
+  model.find("coulomb")->parameters["level"] = 0.4;
+  model.data.encoder_resolution = 5e-4;
+  const auto to = [](std::array<double, 6> places) {
+    return limited_record([places](double t_s) { return moves(places, t_s); }, 3.5);
+  };
+  const host::Record sweep = limited_record(swings, 8.0), there = to({0.0, 14.0, -6.0, 8.0, 0.0, 15.0});
+  const host::Record validate = to({0.0, -9.0, 7.0, 16.0, 0.0, -5.0});
+  const host::EffortScreen screen =
+      host::screen_effort(model, host::compare_on({&sweep, &there}, model), host::compare_on({&validate}, model));
+  ASSERT_FALSE(screen.empty());
+  EXPECT_GT(screen.base.validate, 0.1);
+  EXPECT_TRUE(screen.chosen.empty()) << screen.chosen.front().kinds.front();
 }
 
 // What the effort is in proportion to must not be explained by the effort itself.
