@@ -144,7 +144,7 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   Diagnosis diagnosis = diagnose_records(model, measured, progress, before, absent);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
-  name_what_a_curve_takes(diagnosis);
+  name_coordinate(diagnosis);
   for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
     diagnosis.verdict.data_sheet.push_back(conflict.words);
     diagnosis.verdict.explanation += " " + conflict.words;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "host/diagnose/all_clear.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_terms.hpp"
@@ -193,12 +194,49 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   return diagnosis;
 }
 
-void name_what_a_curve_takes(Diagnosis& diagnosis) {
+namespace {
+
+/// Whether the base suits either set, but not with the same values: a machine that has warmed up between the records.
+/// Says so.
+bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdict) {
+  constexpr double kSuits = 1.5, kFails = 2.0;  // of what the base leaves where it was fitted
+  if (!screen.judge_alone) return false;
+  const ScreenedModel &base = screen.base, &alone = *screen.judge_alone;
+  if (alone.train > kSuits * base.train || base.validate < kFails * std::max(alone.train, base.train)) return false;
+  std::vector<std::string> moved;
+  for (const std::string& kind : moved_parameters(base.model, alone.model))
+    for (const auto& [id, value] : base.model.find(kind)->parameters)
+      moved.push_back(fmt::format("{} {:.4g} instead of {:.4g}",
+                                  sim::find_effect(kind)->parameter(id)->key(base.model.data.kind),
+                                  alone.model.find(kind)->at(id), value));
+  if (moved.empty()) return false;
+  verdict.coordinate = "time";
+  verdict.where = "between the records";
+  verdict.explanation += fmt::format(
+      " Fitted to the judging records alone, inertia and friction leave {:.1f} % of it, with {}: the machine was in "
+      "another state (temperature, load, lubrication) than in training.",
+      100.0 * alone.train, fmt::join(moved, ", "));
+  verdict.next_experiment =
+      "Record both kinds of motion in one state of the machine, or in turn while it warms up, with its temperature "
+      "(temp_C).";
+  return true;
+}
+
+}  // namespace
+
+void name_coordinate(Diagnosis& diagnosis) {
   // Less is what 25 knots take of anything, and no help to a reader.
   constexpr double kLeastShare = 0.2;
   DiagnosisVerdict& verdict = diagnosis.verdict;
-  if (verdict.status != Status::unexplained || !diagnosis.screen || diagnosis.screen->empty()) return;
+  if (verdict.status != Status::unexplained) return;
+  if (verdict.coordinate.empty()) {
+    Trace trace = strongest_trace(diagnosis.residual, diagnosis.where);
+    verdict.coordinate = std::move(trace.coordinate);
+    verdict.where = std::move(trace.where);
+  }
+  if (!diagnosis.screen || diagnosis.screen->empty()) return;
   const EffortScreen& screen = *diagnosis.screen;
+  if (differs_between_records(screen, verdict)) return;
   const std::optional<FreeCurveFit> curve = fit_free_curve(screen);
   if (!curve) return;
   const double ratio = curve->model.validate / screen.best().validate, share = 1.0 - ratio * ratio;

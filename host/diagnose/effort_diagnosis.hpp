@@ -29,9 +29,8 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
                                             const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& screen, bool rough = false);
 
-/// Where unexplained: says what a free curve takes of the effort that is left, and names its coordinate where that is
-/// more than what is known to depend on another one.
-void name_what_a_curve_takes(Diagnosis& diagnosis);
+/// Where unexplained: names the coordinate that carries most of what is left, and says what a free curve takes of it.
+void name_coordinate(Diagnosis& diagnosis);
 
 /// What the regression saw: relative errors of the effort, the channel that it took the motion from, what it held.
 nlohmann::json effort_screen_json(const EffortScreen& screen);

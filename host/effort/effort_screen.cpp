@@ -432,6 +432,12 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     for (const EffortTerm* term : best->terms) chosen.push_back(*term);
   }
   drop_what_others_explain(regressor, base, training, validation, chosen, screen);
+  if (screen.chosen.empty()) {
+    EffortRows swapped = screen.rows;
+    swapped.judges.flip();
+    ScreenedModel alone;
+    if (Regressor(model, swapped).fit(base, {}, alone)) screen.judge_alone = std::move(alone);
+  }
   screen.repeatable = repeatability(screen.rows, screen.best().residual);
   return screen;
 }

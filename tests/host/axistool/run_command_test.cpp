@@ -75,7 +75,8 @@ TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
 
 TEST_F(RunCommand, AnInterruptStopsOnThePath) {
   fit();
-  const std::string words = "timeout --preserve-status -s INT 2 " AXISTOOL_PROGRAM " run " + board_.device() +
+  // In the midst of a circle of eleven seconds; time enough to begin it on a busy computer.
+  const std::string words = "timeout --preserve-status -s INT 6 " AXISTOOL_PROGRAM " run " + board_.device() +
                             kPrograms + "arc-whole-circle.ngc --yes --json " + file("run.json") + " >/dev/null 2>&1";
   const int status = std::system(words.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);

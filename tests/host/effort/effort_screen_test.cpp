@@ -141,6 +141,22 @@ TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
   EXPECT_LT(left(), 0.5 * without);
 }
 
+// A machine that has warmed up between the records lacks no effect, and its state is told.
+TEST(EffortScreen, TellsFrictionThatDiffersBetweenTheRecords) {
+  const auto cold = [](const Point&) { return 0.0; };
+  const auto warm = [](const Point& point) { return -std::copysign(0.3 * kCoulomb, point.w); };
+  const host::Record train = record_of(slow_turning, cold, 0.0, 12.0, 12);
+  const host::Record validate = record_of(slow_turning, warm, 13.0, 21.0, 13);
+  std::shared_ptr<const host::EffortScreen> seen;
+  auto by_effort = by_effort_of({&train}, {&validate}, seen);
+  ASSERT_TRUE(by_effort.has_value());
+  host::name_coordinate(*by_effort);
+  EXPECT_EQ(by_effort->verdict.status, host::Status::unexplained);
+  EXPECT_EQ(by_effort->verdict.where, "between the records");
+  ASSERT_TRUE(seen->judge_alone.has_value());
+  EXPECT_NEAR(seen->judge_alone->model.find("coulomb")->at("level"), 0.7 * kCoulomb, 0.05 * kCoulomb);
+}
+
 // With an inertia that it makes up, steady speeds would fit anything.
 TEST(EffortScreen, HoldsTheInertiaThatSteadySpeedsDoNotShow) {
   const auto at = [](double w) { return [w](double t_s) { return Point{w * t_s, w, 0.0}; }; };
