@@ -9,12 +9,12 @@ is told the truth reaches with the same motion on the same machine; minutes of m
 import argparse
 import concurrent.futures
 import json
+import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 
 MOST_OVER_TRUTH, MOST_MOTION_S, MOST_COMPUTING_S = 1.5, 360.0, 180.0
 
@@ -59,12 +59,35 @@ def machine(base, hidden):
 
 
 def run(axistool, folder, arguments):
-    began = time.process_time(), time.monotonic()
-    done = subprocess.run([axistool, "commission", "x", "-o", folder, "--yes", *arguments], capture_output=True, text=True)
-    return done, time.monotonic() - began[1]
+    """What it did, and its own computing: seconds of a processor, whatever else the computer does meanwhile."""
+    with tempfile.TemporaryFile("w+") as told:
+        process = subprocess.Popen([axistool, "commission", "x", "-o", folder, "--yes", *arguments], stdout=subprocess.DEVNULL,
+                                   stderr=told)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        told.seek(0)
+        return subprocess.CompletedProcess(process.args, process.returncode, "", told.read()), usage.ru_utime + usage.ru_stime
+
+
+def commission_plant(axistool, base, entry, folder):
+    """A machine that is another program: nothing here knows its true parameters."""
+    sheet, out = folder / "sheet.toml", folder / "found"
+    alike = entry["sheet"].get("one_level")
+    sheet.write_text(data_sheet(base, entry["sheet"]["torque"]) + (one_level(base) if alike else ""))
+    plant = f"python3 {pathlib.Path(__file__).with_name('own_plant.py')} {entry['plant']} {entry['seed']}"
+    done, took = run(axistool, str(out), ["--plant", plant, "--drive", str(sheet), "--box", base["box"]])
+    result = {"name": entry["name"], "hides": entry["hides"], "computing_s": took}
+    if done.returncode != 0:
+        return {**result, "failed": (done.stderr or done.stdout).strip().splitlines()[-1]}
+    state = json.loads((out / "commission.json").read_text())
+    ladder = json.loads((out / "improvement.json").read_text())["ladder"]
+    return {**result, "verdict": state["verdict"], "added": (state.get("decided") or []) + [k for rung in ladder for k in rung["added"]],
+            "error": state["following_error_um"], "truth_um": None, "kept": state["kept"], "motion_s": state["motion_s"]}
 
 
 def commission(axistool, base, entry, folder):
+    if "plant" in entry:
+        return commission_plant(axistool, base, entry, folder)
     truth, sheet, out = folder / "truth.toml", folder / "sheet.toml", folder / "found"
     base = {**base, **entry.get("base_changes", {})}
     truth.write_text(machine(base, entry["hides"]))
@@ -109,7 +132,7 @@ def judge(result):
     error = result["error"]
     reached = min(error["before"], error["after"] if error["after"] is not None else error["before"])
     share = reached / result["truth_um"] if result["truth_um"] else float("nan")
-    good = right and share <= MOST_OVER_TRUTH and result["motion_s"] <= MOST_MOTION_S and result["computing_s"] <= MOST_COMPUTING_S
+    good = right and not share > MOST_OVER_TRUTH and result["motion_s"] <= MOST_MOTION_S and result["computing_s"] <= MOST_COMPUTING_S
     after = "stopped" if error["after"] is None else f"{error['after']:.2f}"
     return (f"{result['name']:<26} {'right' if right else 'WRONG':<6} {said:<46} {error['before']:8.2f} {after:>8} "
             f"{result['truth_um'] or float('nan'):8.2f} {share:6.2f} {error['floor']:6.2f} {result['motion_s'] / 60:6.1f} {result['computing_s']:6.0f}"), good

@@ -90,8 +90,8 @@ TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   for (int trial = 0; trial < 50; ++trial) {
     const TemporaryFolder folder;
     OwnBoard board;
-    board.reports_left = std::uniform_int_distribution<long>(1, 4000)(random);
-    const auto [code, words] = commission(board, folder.path("x"), "look", "ladder");
+    board.reports_left = std::uniform_int_distribution<long>(1, 14000)(random);
+    const auto [code, words] = commission(board, folder.path("x"), "look", "response");
     expect_standing(board);
     expect_usable(folder.path("x"));
     if (code == ExitCode::done) continue;
@@ -104,7 +104,7 @@ TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
       client.wait(std::chrono::milliseconds(500));
     }
     const auto next = host::CommissionFolder(folder.path("x")).first_undone();
-    const auto again = commission(board, folder.path("x"), host::kCommissionSteps[*next].name.data(), "ladder");
+    const auto again = commission(board, folder.path("x"), host::kCommissionSteps[*next].name.data(), "response");
     EXPECT_EQ(again.first, ExitCode::done) << again.second;
   }
 }

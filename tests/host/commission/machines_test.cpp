@@ -37,13 +37,9 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
 /// a loop that is made livelier than the machine bears.
 TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  hal::pc::AxisWiring wiring;
-  wiring.home = 11.3;
-  OwnBoard board(wiring);
+  OwnBoard board;
   board.machine->cogging_Nm = 0.4;
-  host::CommissionOptions options = own_options();
-  options.homing = host::CommissionHoming{firmware::HomingMode::home_switch, 0.0};
-  const Outcome found = commissioned(board, options);
+  const Outcome found = commissioned(board, own_options());
   EXPECT_THAT(found.effects(), testing::ElementsAre("cogging"));
   EXPECT_EQ(found.state["kept"], "new");
   EXPECT_LT(found.after(), 0.8 * found.before());
@@ -64,9 +60,10 @@ TEST(CommissionedMachine, IsNamedNothingWhereNothingIsHidden) {
 /// Catches a weight that is taken for friction, and a place-bound compensation that is promised without a home.
 TEST(CommissionedMachine, IsToldThatItCarriesAWeight) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  OwnBoard board;
+  OwnBoard board(hal::pc::AxisWiring{});
   board.machine->weight_Nm = 0.8;
   host::CommissionOptions options = own_options();
+  options.homing.reset();
   options.sheet.effects.push_back({"coulomb", {{"level", 1.8}}, {}, {}});
   const Outcome found = commissioned(board, options);
   EXPECT_THAT(found.effects(), testing::Contains("constant_torque"));

@@ -67,7 +67,14 @@ struct OwnBoard {
   std::shared_ptr<host::SimulatedLink> link;
   long reports_left = -1;  ///< below 0: it does not break
 
-  explicit OwnBoard(hal::pc::AxisWiring wiring = {}) {
+  /// With a home switch, which own_options() look for.
+  static hal::pc::AxisWiring usual_wiring() {
+    hal::pc::AxisWiring wiring;
+    wiring.home = 11.3;
+    return wiring;
+  }
+
+  explicit OwnBoard(const hal::pc::AxisWiring& wiring = usual_wiring()) {
     sim::DriveDescription hollow = own_sheet();
     hollow.effects.push_back({"inertia", {{"J", 1.0}}, {}, {}});
     link = std::make_shared<host::SimulatedLink>(host::SimulatedDeviceOptions{{{hollow, wiring, machine}}, "", 1});
@@ -100,6 +107,7 @@ inline host::CommissionOptions own_options() {
   options.axis_name = "x";
   options.sheet = own_sheet();
   options.box = {80.0, 150.0, 4.0, 600.0};
+  options.homing = host::CommissionHoming{firmware::HomingMode::home_switch, 0.0};
   return options;
 }
 
