@@ -342,8 +342,11 @@ struct Saturation {
    public:
     constexpr void restart() { samples_ = 0; }
     constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen, const Limits<Scalar>& limits) {
-      samples_ = seen.saturated ? samples_ + 1 : 0;
-      return samples_ > limits.saturation_samples ? AxisFault::saturation_too_long : AxisFault::none;
+      if (!seen.saturated) {  // nearly always
+        samples_ = 0;
+        return AxisFault::none;
+      }
+      return ++samples_ > limits.saturation_samples ? AxisFault::saturation_too_long : AxisFault::none;
     }
 
    private:
