@@ -54,7 +54,10 @@ class BoardApplication {
     const std::uint32_t now_us = board_.clock().now_us();
     if (excitation_.is_active()) excitation_.before_step(axes_);
     if (path_.is_moving()) path_.before_step();
-    axes_.step({now_us, board_.emergency_stop().is_pressed(), board_.supply().is_low(), !store_is_usable()});
+    axes_.step({.now_us = now_us,
+                .emergency_stop = board_.emergency_stop().is_pressed(),
+                .supply_low = board_.supply().is_low(),
+                .store_damaged = !store_is_usable()});
     capture_.take(axes_);
     if (trigger_.is_running()) trigger_.take(axes_);
     note_timing(now_us);

@@ -64,13 +64,12 @@ class ExcitationService {
   void start() { run_.start(plan_); }
   void stop() { run_.stop(); }
   ExcitationStatePayload state() const {
-    return {static_cast<std::uint8_t>(run_.phase()),
-            static_cast<std::uint8_t>(run_.end()),
-            static_cast<std::uint8_t>(axis_),
-            0,
-            run_.elapsed(),
-            run_.farthest(),
-            static_cast<float>(run_.fastest()) * (1.0F / kSpeedSamples)};
+    return {.phase = static_cast<std::uint8_t>(run_.phase()),
+            .end = static_cast<std::uint8_t>(run_.end()),
+            .axis = static_cast<std::uint8_t>(axis_),
+            .elapsed = run_.elapsed(),
+            .farthest = run_.farthest(),
+            .fastest = static_cast<float>(run_.fastest()) * (1.0F / kSpeedSamples)};
   }
 
  private:

@@ -57,9 +57,9 @@ template <typename Scalar>
 constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
   if (p.motion.velocity != 0 || p.motion.acceleration != 0 || p.motion.jerk != 0) return p.motion;
   using parameter_check::motion;
-  return {motion(p.velocity_limit, p.encoder_resolution, p.sample_period_s, 1),
-          motion(p.acceleration_limit, p.encoder_resolution, p.sample_period_s, 2),
-          motion(p.jerk_limit, p.encoder_resolution, p.sample_period_s, 3)};
+  return {.velocity = motion(p.velocity_limit, p.encoder_resolution, p.sample_period_s, 1),
+          .acceleration = motion(p.acceleration_limit, p.encoder_resolution, p.sample_period_s, 2),
+          .jerk = motion(p.jerk_limit, p.encoder_resolution, p.sample_period_s, 3)};
 }
 
 /// The first thing that is wrong.

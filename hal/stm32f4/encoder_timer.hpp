@@ -24,7 +24,7 @@ class EncoderTimer {
     registers_.CR1 = Timer::kEnable;
   }
 
-  EncoderReading read() { return {registers_.CNT, true}; }
+  EncoderReading read() { return {.counts = registers_.CNT, .valid = true}; }
 
   IndexReading read_index() {
     const std::uint32_t status = registers_.SR;
@@ -32,7 +32,7 @@ class EncoderTimer {
     const std::uint32_t counts = registers_.CCR3;  // reading it clears the flag (18.4.5)
     const bool missed = (status & Timer::kOvercapture3Flag) != 0;
     if (missed) registers_.SR = ~Timer::kOvercapture3Flag;
-    return {counts, true, missed};
+    return {.counts = counts, .seen = true, .missed = missed};
   }
 
  private:

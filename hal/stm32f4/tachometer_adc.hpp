@@ -31,7 +31,7 @@ class TachometerChannel {
       if (sample <= kLeast || sample >= kMost) return {};  // a wire broken or shorted pins the input to a rail
       sum += static_cast<std::int32_t>(sample) - kMiddle;
     }
-    return {sum, true};
+    return {.code = sum, .valid = true};
   }
 
  private:

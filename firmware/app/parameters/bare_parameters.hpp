@@ -30,8 +30,10 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float r
   p.tachometer_gain = v.get<"tachometer.gain">();
   p.tachometer_offset = v.get<"tachometer.offset">();
   const FixedUnits<float> unit(p);
-  p.drive = {p.lead * p.sample_period_s, 1.0F, kLittle * unit.length / unit.volts,
-             kLittle * unit.velocity / unit.volts};
+  p.drive = {.Ad12 = p.lead * p.sample_period_s,
+             .Ad22 = 1.0F,
+             .Bd1 = kLittle * unit.length / unit.volts,
+             .Bd2 = kLittle * unit.velocity / unit.volts};
   p.Kobs = {{{0.5F, 0}, {0.1F / (p.lead * p.sample_period_s), 0}, {0, 0}}};
   MonitorLimits<float>& m = p.monitors;
   m = monitor_limits<float>([&](auto id) { return v.with_id<decltype(id)::value>(); }, p.encoder_resolution,
@@ -47,7 +49,9 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float r
   m.capture_stride = capture_stride(rate_Hz);
   // References do not move; a stop that does not come to rest ends after about a second.
   const auto half_second = static_cast<Increment>(static_cast<std::int32_t>(rate_Hz) / 2);
-  p.motion = {kOneCount * 1000, kOneCount * 1000 / half_second, kOneCount * 1000 / half_second};
+  p.motion = {.velocity = kOneCount * 1000,
+              .acceleration = kOneCount * 1000 / half_second,
+              .jerk = kOneCount * 1000 / half_second};
   return p;
 }
 

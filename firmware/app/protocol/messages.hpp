@@ -228,7 +228,9 @@ struct MoveRequest {
   std::int32_t counts_high = 0;
 
   static constexpr MoveRequest to(std::uint8_t axis, std::int64_t counts) {
-    return {axis, 0, {}, static_cast<std::uint32_t>(counts), static_cast<std::int32_t>(counts >> 32)};
+    return {.axis = axis,
+            .counts_low = static_cast<std::uint32_t>(counts),
+            .counts_high = static_cast<std::int32_t>(counts >> 32)};
   }
   static constexpr MoveRequest by(std::uint8_t axis, std::int64_t counts) {
     MoveRequest request = to(axis, counts);

@@ -119,7 +119,7 @@ void Board::watch(bool outputs_off) {
   const std::uint32_t now_periods = control_periods_;
   if (now_periods - watched_at_period_ < control_rate_Hz_ / kWatches_Hz) return;
   watched_at_period_ = now_periods;
-  const ControlShutOut guard;  // 8 us: two frames of the converter that nobody may come between
+  const ControlShutOut guard;  // 9 us: two frames of the converter that nobody may come between
   if (converter_.state() == hal::ConverterState::sound) {
     converter_.watch();
     if (converter_.state() != hal::ConverterState::sound) converter_trouble_ = converter_.state();

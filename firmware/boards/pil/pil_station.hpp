@@ -37,7 +37,10 @@ class PilStation {
       read_in(request.axis[i], io_[i]);
       accepted[i] = obey(request.axis[i], axes_[i]);
     }
-    axes_.step({request.now_us, (request.board & 1u) != 0, (request.board & 2u) != 0, (request.board & 4u) != 0});
+    axes_.step({.now_us = request.now_us,
+                .emergency_stop = (request.board & 1u) != 0,
+                .supply_low = (request.board & 2u) != 0,
+                .store_damaged = (request.board & 4u) != 0});
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) reply.axis[i] = write_out(axes_[i], io_[i], accepted[i]);
     return reply;
   }

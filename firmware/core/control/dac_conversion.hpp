@@ -31,10 +31,10 @@ class DacConversion {
   /// `volts` is a number; the caller has excluded not-a-number.
   constexpr DacWord<Scalar> operator()(Scalar volts) const {
     if (!is_within(volts))
-      return volts > Scalar(0) ? DacWord<Scalar>{max_code_, limit_V_, true}
-                               : DacWord<Scalar>{-max_code_, Scalar(0) - limit_V_, true};
+      return volts > Scalar(0) ? DacWord<Scalar>{.code = max_code_, .volts = limit_V_, .saturated = true}
+                               : DacWord<Scalar>{.code = -max_code_, .volts = Scalar(0) - limit_V_, .saturated = true};
     const std::int32_t code = Traits::nearest_product(volts, codes_per_volt_);
-    return {code, Traits::times(code, resolution_V_), false};
+    return {.code = code, .volts = Traits::times(code, resolution_V_)};
   }
 
   /// False for what is no number, too.

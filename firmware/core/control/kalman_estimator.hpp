@@ -37,7 +37,7 @@ class KalmanEstimator {
 
   /// Standing at the given reading, without disturbance.
   static constexpr AxisEstimate<Scalar> at_rest(std::int64_t encoder_counts) {
-    return {encoder_counts, Scalar(0), Scalar(0), Scalar(0)};
+    return {.anchor_counts = encoder_counts};
   }
 
   /// Eq. (43), written as prediction and innovation, which is the same sum. `input`: u(k-1), V, what the drive was
@@ -63,8 +63,8 @@ class KalmanEstimator {
     const Scalar net_input = input - estimate.disturbance;
     const auto travel = static_cast<std::int32_t>(encoder_counts - estimate.anchor_counts);
     const Scalar measured = ScalarTraits<Scalar>::times(travel, count_length_);
-    return {estimate.offset + drive_.Ad12 * estimate.velocity + drive_.Bd1 * net_input - measured,
-            drive_.Ad22 * estimate.velocity + drive_.Bd2 * net_input};
+    return {.offset = estimate.offset + drive_.Ad12 * estimate.velocity + drive_.Bd1 * net_input - measured,
+            .velocity = drive_.Ad22 * estimate.velocity + drive_.Bd2 * net_input};
   }
 
   constexpr void correct(AxisEstimate<Scalar>& estimate, const Prediction& predicted, std::int64_t encoder_counts,

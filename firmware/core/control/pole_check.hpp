@@ -48,7 +48,7 @@ template <typename Scalar>
 constexpr Quadratic of_loop(const AxisParameters<Scalar>& p) {
   const float a12 = real(p.drive.Ad12), decay = real(Scalar(1) - p.drive.Ad22);
   const float b1 = real(p.drive.Bd1), b2 = real(p.drive.Bd2), k1 = real(p.Kc[0]), k2 = real(p.Kc[1]);
-  return {b1 * k1 + b2 * k2 + decay, k1 * (b1 * decay + b2 * a12)};
+  return {.linear = b1 * k1 + b2 * k2 + decay, .constant = k1 * (b1 * decay + b2 * a12)};
 }
 
 /// Of the estimator's error: (I - Kobs C) A, eqs. (16) and (43); without a tachometer its column does not act.
@@ -67,7 +67,9 @@ constexpr Cubic of_estimator(const AxisParameters<Scalar>& p) {
   const float determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return {-(m[0][0] + m[1][1] + m[2][2]), minor(0, 1) + minor(0, 2) + minor(1, 2), -determinant};
+  return {.square = -(m[0][0] + m[1][1] + m[2][2]),
+          .linear = minor(0, 1) + minor(0, 2) + minor(1, 2),
+          .constant = -determinant};
 }
 
 /// `least`: by how much a mode must shrink in a sample at least.
@@ -96,7 +98,7 @@ constexpr PoleProblem check(const Cubic& c, float least) {
     (c.at(middle) < 0.0f ? lower : upper) = middle;
   }
   if (!(upper < 0.0f)) return PoleProblem::unstable;
-  const PoleProblem pair = check(Quadratic{c.square + upper, -c.constant / upper}, least);
+  const PoleProblem pair = check(Quadratic{.linear = c.square + upper, .constant = -c.constant / upper}, least);
   if (pair == PoleProblem::unstable || pair == PoleProblem::undamped) return pair;
   if (1.0f + upper < -kFastestRinging) return PoleProblem::undamped;
   return -upper < least ? PoleProblem::slow : pair;

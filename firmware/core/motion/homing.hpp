@@ -98,7 +98,7 @@ class HomingSequence {
     if (!seen.at_rest) return {};
     if (next_ != Phase::idle) return enter(next_, seen);
     phase_ = Phase::idle;
-    return {HomingStep::arrived, Scalar(0), found_, AxisFault::none};
+    return {.step = HomingStep::arrived, .found = found_};
   }
 
  private:
@@ -119,24 +119,21 @@ class HomingSequence {
     const Scalar fast = parameters_.velocity;
     const Scalar creep = fast < Scalar(0) ? Scalar(0) - parameters_.creep_velocity : parameters_.creep_velocity;
     const bool goes_back = phase == Phase::leaving || phase == Phase::backing_off;
-    return {HomingStep::jog,
-            goes_back                   ? Scalar(0) - fast
-            : phase == Phase::searching ? fast
-                                        : creep,
-            0, AxisFault::none};
+    const Scalar ahead = phase == Phase::searching ? fast : creep;
+    return {.step = HomingStep::jog, .velocity = goes_back ? Scalar(0) - fast : ahead};
   }
 
   constexpr HomingAction<Scalar> go_on(const HomingInputs& seen, std::int64_t longest, AxisFault otherwise) {
     const std::int64_t way = seen.counts - begin_;
     if (way <= longest && way >= -longest) return {};
     phase_ = Phase::idle;
-    return {HomingStep::failed, Scalar(0), 0, otherwise};
+    return {.step = HomingStep::failed, .fault = otherwise};
   }
 
   constexpr HomingAction<Scalar> stop_before(Phase next) {
     phase_ = Phase::stopping;
     next_ = next;
-    return {HomingStep::stop, Scalar(0), 0, AxisFault::none};
+    return {.step = HomingStep::stop};
   }
 
   constexpr HomingAction<Scalar> stop_at(std::int64_t found) {

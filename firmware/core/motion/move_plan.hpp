@@ -99,7 +99,8 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
   if (distance == CountPosition{}) return {plan, Refusal::none};
 
   // Spreading remainders adds at most one unit of velocity, two of acceleration and four of jerk.
-  const MotionLimits reduced{limits.velocity - 1, limits.acceleration - 2, limits.jerk - 4};
+  const MotionLimits reduced{
+      .velocity = limits.velocity - 1, .acceleration = limits.acceleration - 2, .jerk = limits.jerk - 4};
   constexpr std::int64_t kLongest = std::int64_t{1} << 29;
   std::int64_t admissible = 2;
   while (!is_admissible(distance, admissible, reduced)) {

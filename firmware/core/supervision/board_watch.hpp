@@ -33,8 +33,11 @@ class BoardWatch {
   static constexpr BoardLimits default_limits(float sample_period_s) {
     const auto period_us = static_cast<std::uint32_t>(ScalarTraits<float>::nearest_product(sample_period_s, 1e6f));
     const float rate_Hz = 1.0f / sample_period_s;
-    return {period_us, period_us + period_us / 2, ScalarTraits<float>::nearest_product(0.1f, rate_Hz),
-            ScalarTraits<float>::nearest_product(60.0f, rate_Hz), firmware::input_samples(sample_period_s)};
+    return {.control_period_us = period_us,
+            .longest_period_us = period_us + period_us / 2,
+            .heartbeat_samples = ScalarTraits<float>::nearest_product(0.1f, rate_Hz),
+            .standing_samples = ScalarTraits<float>::nearest_product(60.0f, rate_Hz),
+            .input_samples = firmware::input_samples(sample_period_s)};
   }
 
   constexpr void configure(const BoardLimits& limits) {

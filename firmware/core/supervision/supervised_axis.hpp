@@ -188,7 +188,9 @@ class SupervisedAxis {
   }
   /// What went wrong besides while the first fault brought the axis to a stop; the worst of it. none: nothing.
   constexpr AxisFault second_fault() const { return second_fault_; }
-  constexpr LimitingReasons limiting() const { return {axis_.telemetry().saturated, limiting_.velocity_limited}; }
+  constexpr LimitingReasons limiting() const {
+    return {.saturated = axis_.telemetry().saturated, .velocity_limited = limiting_.velocity_limited};
+  }
   constexpr bool is_at_rest() const { return axis_.is_at_rest(); }
   constexpr const AxisTelemetry<Scalar>& telemetry() const { return axis_.telemetry(); }
   constexpr const AxisParameters<Scalar>& parameters() const { return axis_.parameters(); }
