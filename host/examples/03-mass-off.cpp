@@ -13,7 +13,7 @@ int main(int argc, char** argv) try {
   wrong.find("inertia")->parameters.at("J") *= 1.2;
   const host::Measurements measured =
       host::MeasurementGate(wrong, {.accepted = {}, .as_logged = true}).read({drive + "/train-steps.csv"});
-  const sim::DriveDescription model = host::with_measured_sensors(wrong, measured.training());
+  const sim::DriveDescription model = host::with_measured_sensors(wrong, measured);
   const host::RecordSet set = host::compare_on(measured.training_records(), model);
   const host::ModelComparison found = host::compare_model(model, measured, set, host::kWindow_s);
   std::printf("%s\n", host::where_it_fails(found.where).c_str());
