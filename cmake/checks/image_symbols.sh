@@ -12,10 +12,11 @@ for image in "$@"; do
     echo "$image holds what must not be on the target:" $found >&2
     status=1
   fi
-  "$size" -A "$image" | awk -v image="$image" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
+  capture=$("$nm" "$image" | awk '$3 == "_capture_rows" || $3 == "_capture_end" { print "0x" $1 }' | sort | xargs)
+  capture=$((${capture#* } - ${capture% *}))
+  "$size" -A "$image" | awk -v image="$image" -v capture="$capture" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
     $1 ~ /^\.(vectors|image_header|text|ARM\.exidx|data|ccm)$/ { flash += $2 }
     $1 ~ /^\.(stack|noinit|data|bss|ccm)$/ { ram += $2 }
-    $1 == ".capture" { capture = $2 }
     END {
       n = split(image, parts, "/")
       printf "%-28s flash %6d of %d bytes, RAM %6d of %d bytes, capture memory %6d bytes\n", parts[n], flash, flash_limit, ram, ram_limit, capture

@@ -37,7 +37,7 @@ class BoardApplication {
         store_(board.parameter_flash()),
         axes_([&board](std::size_t index) -> typename Board::AxisType& { return board.axis(index); }) {
     if constexpr (kBoardKeepsCapture)
-      trigger_.adopt(board.capture_memory());
+      trigger_.adopt(board.capture_state(), board.capture_rows());
     else
       trigger_.adopt(own_memory_);
   }
@@ -299,7 +299,7 @@ class BoardApplication {
 
   /// A capture in the board's memory; `after` of 0 ends the one that is armed.
   Status arm(const TriggerRequest& request) {
-    if (request.after != 0 && !TriggeredCapture::is_possible(request, kAxes)) return Status::malformed;
+    if (request.after != 0 && !trigger_.is_possible(request, kAxes)) return Status::malformed;
     const typename Board::ControlShutOut guard;
     if (request.after == 0)
       trigger_.stop();
@@ -375,7 +375,7 @@ class BoardApplication {
   Axes& axes() { return axes_; }
 
  private:
-  static constexpr bool kBoardKeepsCapture = requires(Board & board) { board.capture_memory(); };
+  static constexpr bool kBoardKeepsCapture = requires(Board & board) { board.capture_rows(); };
   static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }

@@ -11,19 +11,24 @@
 
 namespace firmware {
 
-/// What a capture leaves. A board may lay it where a reset does not reach; then the last one can be read afterwards.
-struct TriggeredMemory {
-  static constexpr std::size_t kHalfWords = 8000;  ///< 100 ms of four channels at 20 kHz
-
+/// What a capture leaves beside its rows. A board may lay both where a reset does not reach; then the last one can be
+/// read afterwards.
+struct TriggeredState {
   std::uint32_t magic;
   std::uint32_t crc;  ///< of the request
   TriggerRequest request;
   TriggerPhase phase;
-  std::uint32_t next;     ///< row of the ring that comes next
-  std::uint32_t taken;    ///< rows since it was armed; stays at the ring's size
-  std::uint32_t trigger;  ///< row of the ring
-  std::uint32_t after;    ///< rows taken from the trigger on
-  std::int64_t counts;    ///< of the axis when the trigger came
+  std::uint32_t half_words;  ///< room for rows
+  std::uint32_t next;        ///< row of the ring that comes next
+  std::uint32_t taken;       ///< rows since it was armed; stays at the ring's size
+  std::uint32_t trigger;     ///< row of the ring
+  std::uint32_t after;       ///< rows taken from the trigger on
+  std::int64_t counts;       ///< of the axis when the trigger came
+};
+
+/// With the least room: 100 ms of four channels at 20 kHz. A board has as much as it has RAM.
+struct TriggeredMemory : TriggeredState {
+  static constexpr std::size_t kHalfWords = 8000;
   std::array<std::uint16_t, kHalfWords> half_word;
 };
 static_assert(std::is_trivial_v<TriggeredMemory>);
@@ -32,18 +37,20 @@ static_assert(std::is_trivial_v<TriggeredMemory>);
 class TriggeredCapture {
  public:
   /// Keeps what it finds, if that is a capture whose trigger came.
-  void adopt(TriggeredMemory& memory) {
+  void adopt(TriggeredState& memory, std::span<std::uint16_t> rows) {
     memory_ = &memory;
+    rows_ = rows;
     const bool is_sound = memory.magic == kMagic && memory.crc == crc_of(memory.request) &&
-                          is_possible(memory.request, hal::kMostAxes) && memory.phase >= TriggerPhase::recording &&
-                          memory.phase <= TriggerPhase::complete;
+                          memory.half_words == rows.size() && is_possible(memory.request, hal::kMostAxes) &&
+                          memory.phase >= TriggerPhase::recording && memory.phase <= TriggerPhase::complete;
     if (is_sound) lay_out(memory.request);
     survived_ = is_sound && memory.next < ring_rows_ && memory.trigger < ring_rows_ && memory.taken <= ring_rows_ &&
                 memory.after <= memory.request.after;
     memory.phase = survived_ ? TriggerPhase::complete : TriggerPhase::idle;
   }
+  void adopt(TriggeredMemory& memory) { adopt(memory, memory.half_word); }
 
-  static bool is_possible(const TriggerRequest& r, std::size_t axes) {
+  bool is_possible(const TriggerRequest& r, std::size_t axes) const {
     CaptureRequest channels;
     channels.channels = r.channels;
     if (channels.words() == 0 || channels.words() > kWordsPerReport || r.every == 0 || r.after == 0) return false;
@@ -53,16 +60,17 @@ class TriggeredCapture {
     const bool names_axis =
         r.axis < axes || (r.axis == kAnyAxis && r.kind == static_cast<std::uint8_t>(TriggerKind::fault));
     if (r.kind >= kTriggerKinds || !names_axis || r.channel >= kChannels || r.falling > 1) return false;
-    const std::uint32_t most = TriggeredMemory::kHalfWords / half_words_of(r);
+    const std::uint32_t most = room() / half_words_of(r);
     return r.after <= most && r.before <= most - r.after;
   }
 
   /// While the control interrupt is shut out; `request` is possible.
   void arm(const TriggerRequest& request) {
-    TriggeredMemory& m = *memory_;
+    TriggeredState& m = *memory_;
     m.request = request;
     m.magic = kMagic;
     m.crc = crc_of(request);
+    m.half_words = room();
     lay_out(request);
     m.next = m.taken = m.trigger = m.after = 0;
     m.counts = 0;
@@ -83,7 +91,7 @@ class TriggeredCapture {
   /// Once a control period, after the axes' steps.
   template <typename Axes>
   [[gnu::noinline]] void take(const Axes& axes) {
-    TriggeredMemory& m = *memory_;
+    TriggeredState& m = *memory_;
     if (m.phase == TriggerPhase::waiting && has_come(axes)) {
       m.phase = TriggerPhase::recording;
       m.counts = axes[m.request.axis == kAnyAxis ? 0 : m.request.axis].telemetry().encoder_counts;
@@ -99,12 +107,12 @@ class TriggeredCapture {
   }
 
   TriggerStatePayload state() const {
-    const TriggeredMemory& m = *memory_;
+    const TriggeredState& m = *memory_;
     TriggerStatePayload state;
     state.phase = static_cast<std::uint8_t>(m.phase);
     state.half_words = static_cast<std::uint8_t>(row_size_);
     state.survived = survived_ ? 1 : 0;
-    state.capacity = TriggeredMemory::kHalfWords;
+    state.capacity = room();
     state.channels = m.request.channels;
     state.wide = m.request.wide;
     state.every = m.request.every;
@@ -120,7 +128,7 @@ class TriggeredCapture {
 
   /// False beyond the end, and while rows still come.
   bool read(std::uint32_t first, TriggeredPayload& payload) const {
-    const TriggeredMemory& m = *memory_;
+    const TriggeredState& m = *memory_;
     if (m.phase != TriggerPhase::complete) return false;
     const std::uint32_t half_words = (rows_before() + m.after) * row_size_;
     if (first >= half_words) return false;
@@ -128,7 +136,7 @@ class TriggeredCapture {
     const std::uint32_t oldest = (m.trigger + ring_rows_ - rows_before()) % ring_rows_;
     for (std::uint32_t i = 0; i < kHalfWordsPerReport && first + i < half_words; ++i) {
       const std::uint32_t row = (oldest + (first + i) / row_size_) % ring_rows_;
-      payload.half_word[i] = m.half_word[row * row_size_ + (first + i) % row_size_];
+      payload.half_word[i] = rows_[row * row_size_ + (first + i) % row_size_];
     }
     return true;
   }
@@ -145,13 +153,15 @@ class TriggeredCapture {
     return count;
   }
 
+  std::uint32_t room() const { return static_cast<std::uint32_t>(rows_.size()); }
+
   void lay_out(const TriggerRequest& request) {
     row_size_ = half_words_of(request);
-    ring_rows_ = TriggeredMemory::kHalfWords / row_size_;
+    ring_rows_ = room() / row_size_;
   }
 
   std::uint32_t rows_before() const {
-    const TriggeredMemory& m = *memory_;
+    const TriggeredState& m = *memory_;
     const std::uint32_t there = m.taken - m.after;
     return there < m.request.before ? there : m.request.before;
   }
@@ -213,8 +223,8 @@ class TriggeredCapture {
 
   template <typename Axes>
   void put_row(const Axes& axes) {
-    TriggeredMemory& m = *memory_;
-    std::uint16_t* out = m.half_word.data() + m.next * row_size_;
+    TriggeredState& m = *memory_;
+    std::uint16_t* out = rows_.data() + m.next * row_size_;
     for (std::size_t axis = 0; axis < Axes::kAxes; ++axis) {
       const std::uint32_t wide = m.request.wide[axis];
       for (std::uint32_t left = m.request.channels[axis]; left != 0; left &= left - 1) {
@@ -233,7 +243,8 @@ class TriggeredCapture {
     if (m.taken < ring_rows_) m.taken = m.taken + 1;
   }
 
-  TriggeredMemory* memory_ = nullptr;
+  TriggeredState* memory_ = nullptr;
+  std::span<std::uint16_t> rows_;
   std::uint32_t row_size_ = 1, ring_rows_ = 1;
   std::int32_t until_next_ = 1;
   std::uint32_t holdoff_ = 0;

@@ -4,12 +4,6 @@
 
 namespace firmware::boards {
 
-namespace {
-[[gnu::section(".capture")]] TriggeredMemory triggered_memory;
-}
-
-TriggeredMemory& Board::capture_memory() { return triggered_memory; }
-
 using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): this file is the chip's
 
 namespace {

@@ -1,8 +1,8 @@
 // The periphery of the axis board, and the two axes' hardware interface on it.
 #pragma once
 
-#include "firmware/app/triggered_capture.hpp"
 #include "firmware/boards/axis-f405/pins.hpp"
+#include "firmware/boards/image/capture_memory.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/survival_record.hpp"
 #include "firmware/boards/image/text_writer.hpp"
@@ -115,7 +115,8 @@ class Board {
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::ParameterFlash& parameter_flash() { return parameter_flash_; }
   /// Survives a reset.
-  TriggeredMemory& capture_memory();
+  TriggeredState& capture_state() { return boards::capture_state(); }
+  std::span<std::uint16_t> capture_rows() { return boards::capture_rows(); }
 
   void begin_stall();
   void end_stall();

@@ -5,6 +5,7 @@
 
 #include "firmware/app/protocol/server.hpp"
 #include "firmware/boards/image/board_scalar.hpp"
+#include "firmware/boards/image/capture_memory.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/image/stack_use.hpp"
 #include "firmware/boards/image/survival_record.hpp"
@@ -25,7 +26,6 @@ namespace {
 constexpr std::uint32_t kClock_Hz = 168'000'000;  // QEMU gives the chip its 168 MHz
 
 [[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
-[[gnu::section(".capture")]] TriggeredMemory triggered_memory;
 hal::qemu::HostStream stream;
 std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's last start
 
@@ -56,7 +56,8 @@ class EmulatedBoard {
   Clock& clock() { return clock_; }
   BoardEnd<hal::qemu::HostStream>& usb() { return usb_; }
   MemoryFlash& parameter_flash() { return flash_; }
-  TriggeredMemory& capture_memory() { return triggered_memory; }
+  TriggeredState& capture_state() { return boards::capture_state(); }
+  std::span<std::uint16_t> capture_rows() { return boards::capture_rows(); }
 
   void set_control_rate(std::uint32_t rate_Hz) {
     period_us_ = 1'000'000 / rate_Hz;
