@@ -46,7 +46,7 @@ TEST_F(CostOfAStep, ExperimentsKeepTheirBudget) {
 
 TEST_F(CostOfAStep, PathsKeepTheirBudget) {
   auto costs = count_instructions("cost-float-m4");
-  EXPECT_LE(costs["both_axes_on_path"].mean, 1500);
+  EXPECT_LE(costs["both_axes_on_path"].worst, 1500);
   EXPECT_GT(costs["both_axes_on_path"].mean, costs["both_axes"].mean + 50) << "nothing was followed";
 }
 

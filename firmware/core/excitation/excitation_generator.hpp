@@ -26,7 +26,6 @@ class ExcitationGenerator {
     const std::int64_t sweep = std::int64_t{plan.last_step} - std::int64_t{plan.step};
     // Half of a 64-bit turn is out of reach: below a quarter turn a sample the difference has 31 bits.
     rate_ = (sweep * (std::int64_t{1} << 31) / plan.samples) * 2;
-    rewind_lines();
   }
 
   /// `turn`: the axis is on its way out of the box, or near its speed.
@@ -97,24 +96,14 @@ class ExcitationGenerator {
     return value;
   }
 
-  constexpr void rewind_lines() {
-    if (plan_->kind != ExcitationKind::multisine) return;
-    for (std::size_t i = 0; i < plan_->count; ++i) line_phase_[i] = plan_->entry[i].second;
-  }
-
   constexpr Scalar next_of_lines() {
-    if (left_ == 0) {
-      rewind_lines();
-      left_ = plan_->period;
-    }
+    if (left_ == 0) left_ = plan_->period;
+    const Turn passed = plan_->period - left_;  // samples; whole turns do not count
     --left_;
     Scalar sum{};
-    const ExcitationEntry<Scalar>* line = plan_->entry.data();
-    for (Turn *phase = line_phase_.data(), *end = phase + plan_->count; phase != end; ++phase, ++line) {
-      const Turn now = *phase;
-      *phase = now + line->first;
-      sum = sum + line->value * quick_sine_of<Scalar>(now);
-    }
+    const ExcitationEntry<Scalar>* const end = plan_->entry.data() + plan_->count;
+    for (const ExcitationEntry<Scalar>* line = plan_->entry.data(); line != end; ++line)
+      sum = sum + line->value * quick_sine_of<Scalar>(line->second + passed * line->first);
     return sum;
   }
 
@@ -135,7 +124,6 @@ class ExcitationGenerator {
   bool is_fading_ = false;
   std::uint64_t phase_ = 0, step_ = 0;  ///< 2^-64 turns
   std::int64_t rate_ = 0;               ///< 2^-64 turns a sample^2
-  std::array<Turn, kExcitationEntries> line_phase_{};
 };
 
 }  // namespace firmware

@@ -45,6 +45,7 @@ class ExcitationRun {
   /// enabled already.
   constexpr void start(const ExcitationPlan<Scalar>& plan) {
     plan_ = &plan;
+    room_ = plan.box.travel_counts - plan.box.travel_counts / 10;
     generator_.start(plan);
     phase_ = ExcitationPhase::opening;
     end_ = ExcitationEnd::none;
@@ -228,8 +229,7 @@ class ExcitationRun {
     const bool is_outward = way_ > 0 ? speed_ > 0 : speed_ < 0;
     const std::int32_t taken = magnitude(way_ - turned_at_);
     const std::int32_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
-    const std::int32_t room = plan_->box.travel_counts - plan_->box.travel_counts / 10;
-    const bool is_far = is_outward && magnitude(way_) + needed > room;
+    const bool is_far = is_outward && magnitude(way_) + needed > room_;
     const std::int32_t ahead = magnitude(2 * speed_ - speed_before_);  // in kSpeedSamples from now
     const bool is_fast = std::int64_t{ahead} * 320 > plan_->box.speed && ahead >= magnitude(speed_);
     const std::int32_t speed = magnitude(speed_);
@@ -277,9 +277,13 @@ class ExcitationRun {
       return;
     }
     if (plan_->ride != Scalar(0)) {
+      // A turn is decided in one sample and asked for in the next: either takes time.
       if (last_ride_ == Scalar(0)) last_ride_ = plan_->ride;
-      if (must_turn(jogs_back(last_ride_))) last_ride_ = Scalar(0) - last_ride_;
-      follow(axis, phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0));
+      const Scalar wanted = phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0);
+      if (wanted != ride_)
+        follow(axis, wanted);
+      else if (must_turn(jogs_back(last_ride_)))
+        last_ride_ = Scalar(0) - last_ride_;
     }
     const Scalar value = generator_.next(false);
     if (plan_->input == ExcitationInput::output) {
@@ -333,6 +337,7 @@ class ExcitationRun {
   std::int64_t start_ = 0;                              ///< counts
   std::int32_t turned_at_ = 0;                          ///< where the axis last went the other way
   std::int32_t way_ = 0;                                ///< from the start
+  std::int32_t room_ = 0;                               ///< that a train or a ride may use
   std::array<std::int32_t, 2 * kSpeedSamples> seen_{};  ///< ways
   std::size_t place_ = 0;
   std::int32_t speed_ = 0, speed_before_ = 0;  ///< counts in kSpeedSamples: the last, and those before

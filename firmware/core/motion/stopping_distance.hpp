@@ -35,7 +35,7 @@ class StoppingDistance {
     const auto ramp_samples = static_cast<std::int64_t>(((speed >> 31) + 1) * reciprocal_ >> exponent_) + 1;
     constexpr std::int64_t kMost = std::int64_t{1} << 30;
     const std::int64_t samples = ramp_samples + jerk_samples_ + 2 * (std::int64_t{delay} + 1);
-    return (static_cast<std::int64_t>(speed >> 32) + 1) * (samples < kMost ? samples : kMost) / 131072 + 1;
+    return ((static_cast<std::int64_t>(speed >> 32) + 1) * (samples < kMost ? samples : kMost) >> 17) + 1;
   }
 
  private:

@@ -35,19 +35,16 @@ class PathClock {
     rate_.take_over(rate);
     target_ = rate;
   }
-  /// Lets the change run out: the rate stays near what it is.
-  constexpr void level_out() {
-    target_ = rate_.run_out_velocity();
-    rate_.set_target(target_);
-  }
+  /// Lets the change run out, at once: the rate stays near what it is. May be asked again in each sample.
+  constexpr void level_out() { set_target(rate_.levelled_velocity()); }
 
   /// Path time of the next sample.
   constexpr Increment next() { return rate_.next(); }
 
   constexpr Increment rate() const { return rate_.velocity(); }
   constexpr bool stands() const { return rate_.at_rest(); }
-  constexpr bool is_steady() const { return rate_.at_target(); }
-  constexpr bool is_slowing() const { return rate_.run_out_velocity() < rate_.velocity(); }
+  constexpr bool is_steady() const { return rate_.is_steady(); }
+  constexpr bool is_slowing() const { return rate_.is_falling(); }
 
   /// Samples of the path that a stop from now on takes at most.
   constexpr std::int64_t way_of_stop() const {

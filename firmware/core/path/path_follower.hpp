@@ -49,13 +49,14 @@ class PathFollower {
                       Increment clock_jerk) {
     mask_ = mask;
     units_ = units;
-    most_acceleration_ = most_acceleration;
     for (std::size_t i = 0; i < axes; ++i) {
       // Nodes stand on a grid; from what lies between two of its points the first sample leads to the grid.
       planned_[i] = start[i];
-      begin_offset_[i] = start[i].fraction & ((Increment{1} << (kFractionBits - units.travel_bits)) - 1);
-      planned_[i].fraction -= begin_offset_[i];
-      last_increment_[i] = seen_[i] = 0;
+      const Increment offset = start[i].fraction & ((Increment{1} << (kFractionBits - units.travel_bits)) - 1);
+      planned_[i].fraction -= offset;
+      seen_[i] = static_cast<std::uint64_t>(offset);
+      most_acceleration_[i] = most_acceleration[i] - (most_acceleration[i] >> 4);
+      last_increment_[i] = 0;
     }
     start_ = start;
     clock_.configure(clock_acceleration, clock_jerk);
@@ -65,10 +66,10 @@ class PathFollower {
     used_.store(0);
     newest_ = {};
     accepted_ = passed_time_ = 0;
-    passed_nodes_ = 0;
+    slack_ = -((with_reserve(clock_.longest_stop()) + 1) << kPathTimeBits);
     time_ = 0;
     ends_at_rest_ = true;
-    is_complete_ = is_held_ = false;
+    is_complete_ = is_held_ = is_settled_ = false;
     end_ = PathEnd::none;
     phase_ = PathPhase::open;
   }
@@ -77,7 +78,7 @@ class PathFollower {
   constexpr bool start() {
     if (phase_ != PathPhase::open || accepted_ == 0) return false;
     phase_ = PathPhase::running;
-    clock_.begin(wanted_rate());
+    clock_.begin(is_ample() ? wanted_rate() : 0);
     return true;
   }
 
@@ -87,11 +88,18 @@ class PathFollower {
     if (phase_ != PathPhase::running) return;
     phase_ = PathPhase::stopping;
     end_ = why;
+    is_settled_ = false;
   }
 
-  constexpr void hold(bool held) { is_held_ = held; }
+  constexpr void hold(bool held) {
+    is_held_ = held;
+    is_settled_ = false;
+  }
   /// 0..kOneCount.
-  constexpr void override_rate(Increment rate) { override_ = rate < 0 ? 0 : rate > kOneCount ? kOneCount : rate; }
+  constexpr void override_rate(Increment rate) {
+    override_ = rate < 0 ? 0 : rate > kOneCount ? kOneCount : rate;
+    is_settled_ = false;
+  }
 
   /// The next node; `last`: nothing comes after it. `is_inside(axis, counts)` says whether an axis may go there.
   template <typename IsInside>
@@ -114,6 +122,7 @@ class PathFollower {
     ring_[(ring_first_ + ring_count_) % nodes] = node;
     ++ring_count_;
     accepted_ += node.duration;
+    slack_ += node.duration;
     ends_at_rest_ = node.is_at_rest();
     is_complete_ = last;
     return Refusal::none;
@@ -150,7 +159,7 @@ class PathFollower {
     return static_cast<std::uint32_t>((passed_time_ >> kPathTimeBits) + (time_ >> kFractionBits));
   }
   constexpr std::uint32_t ahead() const { return static_cast<std::uint32_t>(time_ahead() >> kPathTimeBits); }
-  constexpr std::uint32_t passed_nodes() const { return passed_nodes_; }
+  constexpr std::uint32_t passed_nodes() const { return used_.load(); }
 
   // The control interrupt.
 
@@ -159,13 +168,12 @@ class PathFollower {
   constexpr void before_step(Group& group) {
     for (std::size_t i = 0; i < axes; ++i)
       if (is_led(i) && group[i].state() != SupervisorState::enabled) return leave(group);
-    set_rate();
-    const Increment rate = clock_.next();
-    const bool has_ended = advance(rate);
-    lead(group);
-    if (has_ended)
+    time_ += next_rate();
+    const PathPiece<axes>* piece = find_piece();
+    lead(group, piece);
+    if (piece == nullptr && is_complete_ && passed_time_ == accepted_)
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::completed);
-    else if (clock_.stands() && (phase_ == PathPhase::stopping || is_starved_))
+    else if (!is_settled_ && clock_.stands() && (phase_ == PathPhase::stopping || is_starved_))
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::starved);
   }
 
@@ -193,71 +201,79 @@ class PathFollower {
     return static_cast<std::int64_t>(accepted_ - passed_time_) - (time_ >> (kFractionBits - kPathTimeBits));
   }
 
-  constexpr void set_rate() {
-    const std::int64_t ahead = time_ahead() >> kPathTimeBits;
-    const bool is_ample = ends_at_rest_ || ahead > 2 * clock_.longest_stop();
-    if (is_ample && clock_.is_steady() && clock_.rate() == wanted_rate()) {  // nearly always
-      is_starved_ = false;
-      return;
+  /// While an axis needs all its acceleration itself, a stop waits.
+  static constexpr std::int64_t with_reserve(std::int64_t way_of_stop) { return way_of_stop + way_of_stop / 2; }
+
+  /// The nodes last for a stop, whatever the rate.
+  constexpr bool is_ample() const { return ends_at_rest_ || time_ >> (kFractionBits - kPathTimeBits) <= slack_; }
+
+  constexpr Increment next_rate() {
+    const bool is_enough = is_ample();
+    if (is_settled_ && is_enough) return clock_.rate();  // nearly always
+    bool is_urgent = false;
+    is_starved_ = false;
+    if (!is_enough) {
+      const std::int64_t ahead = time_ahead() >> kPathTimeBits, way = clock_.way_of_stop();
+      is_starved_ = ahead <= with_reserve(way);
+      is_urgent = ahead <= way;
     }
-    const std::int64_t way = clock_.way_of_stop();
-    is_starved_ = !ends_at_rest_ && ahead <= 2 * way;
-    const bool is_urgent = !ends_at_rest_ && ahead <= way;
+    const Increment wanted = wanted_rate();
     // What the clock takes from a fast axis comes on top of what the path takes from it.
     if (!clock_.is_steady() && is_loaded_ && !is_urgent)
       clock_.level_out();
     else
-      clock_.set_target(is_starved_ ? 0 : wanted_rate());
+      clock_.set_target(is_starved_ ? 0 : wanted);
+    const Increment rate = clock_.next();
+    is_settled_ = clock_.is_steady() && rate == wanted;
+    return rate;
   }
 
   constexpr Increment wanted_rate() const { return phase_ == PathPhase::stopping || is_held_ ? 0 : override_; }
 
-  /// True at the end of the last node.
-  constexpr bool advance(Increment rate) {
-    time_ += rate;
+  /// The piece that time_ lies in; none at the end of what there is.
+  constexpr const PathPiece<axes>* find_piece() {
     const std::uint32_t made = made_.load(std::memory_order_acquire);
     std::uint32_t used = used_.load(std::memory_order_relaxed);
-    has_piece_ = used != made;
     // A piece lasts a sample at least, and the clock runs no faster: two ends at most.
-    for (int k = 0; k < 2 && has_piece_; ++k) {
+    for (int k = 0; k < 3 && used != made; ++k) {
       const PathPiece<axes>& piece = pieces_[used % kPrepared];
-      if (time_ < piece.duration()) break;
+      if (time_ < piece.duration()) return &piece;
       time_ -= piece.duration();
-      passed_time_ += static_cast<std::uint64_t>(piece.duration() >> (kFractionBits - kPathTimeBits));
-      for (std::size_t i = 0; i < axes; ++i) seen_[i] -= piece.whole_travel(i);
-      ++used;
-      ++passed_nodes_;
-      has_piece_ = used != made;
+      const auto passed = piece.duration() >> (kFractionBits - kPathTimeBits);
+      passed_time_ += static_cast<std::uint64_t>(passed);
+      slack_ -= passed;
+      for (std::size_t i = 0; i < axes; ++i)
+        seen_[i] -= static_cast<std::uint64_t>(piece.whole_travel(i)) << kToIncrement;
+      used_.store(++used, std::memory_order_release);
     }
-    used_.store(used, std::memory_order_release);
-    if (has_piece_) return false;
-    time_ = 0;  // at the end of what there is
-    return is_complete_ && passed_time_ == accepted_;
+    time_ = 0;
+    return nullptr;
   }
 
   template <typename Group>
-  constexpr void lead(Group& group) {
-    const PathPiece<axes>* piece = has_piece_ ? &pieces_[used_.load(std::memory_order_relaxed) % kPrepared] : nullptr;
+  constexpr void lead(Group& group, const PathPiece<axes>* piece) {
     const std::uint32_t share = piece != nullptr ? piece->share(time_) : 0;
+    const bool is_slowing = clock_.is_slowing();
     is_loaded_ = false;
+#pragma GCC unroll 4
     for (std::size_t i = 0; i < axes; ++i) {
       if (!is_led(i)) continue;
-      const std::int64_t here = piece != nullptr ? piece->travel_at(i, share) : 0;
-      const Increment increment = ((here - seen_[i]) << kToIncrement) - begin_offset_[i];
+      const std::int64_t travel = piece != nullptr ? piece->travel_at(i, share) : 0;
+      const std::uint64_t here = static_cast<std::uint64_t>(travel) << kToIncrement;
+      const auto increment = static_cast<Increment>(here - seen_[i]);
       seen_[i] = here;
-      begin_offset_[i] = 0;
-      if (!clock_.is_steady()) note_load(i, increment);
+      if (!is_settled_) note_load(i, increment, is_slowing);
       last_increment_[i] = increment;
       group[i].lead(increment);
     }
   }
 
   /// Whether the clock's change adds to an acceleration that is near the axis's limit.
-  constexpr void note_load(std::size_t i, Increment increment) {
+  constexpr void note_load(std::size_t i, Increment increment, bool is_slowing) {
     const Increment change = increment - last_increment_[i];
-    const Increment most = most_acceleration_[i] - (most_acceleration_[i] >> 4);
-    const bool is_with_motion = (change > 0) == (increment > 0);
-    if ((change > most || change < -most) && is_with_motion != clock_.is_slowing()) is_loaded_ = true;
+    const auto most = static_cast<std::uint64_t>(most_acceleration_[i]);
+    if (static_cast<std::uint64_t>(change) + most <= 2 * most) return;
+    if (((change ^ increment) < 0) == is_slowing) is_loaded_ = true;
   }
 
   unsigned mask_ = 0;
@@ -266,16 +282,16 @@ class PathFollower {
   PathEnd end_ = PathEnd::none;
   bool is_complete_ = false;   ///< the last node is there
   bool ends_at_rest_ = false;  ///< the newest node is at rest
-  bool is_held_ = false, is_starved_ = false, is_loaded_ = false, has_piece_ = false;
+  bool is_held_ = false, is_starved_ = false, is_loaded_ = false;
+  bool is_settled_ = false;  ///< the clock keeps its rate, which is the wanted one
   Increment override_ = kOneCount;
   PathClock clock_;
   std::uint64_t accepted_ = 0, passed_time_ = 0;  ///< 2^-kPathTimeBits samples
-  std::uint32_t passed_nodes_ = 0;
-  Increment time_ = 0;                     ///< in the piece, kOneCount a sample
-  std::array<std::int64_t, axes> seen_{};  ///< where the axes are in the piece, 2^-32 counts
+  std::int64_t slack_ = 0;  ///< time in the piece until a stop might have to begin, 2^-kPathTimeBits samples
+  Increment time_ = 0;      ///< in the piece, kOneCount a sample
+  std::array<std::uint64_t, axes> seen_{};  ///< where the axes are in the piece, 2^-48 counts, modulo 2^64
   std::array<Increment, axes> last_increment_{};
-  std::array<Increment, axes> most_acceleration_{};  ///< of the axes' limits
-  std::array<Increment, axes> begin_offset_{};       ///< of the start from the nodes' grid, until the first sample
+  std::array<Increment, axes> most_acceleration_{};  ///< near the axes' limits
   std::array<CountPosition, axes> start_{}, planned_{};
   Ends newest_{}, prepared_to_{};
   std::size_t ring_first_ = 0, ring_count_ = 0;

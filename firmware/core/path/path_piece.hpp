@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <optional>
+#include <type_traits>
 
 #include "firmware/core/arithmetic/count_position.hpp"
 #include "firmware/core/path/path_node.hpp"
@@ -12,9 +13,9 @@ namespace firmware {
 
 namespace path_piece {
 
-/// Counts with 32 binary places; positions within a piece.
-inline constexpr int kBits = 32;
-/// 2^24 counts: sums of a polynomial's coefficients then fit 64 bits.
+/// Counts with 28 binary places; positions within a piece.
+inline constexpr int kBits = 28;
+/// 2^24 counts: coefficients for the powers of half the share, and their sums, then fit 64 bits (below 2^62).
 inline constexpr std::int64_t kMost = std::int64_t{1} << (24 + kBits);
 
 /// value * factor * 2^-shift, downwards, 0 < shift <= 32; the result fits.
@@ -23,6 +24,15 @@ constexpr std::int64_t scaled(std::int64_t value, std::uint32_t factor, int shif
   const std::int64_t high = value >> 32;
   const std::uint64_t of_low = std::uint64_t{low} * factor;
   return ((high * factor) << (32 - shift)) + static_cast<std::int64_t>(of_low >> shift);
+}
+
+/// value * share / 2^32, downwards; `share` in 2^-31, below 1. Two long multiplications, if the compiler is kept from
+/// seeing that the upper word comes from a longer one: then it takes four.
+constexpr std::int64_t half_of_share(std::int64_t value, std::uint32_t share) {
+  auto upper = static_cast<std::int32_t>(value >> 32);
+  if (!std::is_constant_evaluated()) asm("" : "+r"(upper));
+  const std::uint64_t lower = std::uint64_t{static_cast<std::uint32_t>(value)} * share;
+  return std::int64_t{upper} * static_cast<std::int32_t>(share) + static_cast<std::uint32_t>(lower >> 32);
 }
 
 constexpr std::int64_t shifted(std::int64_t value, int left) { return left >= 0 ? value << left : value >> -left; }
@@ -80,6 +90,7 @@ class PathPiece {
                   ((3 * e.begin_acceleration - 2 * e.end_acceleration) >> 1);
       p.term[4] =
           6 * e.travel - 3 * (e.begin_velocity + e.end_velocity) - ((e.begin_acceleration - e.end_acceleration) >> 1);
+      for (std::size_t power = 0; power < p.term.size(); ++power) p.term[power] <<= power + 1;
     }
     return piece;
   }
@@ -87,24 +98,27 @@ class PathPiece {
   /// Samples, as kOneCount a sample.
   constexpr Increment duration() const { return duration_; }
 
-  /// The share of the duration that has passed, in 2^-32. 0 <= time < duration().
+  /// The share of the duration that has passed, in 2^-31. 0 <= time < duration().
   constexpr std::uint32_t share(Increment time) const {
-    const std::uint64_t product = std::uint64_t{static_cast<std::uint32_t>(time >> shift_)} * reciprocal_ >> 31;
-    return product >> 32 != 0 ? 0xFFFF'FFFFu : static_cast<std::uint32_t>(product);
+    // As two words: shift_ lies in 17..31.
+    const auto bits = static_cast<std::uint64_t>(time);
+    const std::uint32_t scaled = static_cast<std::uint32_t>(bits) >> shift_ | static_cast<std::uint32_t>(bits >> 32)
+                                                                                  << (32 - shift_);
+    return static_cast<std::uint32_t>(std::uint64_t{scaled} * reciprocal_ >> 32);
   }
 
-  /// Of an axis from where the piece begins, 2^-32 counts.
+  /// Of an axis from where the piece begins, 2^-kBits counts.
   constexpr std::int64_t travel_at(std::size_t axis, std::uint32_t share) const {
     const Polynomial& p = axis_[axis];
     std::int64_t sum = p.term[4];
-    for (int i = 3; i >= 0; --i) sum = path_piece::scaled(sum, share, 32) + p.term[static_cast<std::size_t>(i)];
-    return path_piece::scaled(sum, share, 32);
+    for (int i = 3; i >= 0; --i) sum = p.term[static_cast<std::size_t>(i)] + path_piece::half_of_share(sum, share);
+    return path_piece::half_of_share(sum, share);
   }
   constexpr std::int64_t whole_travel(std::size_t axis) const { return axis_[axis].travel; }
 
  private:
   struct Polynomial {
-    std::array<std::int64_t, 5> term{};  ///< of the share's powers 1 to 5
+    std::array<std::int64_t, 5> term{};  ///< of the powers 1 to 5 of half the share
     std::int64_t travel = 0;
   };
   Increment duration_ = 0;

@@ -89,6 +89,7 @@ class AxisGroup {
   template <typename Step>
   constexpr void step_axis(std::size_t index, Step step) {
     step();
+    if (axes_[index].has_looked_at_index() && index + 1 < kAxes) axes_[index + 1].leave_index_for_later();
     if (!axes_[index].take_new_fault()) return;
     for (std::size_t other = 0; other < kAxes; ++other)
       if (other != index && axes_[other].is_or_will_be_on()) must_stop_[other] = true;

@@ -129,6 +129,9 @@ class SupervisedAxis {
 
   /// For steps of several axes, which are read at one instant.
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
+  /// In its last step it looked at the index: the others of a group do that in a sample of their own.
+  constexpr bool has_looked_at_index() const { return until_index_ == kIndexSamples; }
+  constexpr void leave_index_for_later() { until_index_ = until_index_ <= 1 ? 2 : until_index_; }
   /// As of Axis, before a step that comes late.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
@@ -217,8 +220,10 @@ class SupervisedAxis {
     for (InputFilter* input : {&drive_fault_, &drive_unready_, &home_switch_})
       input->configure(parameters.monitors.input_samples);
     const MotionLimits limits = motion_limits(parameters);
-    fastest_ = limits.velocity + (limits.velocity >> 4);  // rounding of a path at its limit is no fault
-    largest_change_ = limits.acceleration * 8;            // corners of a path may be sharper than ramps
+    fastest_ = static_cast<std::uint32_t>((limits.velocity + (limits.velocity >> 4)) >> 32) + 2;  // 2: rounding
+    const Increment sharpest =
+        limits.acceleration < kMostMotion / 8 ? 8 * limits.acceleration : kMostMotion;  // corners
+    largest_change_ = static_cast<std::uint32_t>(sharpest >> 32) + 2;
     longest_stop_ = longest_ramp(limits) + kLongestSettling;
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
@@ -244,11 +249,13 @@ class SupervisedAxis {
     still_samples_ = 0;
   }
 
-  /// Of the whole reference: the axis's own, as it was in the last sample, and the increment on top.
+  /// Of the whole reference: the axis's own, as it was in the last sample, and the increment on top. By the upper
+  /// words, 2^-16 counts.
   constexpr bool is_within_limits(Increment increment) const {
-    const Increment change = increment - last_increment_;
-    const Increment whole = axis_.newest_increment() + change;
-    return whole <= fastest_ && whole >= -fastest_ && change <= largest_change_ && change >= -largest_change_;
+    const auto upper = [](Increment value) { return static_cast<std::uint32_t>(value >> 32); };
+    const std::uint32_t change = upper(increment) - upper(last_increment_);
+    const std::uint32_t whole = upper(axis_.newest_increment()) + change;
+    return whole + fastest_ <= 2 * fastest_ && change + largest_change_ <= 2 * largest_change_;
   }
 
   constexpr bool request(SupervisorEvent event) {
@@ -472,8 +479,7 @@ class SupervisedAxis {
   bool is_fault_new_ = false;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
-  Increment fastest_ = 0;
-  Increment largest_change_ = 0;
+  std::uint32_t fastest_ = 0, largest_change_ = 0;  ///< of a path's increments, upper words
   Increment last_increment_ = 0;
   Increment led_increment_ = 0;
   bool is_led_ = false;

@@ -43,6 +43,8 @@ void print_laws() {
                  costs["captured_row"].mean, costs["captured_row"].worst);
       fmt::print("{:<28}both axes on a path: {}, {} at worst\n", "", costs["both_axes_on_path"].mean,
                  costs["both_axes_on_path"].worst);
+      fmt::print("{:<28}x excited while y is on a path: {}, {} at worst\n", "", costs["excited_and_on_path"].mean,
+                 costs["excited_and_on_path"].worst);
     }
   }
 }

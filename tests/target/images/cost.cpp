@@ -249,20 +249,33 @@ firmware::PathFollower<Axes::kAxes, 32> path;
   path.before_step(axes);
   step_both();
 }
+[[gnu::noinline]] void step_excited_and_on_path() {
+  excitation.before_step(axes[0]);
+  path.before_step(axes);
+  step_both();
+}
 
-/// Back and forth in pieces of ten samples, each from speed to speed, and a feed hold on the way: every step of the
-/// clock.
-void count_path() {
+/// All axes are at rest afterwards.
+void end_motion() {
   excitation.stop();
+  path.stop();
   for (int period = 0; period < 2000; ++period) {
     for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
     if (excitation.is_active()) excitation.before_step(axes[0]);
+    if (path.is_moving()) path.before_step(axes);
     step_both();
   }
+}
+
+/// Back and forth in pieces of ten samples, each from speed to speed, and a feed hold on the way: every step of the
+/// clock.
+template <typename Step>
+void count_path(const char* name, unsigned mask, Step step) {
   constexpr firmware::PathUnits kUnits{16, 24, 32};
   const firmware::Increment acceleration = firmware::motion_limits(kParameters[0]).acceleration;
-  path.open(3, kUnits, {axes[0].leading(), axes[1].leading()}, {acceleration, acceleration}, firmware::kOneCount / 125,
-            firmware::kOneCount / 5000);
+  path.open(mask, kUnits, {axes[0].leading(), axes[1].leading()}, {acceleration, acceleration},
+            firmware::kOneCount / 125, firmware::kOneCount / 5000);
+  path.hold(false);
   constexpr std::int32_t kPeriod = 64, kSpeed = 40;  // pieces, counts a sample
   Cost cost;
   std::int32_t piece = 0, speed = 0;
@@ -284,10 +297,20 @@ void count_path() {
     if (period == 1500) path.hold(true);
     if (period == 2000) path.hold(false);
     for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
-    cost.add(count([] { step_both_on_path(); }));
+    cost.add(count(step));
   }
   if (!path.is_moving()) hal::qemu::exit_emulator(2);
-  report("both_axes_on_path", cost);
+  report(name, cost);
+}
+
+/// After count_experiments().
+void count_paths() {
+  end_motion();
+  count_path("both_axes_on_path", 3, step_both_on_path);
+  end_motion();
+  start_multisine();
+  count_path("excited_and_on_path", 2, step_excited_and_on_path);
+  if (!excitation.is_active()) hal::qemu::exit_emulator(3);
 }
 
 }  // namespace
@@ -306,7 +329,7 @@ extern "C" [[noreturn]] void run_board() {
   count_filters();
   count_steps();
   count_experiments();
-  count_path();
+  count_paths();
   const bool ran = axes[0].telemetry().enabled && axes[1].telemetry().enabled;
   hal::qemu::exit_emulator(ran ? 0 : 1);
 }

@@ -1,0 +1,103 @@
+// What the path clock adds to the axes' motion while it slows down and gains speed: in feed holds, at other feeds, and
+// where nodes fail to come.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "host/path/path_words.hpp"
+#include "tests/host/path/random_programs.hpp"
+
+namespace {
+
+using namespace path_test;  // NOLINT(google-build-using-namespace)
+
+firmware::Increment increment(double value, int samples_power) {
+  return static_cast<firmware::Increment>(
+      std::ldexp(value / kCount_mm / std::pow(kRate_Hz, samples_power), firmware::kFractionBits));
+}
+
+enum class Disturbance { hold, override, starvation };
+
+/// With the axes' limits and the clock's shares of them, as the board opens a path (PathService::open).
+struct Disturbed {
+  std::vector<PathPoint> points{3, PathPoint::Zero()};
+  firmware::PathEnd end = firmware::PathEnd::none;
+};
+Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& numbers) {
+  const host::PathScale scale{{0, 1}, {kCount_mm, kCount_mm}, {1.0, 1.0}, kRate_Hz};
+  const host::PathWords words = path_words(path, scale, units_of(path, scale), {{}, {}});
+  auto follower = std::make_unique<firmware::PathFollower<2, 400>>();
+  const firmware::Increment most = increment(kAcceleration, 2);
+  follower->open(
+      3, words.units, {}, {most, most},
+      static_cast<firmware::Increment>(0.75 * kAcceleration / kVelocity / kRate_Hz * firmware::kOneCount),
+      static_cast<firmware::Increment>(0.25 * kJerk / kVelocity / kRate_Hz / kRate_Hz * firmware::kOneCount));
+  follower->override_rate(firmware::kOneCount);
+  LedAxes axes;
+  Disturbed seen;
+  std::size_t sent = 0;
+  // Starving: so many nodes come, and no more.
+  const std::size_t most_nodes =
+      what == Disturbance::starvation ? 1 + numbers() % words.nodes.size() : words.nodes.size();
+  std::uniform_int_distribution<int> pause(1, 400);
+  int until_next = pause(numbers);
+  bool held = false;
+  for (int k = 0; k < 400'000 && (k == 0 || follower->is_moving()); ++k) {
+    for (; sent < most_nodes && follower->room() > 0; ++sent) {
+      const auto& word = words.nodes[sent];
+      EXPECT_EQ(follower->push({word.duration, {word.axis[0], word.axis[1]}}, sent + 1 == words.nodes.size(),
+                               [](std::size_t, std::int64_t) { return true; }),
+                firmware::Refusal::none);
+    }
+    follower->prepare();
+    if (k == 0) follower->start();
+    if (--until_next == 0) {
+      until_next = pause(numbers);
+      held = !held;
+      if (what == Disturbance::hold) follower->hold(held);
+      if (what == Disturbance::override)
+        follower->override_rate(firmware::kOneCount / 8 * static_cast<int>(1 + numbers() % 8));
+    }
+    follower->before_step(axes);
+    seen.points.emplace_back(axes[0].mm(), axes[1].mm(), 0.0);
+  }
+  seen.points.insert(seen.points.end(), 3, seen.points.back());
+  seen.end = follower->end();
+  return seen;
+}
+
+class ThePathClock : public testing::TestWithParam<Disturbance> {};
+
+/// Catches a clock that runs backwards, and one that does not see what the path takes from an axis. More of them:
+/// AXIS_PATH_PROGRAMS=10000, of `make soak`.
+TEST_P(ThePathClock, TakesLittleBeyondTheAxesLimitsAndLeavesNoPath) {
+  const char* wanted = std::getenv("AXIS_PATH_PROGRAMS");
+  const int programs = wanted != nullptr ? std::atoi(wanted) : 40;
+  Seen worst;
+  for (int seed = 1; seed <= programs && !HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 numbers(static_cast<std::uint64_t>(seed));
+    const auto moves = random_program(numbers);
+    const Disturbed done = run(plan_path(moves, options()), GetParam(), numbers);
+    const Seen seen = look_at(done.points, moves);
+    EXPECT_LE(seen.velocity, 1.0 + 1e-6);
+    EXPECT_LE(seen.off_counts, 1.0 + moves.front().tolerance_mm / kCount_mm);
+    worst = {std::max(worst.velocity, seen.velocity), std::max(worst.acceleration, seen.acceleration),
+             std::max(worst.jerk, seen.jerk), std::max(worst.off_counts, seen.off_counts)};
+    if (GetParam() != Disturbance::starvation) {
+      EXPECT_EQ(done.end, firmware::PathEnd::completed);
+      EXPECT_LT((done.points.back() - moves.back().curve.end()).norm(), 0.5 * kCount_mm);
+    }
+  }
+  // What the clock takes from a fast axis comes on top of what the path takes from it in the same sample.
+  EXPECT_LE(worst.acceleration, 1.1);
+  EXPECT_LE(worst.jerk, 1.3);
+  RecordProperty("worst_acceleration", std::to_string(worst.acceleration));
+  RecordProperty("worst_jerk", std::to_string(worst.jerk));
+}
+
+INSTANTIATE_TEST_SUITE_P(Disturbed, ThePathClock,
+                         testing::Values(Disturbance::hold, Disturbance::override, Disturbance::starvation));
+
+}  // namespace
