@@ -28,7 +28,7 @@ std::string number(double value) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string toml_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\')
@@ -100,7 +100,7 @@ void append_curve(const sim::EffectEntry& entry, const sim::EffectInfo& info, si
     if (const auto interval = entry.ci95.find(sim::numbered_id("value", static_cast<double>(n)));
         interval != entry.ci95.end())
       deviations.push_back(0.5 * (interval->second[1] - interval->second[0]) / kNormal95);
-  fmt::format_to(std::back_inserter(text), "over = {}\n{} = {}\n{} = {}\n", quoted(entry.over),
+  fmt::format_to(std::back_inserter(text), "over = {}\n{} = {}\n{} = {}\n", toml_string(entry.over),
                  info.parameter("knot")->key(kind), list(curve.knots()), info.parameter("value")->key(kind),
                  list(curve.values()));
   if (deviations.size() == curve.values().size())
@@ -126,14 +126,14 @@ void append_effect(const sim::EffectEntry& entry, sim::DriveKind kind, std::stri
     for (const std::string& field : fields_of(entry, id, parameter.key(kind))) fmt::format_to(out, "{}\n", field);
   }
   if (info->periodic && in_a_list) append_harmonics(entry, *info, kind, text);
-  if (!entry.from.empty()) fmt::format_to(out, "from = {}\n", quoted(entry.from));
+  if (!entry.from.empty()) fmt::format_to(out, "from = {}\n", toml_string(entry.from));
 }
 
 }  // namespace
 
 std::string format_model(const sim::DriveDescription& model) {
   std::string text = "format = \"axis-model/1\"\n";
-  if (!model.name.empty()) text += fmt::format("name = {}\n", quoted(model.name));
+  if (!model.name.empty()) text += fmt::format("name = {}\n", toml_string(model.name));
   append_data_sheet(model.data, text);
   for (const sim::EffectEntry& entry : model.effects) append_effect(entry, model.data.kind, text);
   return text;
