@@ -46,9 +46,22 @@ struct Page {
     return kinds;
   }
 
+  /// An effect, or the group of those that these motions do not tell from it.
+  std::string alike(const std::string& kind) const {
+    if (!state.at("decided").is_array())
+      for (const auto& alternatives : state.at("verdict").at("alternatives")) {
+        const auto group = alternatives.get<std::vector<std::string>>();
+        if (std::ranges::find(group, kind) == group.end()) continue;
+        std::vector<std::string> titles;
+        for (const std::string& one : group) titles.push_back(title_of(one));
+        return fmt::format("one of {}", fmt::join(titles, ", "));
+      }
+    return title_of(kind);
+  }
+
   std::string cause() const {
     std::vector<std::string> titles;
-    for (const std::string& kind : added()) titles.push_back(title_of(kind));
+    for (const std::string& kind : added()) titles.push_back(alike(kind));
     if (!titles.empty()) return fmt::format("{}", fmt::join(titles, " and "));
     const auto& verdict = state.at("verdict");
     const std::string status = verdict["status"];

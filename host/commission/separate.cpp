@@ -57,22 +57,29 @@ class Separation {
   void find_rivals() {
     const Computing computing(session_);
     const nlohmann::json diagnosis = session_.folder().read_json("diagnosis.json");
-    const auto group = diagnosis.at("verdict").at("effects").get<std::vector<std::string>>();
+    const auto effects = diagnosis.at("verdict").at("effects").get<std::vector<std::string>>();
     const auto groups = diagnosis.at("verdict").at("alternatives").get<std::vector<std::vector<std::string>>>();
-    const auto is_open = [&](const std::string& kind) {
-      const auto has = [&](const std::vector<std::string>& list) {
-        return std::ranges::find(list, kind) != list.end();
-      };
-      return has(group) || std::ranges::any_of(groups, has);
+    const bool is_ambiguous = diagnosis.at("verdict").at("status") == status_name(Status::ambiguous);
+    const auto has = [](const std::vector<std::string>& list, const std::string& kind) {
+      return std::ranges::find(list, kind) != list.end();
     };
     std::vector<std::vector<std::string>> kinds;
     std::vector<double> believed;
     for (const auto& candidate : diagnosis.at("candidates")) {
       const auto names = candidate.at("kinds").get<std::vector<std::string>>();
-      if (names.size() != 1 || !is_open(names.front())) continue;
+      const auto is_open = [&](const auto& group) { return has(group, names.front()); };
+      if (!is_ambiguous || names.size() != 1 || !(is_open(effects) || std::ranges::any_of(groups, is_open))) continue;
       kinds.push_back(names);
       believed.push_back(candidate.at("probability"));
     }
+    // Something is missing for sure, and one of its effects stands for others that look alike.
+    if (!is_ambiguous && !groups.empty())
+      for (const std::string& kind : groups.front()) {
+        kinds.push_back({kind});
+        believed.push_back(1.0);
+        for (const std::string& effect : effects)
+          if (!has(groups.front(), effect)) kinds.back().push_back(effect);
+      }
     if (kinds.size() < 2) return;
     rivals_ = fit_rivals(model_, all_, kinds);
     const double sum = std::accumulate(believed.begin(), believed.end(), 0.0);
@@ -150,7 +157,8 @@ CommissionStepResult separate(CommissionSession& session) {
   folder.put("verdict", verdict);
   folder.put("decided", nullptr);
   folder.put("runs", 0);
-  if (verdict.at("status") != status_name(Status::ambiguous)) return {{}, "Nothing is left to separate."};
+  if (verdict.at("status") != status_name(Status::ambiguous) && verdict.at("alternatives").empty())
+    return {{}, "Nothing is left to separate."};
   return Separation(session, read_model(folder.require("model.toml", "friction"))).run();
 }
 

@@ -116,6 +116,9 @@ def answer(result):
     hidden, verdict = set(result["hides"]), result["verdict"]
     if result["added"]:
         found = set(result["added"])
+        for group in map(set, verdict["alternatives"]):  # said to look alike, and left open
+            if found & group and hidden & group:
+                found = (found - group) | (hidden & group)
         # Every machine's friction falls with speed: to name it where the ladder did not show it is right, too.
         return " + ".join(sorted(found)), found - {"stribeck"} == hidden
     groups = [set(group) for group in verdict["alternatives"]]
