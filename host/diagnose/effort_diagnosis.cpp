@@ -56,7 +56,7 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
       100.0 * screen.base.validate);
   if (screen.chosen.empty()) {
     verdict.status = Status::unexplained;
-    verdict.explanation += " No effect of the catalogue takes a tenth of that on training and on validation data.";
+    verdict.explanation += " No effect of the catalogue takes its part of that on training and on validation data.";
     if (!screen.steps.empty() && !screen.steps.front().empty()) {
       const ScreenedModel& closest = screen.steps.front().front();
       verdict.explanation +=
@@ -255,6 +255,7 @@ void name_coordinate(Diagnosis& diagnosis) {
   if (verdict.coordinate == curve->over) return;
   verdict.coordinate = curve->over;
   verdict.where = taken == none ? "over all of it" : taken->where;
+  verdict.explanation += fmt::format(" So it goes with {}.", spaced(curve->over));
 }
 
 nlohmann::json effort_screen_json(const EffortScreen& screen) {
