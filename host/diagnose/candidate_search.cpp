@@ -39,6 +39,11 @@ constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom
 constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
 constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
+/// Of the starts round a finalist, where a serious fit of each would cost too much: enough to see which valley is deep.
+constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
+constexpr std::size_t kBestOfTryout = 4;
+/// On top of a drive that takes many small steps every candidate does: each gets this part of its budget there.
+constexpr double kCostlyPart = 0.4;
 /// Passes that a budget must hold for a fit to get anywhere: six slopes of some eight parameters.
 constexpr double kLeastPasses = 50.0;
 
@@ -247,9 +252,19 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   }
   for (const sim::DriveDescription& base : bases)
     if (std::optional<sim::DriveDescription> even = with_even_fading(base)) starts.push_back(*std::move(even));
-  std::vector<FitResult> fits(starts.size());
-  for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], set, kSeriousFit); });
-  return std::ranges::min_element(fits, {}, &FitResult::robust)->model;
+  const auto fitted = [&starts](const RecordSet& on, const FitOptions& options) {
+    std::vector<FitResult> fits(starts.size());
+    for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_model(starts[k], on, options); });
+    std::ranges::stable_sort(fits, {}, &FitResult::robust);
+    return fits;
+  };
+  const RecordSet few = affordable(set, model, kTryout);
+  if (few.stride > set.stride && starts.size() > kBestOfTryout) {
+    const std::vector<FitResult> tryouts = fitted(few, kTryout);
+    starts = {model};
+    for (std::size_t k = 0; k + 1 < kBestOfTryout; ++k) starts.push_back(tryouts[k].model);
+  }
+  return fitted(set, kSeriousFit).front().model;
 }
 
 }  // namespace
@@ -275,6 +290,10 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   const RecordSet coarse = thinned(training, effort.coarse_windows);
   const RecordSet medium = thinned(training, effort.medium_windows);
   const RecordSet last = thinned(training, effort.final_windows);
+  const auto budgeted = [costly = needs_own_floors(model)](FitOptions options) {
+    if (costly) options.most_steps *= kCostlyPart;
+    return options;
+  };
   std::vector<std::vector<Start>> starts_of(infos.size());
   for_each_in_parallel(infos.size(), [&](std::size_t k) {
     for (sim::DriveDescription& start : starting_models(*infos[k], model, training))
@@ -296,7 +315,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     for_each_in_parallel(list.size(), [&](std::size_t k) {
       // What needed a scan on many windows would be lost on a few.
       FitOptions own = options;
-      if (list[k].scanned) own.most_steps = std::max(own.most_steps, kSeriousFit.most_steps);
+      if (list[k].scanned) own.most_steps = std::max(own.most_steps, budgeted(kSeriousFit).most_steps);
       fit_start(list[k], model, list[k].scanned ? medium : set, base_error, own);
       report();
     });
@@ -305,7 +324,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   for_each_in_parallel(starts.size(), [&](std::size_t k) {
     if (starts[k].info->periodic) starts[k].model = fit_model(starts[k].model, coarse, kOwnSize).model;
   });
-  fit_all(starts, coarse, kFirstLook);
+  fit_all(starts, coarse, budgeted(kFirstLook));
   std::vector<Start> race;
   for (const Start& start : starts) {
     const bool far_behind = start.error > kOutOfSight * starts.front().error;
@@ -315,7 +334,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     const auto leader = std::ranges::find(race, start.info, &Start::info);
     if (rivals == 0 || (rivals == 1 && start.error < kOpenRace * leader->error)) race.push_back(start);
   }
-  fit_all(race, medium, kSeriousFit);
+  fit_all(race, medium, budgeted(kSeriousFit));
   std::vector<Start> finalists;
   for (const Start& start : race)
     if (std::ranges::find(finalists, start.info, &Start::info) == finalists.end()) finalists.push_back(start);
@@ -330,7 +349,8 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
-    if (k < effort.finalists && finalists[k].error < within) fit_start(finalists[k], model, last, 1.0, kLastWord);
+    if (k < effort.finalists && finalists[k].error < within)
+      fit_start(finalists[k], model, last, 1.0, budgeted(kLastWord));
     candidates[k] = judged(all, finalists[k].model, model, training, validation);
   });
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
