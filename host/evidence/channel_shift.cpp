@@ -117,7 +117,6 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   constexpr double kGain = 0.5;              // the squares must fall to this part
   constexpr double kExplained = 0.02;        // of the effort's square: else friction decides where the optimum lies
   constexpr double kAlike = 0.5;             // samples, between the halves of a record
-  constexpr double kNoDifference = 0.8;      // part of the squares that a half's best shift leaves
   MotionOptions options;
   options.decimation = 1;
   const std::optional<Motion> prepared = motion_if_long_enough(record, model.data, options);
@@ -141,13 +140,10 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   if (std::abs(*shift - std::round(*shift)) > kWhole || squares[index] > kGain * squares[kMostSamples] ||
       squares[index] > kExplained)
     return {};
-  // A logger shifts all of a record alike; friction that a rigid drive does not know feigns a shift here and there. A
-  // half in which no shift makes a difference, as in slow motion, has no say.
+  // A logger shifts all of a record alike; friction that a rigid drive does not know feigns a shift here and there.
   const std::span<const std::size_t> all(rows);
   for (const auto half : {all.first(rows.size() / 2), all.last(rows.size() / 2)}) {
-    const std::vector<double> own_squares = rigid_squares(motion, half);
-    if (*std::ranges::min_element(own_squares) > kNoDifference * own_squares[kMostSamples]) continue;
-    const std::optional<double> own = lowest_shift(own_squares);
+    const std::optional<double> own = lowest_shift(rigid_squares(motion, half));
     if (!own || std::abs(*own - *shift) > kAlike) return {};
   }
   return std::round(*shift);

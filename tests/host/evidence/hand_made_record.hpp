@@ -35,11 +35,8 @@ struct HandMade {
     return half < 2.0 ? -sign * 100.0 : 0.0;
   }
 
-  static host::Record record(double duration_s = 10.0) { return record(duration_s, acceleration); }
-
   /// The tachometer carries a fast sine of the size of its noise.
-  template <typename Acceleration>
-  static host::Record record(double duration_s, Acceleration acceleration) {
+  static host::Record record(double duration_s = 10.0) {
     const sim::DataSheet data = model().data;
     host::Record record;
     record.path = "hand-made.csv";

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "host/model/model_file.hpp"
 #include "host/record/channel_checks.hpp"
@@ -107,15 +106,6 @@ TEST_F(LogFaults, TachometerFilterIsPhysics) {
 TEST_F(LogFaults, AnswerBeforeTheCommand) {
   shift_later(record.u_V, 5);
   expect_only(LogFaultKind::time_shift, "u_V", 0.005, 1e-9);
-}
-
-TEST_F(LogFaults, AnswerBeforeTheCommandThatOnlyTheFastHalfShows) {
-  record = HandMade::record(10.0, [](double t_s) {
-    const double frequency = 2.0 * std::numbers::pi * (t_s < 5.0 ? 0.2 : 4.0);
-    return 20.0 * frequency * std::cos(frequency * t_s);
-  });
-  shift_later(record.u_V, 4);
-  expect_only(LogFaultKind::time_shift, "u_V", 0.004, 1e-9);
 }
 
 TEST_F(LogFaults, DeadTimeIsPhysics) {
