@@ -114,7 +114,7 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {
   constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
   constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
-  constexpr double kGain = 0.5;              // the squares must fall to this part
+  constexpr double kGain = 0.15;             // the squares must fall to this part; static friction alone makes 0.25
   constexpr double kExplained = 0.02;        // of the effort's square: else friction decides where the optimum lies
   constexpr double kAlike = 0.5;             // samples, between the halves of a record
   MotionOptions options;
