@@ -13,8 +13,9 @@ for image in "$@"; do
     status=1
   fi
   capture=$("$nm" "$image" | awk '$3 == "_capture_rows" || $3 == "_capture_end" { print "0x" $1 }' | sort | xargs)
-  capture=$((${capture#* } - ${capture% *}))
-  "$size" -A "$image" | awk -v image="$image" -v capture="$capture" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
+  # An image without a capture has neither.
+  [ -z "$capture" ] || capture=$((${capture#* } - ${capture% *}))
+  "$size" -A "$image" | awk -v image="$image" -v capture="${capture:-0}" -v flash_limit="$flash_limit" -v ram_limit="$ram_limit" '
     $1 ~ /^\.(vectors|image_header|text|ARM\.exidx|data|ccm)$/ { flash += $2 }
     $1 ~ /^\.(stack|noinit|data|bss|ccm)$/ { ram += $2 }
     END {
