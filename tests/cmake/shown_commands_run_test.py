@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -120,7 +121,11 @@ class Bench:
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     def must(self, command: str) -> None:
-        done = self.run(command)
+        for _ in range(60):  # an axis that was switched off in motion runs out first
+            done = self.run(command)
+            if done.returncode == 0 or "it moves" not in done.stdout:
+                break
+            time.sleep(0.25)
         assert done.returncode == 0, f"{command}: {done.stdout}"
 
     def end(self) -> None:
