@@ -111,4 +111,32 @@ inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& 
   slide_through_stops(mass, effort, duration_s, contact);
 }
 
+/// The friction of one contact linearised once for several short steps in a row, which then cost a few operations each.
+class LinearisedContact {
+ public:
+  template <typename Contact>
+  LinearisedContact(double w, double mobility, double duration_s, const Contact& contact)
+      : direction_(w > 0.0 ? 1.0 : -1.0), mobility_(mobility) {
+    const double speed = std::abs(w);
+    const FrictionPoint friction = contact.sliding(w > 0.0 ? 0 : 1, speed);
+    slope_ = friction.slope;
+    at_rest_ = friction.effort - slope_ * speed;
+    phi1_s_ = duration_s * exponential_factors(-slope_ * mobility * duration_s).phi1;
+  }
+
+  /// The speed after a step under a constant effort; false, with `w` as it was, where the mass rests or comes to rest.
+  bool moves(double& w, double effort) const {
+    const double speed = direction_ * w;
+    const double end = speed + phi1_s_ * mobility_ * (direction_ * effort - at_rest_ - slope_ * speed);
+    if (!(speed > 0.0 && end > 0.0)) return false;
+    w = direction_ * end;
+    return true;
+  }
+
+ private:
+  double direction_, mobility_;
+  double slope_, at_rest_;  ///< friction = at_rest + slope * speed, in the direction of motion
+  double phi1_s_;
+};
+
 }  // namespace sim
