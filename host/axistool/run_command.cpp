@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "firmware/core/path/path_follower.hpp"
@@ -118,7 +119,8 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
                              {"lines", planned.program.lines},
                              {"duration_s", planned.path.duration_s()},
                              {"nodes", planned.path.knots.size() - 1},
-                             {"contour_um", nullptr}};
+                             {"contour_um", nullptr},
+                             {"contour_rms_um", nullptr}};
   for (std::size_t i = 0; i < axes; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     document["extents_mm"][std::string(firmware::kAxisNames.at(i))] = {extents.least[k], extents.most[k]};
@@ -270,6 +272,8 @@ void run(const RunArguments& arguments) {
   document["duration_s"] = outcome.state.elapsed / machine.scale.rate_Hz;
   document["planned_s"] = planned.path.duration_s();
   document["contour_um"] = worst_um;
+  const double squares = std::inner_product(contour_um.begin(), contour_um.end(), contour_um.begin(), 0.0);
+  document["contour_rms_um"] = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, contour_um.size())));
   document["stopped_because"] = end_name(end);
   document["lost_rows"] = outcome.capture.lost;
   if (!arguments.json.empty()) write_json(document, arguments.json);

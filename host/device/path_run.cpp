@@ -24,6 +24,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kRound{10};       // a tenth of the silence that a board suffers while it moves
+constexpr int kReportsARound = 4;        // of rows, which never end: two milliseconds each at most
 constexpr double kHeadStart_s = 0.5;     // of nodes, before the board sets out
 constexpr double kMostRows_Hz = 1000.0;  // a cable takes so many rows of two axes beside the nodes
 
@@ -207,7 +208,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
     std::size_t rows_asked = 0;
     for (;;) {
       const bool sent = stream.send();
-      while (rows && rows->fetch(sent ? milliseconds(0) : milliseconds(2))) continue;
+      for (int k = 0; k < kReportsARound && rows && rows->fetch(sent ? milliseconds(0) : milliseconds(2));) ++k;
       if (!sent && !rows) std::this_thread::sleep_for(milliseconds(2));
       // A simulated board in this process has its own time: rows tell it.
       const auto now = steady_clock::now();
@@ -259,11 +260,13 @@ class PlanPlace {
     return between(*(next - 1), *next, inside_s).position;
   }
 
-  double advance(const PathPoint& reference, double most_s) {
-    constexpr int kSteps = 16;
+  /// `rows`: since the one before, of `row_s` each.
+  double advance(const PathPoint& reference, std::uint32_t rows, double row_s) {
+    constexpr std::uint32_t kSteps = 8;  // in the time of a row; twice that time is looked at
+    const auto steps = static_cast<std::uint32_t>(std::min(2.0 * rows, path_.duration_s() / row_s + 1.0) * kSteps);
     double best = std::numeric_limits<double>::infinity(), best_s = time_s_;
-    for (int i = 0; i <= kSteps; ++i) {
-      const double tried_s = std::min(time_s_ + most_s * i / kSteps, path_.duration_s());
+    for (std::uint32_t i = 0; i <= steps; ++i) {
+      const double tried_s = std::min(time_s_ + row_s * i / kSteps, path_.duration_s());
       const double distance = (position(tried_s) - reference).norm();
       if (distance > best + 1e-6) continue;  // while nothing moves, the latest
       best = std::min(best, distance);
@@ -293,9 +296,9 @@ std::vector<double> contour_error_um(const PathCapture& capture, const PlannedPa
   PathPoint half = PathPoint::Zero();  // the encoder rounds down
   for (std::size_t i = 0; i < scale.axes.size(); ++i) half[static_cast<Eigen::Index>(i)] = scale.count_mm[i] / 2.0;
   for (std::size_t k = 0; k < capture.number.size(); ++k) {
-    const std::uint32_t gap = k > 0 ? capture.number[k] - capture.number[k - 1] : 1;
+    const std::uint32_t rows = k > 0 ? capture.number[k] - capture.number[k - 1] : 1;
     const double time_s =
-        place.advance(point_of(capture.reference_mm, k, path.knots.front().position), 2.0 * gap * capture.row_period_s);
+        place.advance(point_of(capture.reference_mm, k, path.knots.front().position), rows, capture.row_period_s);
     const PathPoint seen = point_of(capture.mm, k, path.knots.front().position) + half;
     // Against the motion as it was planned, tolerances of corners included, a while to either side.
     constexpr double kWhile_s = 0.02, kStep_s = 0.001;

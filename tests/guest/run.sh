@@ -64,7 +64,7 @@ fi
 timeout "${GUEST_LIMIT:-1500}" $emulator -accel tcg -icount shift=0,sleep=$waiting -cpu qemu64 -machine pc -smp 1 -m 768 \
   -nodefaults -no-reboot -nographic -serial stdio -monitor none -kernel "$kernel/vmlinux" -initrd "$work/initrd" \
   -append "console=ttyS0 quiet loglevel=3 panic=-1 mitigations=off norandmaps nolapic_timer" "${link[@]}" </dev/null |
-  tr -d '\r' | tee "$work/console" | sed -u -e '1,/guest: started$/d' -e '/^guest: ended with/,$d' || status=$?
+  sed -u 's/\r//g' | tee "$work/console" | sed -u -e '1,/guest: started$/d' -e '/^guest: ended with/,$d' || status=$?
 code=$(sed -n 's/^guest: ended with //p' "$work/console" | tail -n 1)
 if [ -z "$code" ]; then
   cat "$work/console"

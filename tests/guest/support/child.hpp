@@ -33,6 +33,14 @@ class Child {
 
   /// Does not run on, until it is killed.
   void pause() const { ::kill(process_, SIGSTOP); }
+  void go_on() const { ::kill(process_, SIGCONT); }
+  /// Its exit code, once it has ended; -1 for a signal.
+  int wait() {
+    int status = 0;
+    waitpid(process_, &status, 0);
+    process_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
 
   /// As a pulled plug: without warning.
   void kill() {
