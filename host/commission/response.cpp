@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kFirst_s = 70.0, kAgain_s = 46.0;  // of motion: three bands and a resonance; two bands
 constexpr std::size_t kRealisations = 3;
-constexpr double kGently = 0.25;  // of the box's speed
+constexpr double kGently = 0.25;  // of the amplitude
 constexpr double kKept = 0.9;     // of the margin asked for has to be there when it is measured again
 constexpr double kWorth = 1.05;   // by which the bandwidth has to rise, or nothing changes
 constexpr const char* kMeasured = "response.json";
@@ -82,14 +82,14 @@ class ResponseStep {
     files_.emplace_back(file);
   }
 
-  /// `share`: of the box's speed.
+  /// `share`: of the usual amplitude.
   AxisResponse measure(double time_s, const std::string& name, double share) {
     BoardClient& board = session_.board();
     const std::uint8_t axis = session_.options().axis;
     const firmware::ParameterValues values = board.read_values();
     ResponsePlan plan;
     plan.box = session_.room_for(time_s, "the " + name, values);
-    plan.box.speed *= share;
+    plan.share = share;
     plan.realisations = kRealisations;
     std::vector<Record> records;
     const auto keep_records = [&] {

@@ -49,11 +49,8 @@ json margins_json(const LoopMargins& margins) {
 }
 
 json fit_json(const PlantFit& fit) {
-  return {{"position_gain", fit.position_gain},
-          {"speed_gain", fit.speed_gain},
-          {"pole_rad_s", fit.pole},
-          {"delay_s", interval_json(fit.delay_s)},
-          {"misfit", fit.misfit}};
+  return {{"position_gain", fit.position_gain},    {"speed_gain", fit.speed_gain},      {"pole_rad_s", fit.pole},
+          {"delay_s", interval_json(fit.delay_s)}, {"lag_s", interval_json(fit.lag_s)}, {"misfit", fit.misfit}};
 }
 
 template <typename Pick>
@@ -61,6 +58,25 @@ json list_of(const std::vector<ResponseLine>& lines, const Pick& pick) {
   json list = json::array();
   for (const ResponseLine& line : lines) list.push_back(pick(line));
   return list;
+}
+
+json distortion_json(const std::vector<DistortionLine>& lines) {
+  json f_Hz = json::array(), level = json::array();
+  for (const DistortionLine& line : lines) {
+    f_Hz.push_back(line.f_Hz);
+    level.push_back(line.level);
+  }
+  return {{"f_Hz", f_Hz}, {"level", level}};
+}
+
+/// A document of a version that did not tell them has none.
+std::vector<DistortionLine> read_distortion(const json& document, const char* which) {
+  std::vector<DistortionLine> lines;
+  if (!document.contains("distortion")) return lines;
+  const json& part = document["distortion"].at(which);
+  for (std::size_t i = 0; i < part.at("f_Hz").size(); ++i)
+    lines.push_back({part["f_Hz"][i].get<double>(), part.at("level").at(i).get<double>()});
+  return lines;
 }
 
 /// Products of the two channels' errors: what the margins' intervals need beside "sd".
@@ -107,6 +123,7 @@ nlohmann::json response_json(const AxisResponse& axis) {
       {"plant", plant_json(response, response.channel())},
       {"noise", list_of(response.lines, [](const ResponseLine& line) { return line.noise; })},
       {"nonlinearity", list_of(response.lines, [](const ResponseLine& line) { return line.nonlinearity; })},
+      {"distortion", {{"even", distortion_json(response.even)}, {"odd", distortion_json(response.odd)}}},
       {"coherence", list_of(response.lines, [](const ResponseLine& line) { return line.coherence; })},
       {"degrees", list_of(response.lines, [](const ResponseLine& line) { return line.degrees; })},
       {"covariance", list_of(response.lines, covariance_json)},
@@ -164,6 +181,8 @@ AxisResponse read_response(const std::string& path) {
       line.degrees = document.at("degrees").at(i);
       response.lines.push_back(line);
     }
+    response.even = read_distortion(document, "even");
+    response.odd = read_distortion(document, "odd");
   } catch (const json::exception& error) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: {}: no response that `axistool bode --json` wrote", path, error.what()));

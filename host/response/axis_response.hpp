@@ -28,7 +28,7 @@ AxisResponse with_controller(const AxisResponse& measured, const firmware::AxisP
 
 /// `axis-response/1`. "plant" is position (or speed where there is none) over the command; "plant_speed" beside it
 /// where both were recorded. "sd" is the standard deviation of each part of a complex value, with Student's factor in
-/// it: 1.96 sd to either side hold 95 %.
+/// it: 1.96 sd to either side hold 95 %. "distortion": what even and odd powers answer at lines that are not excited.
 nlohmann::json response_json(const AxisResponse& axis);
 
 /// Reads the measured part of such a document back. Throws Failure(bad_input).

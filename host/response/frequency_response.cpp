@@ -10,6 +10,7 @@
 #include "host/exit_codes.hpp"
 #include "host/identify/least_squares.hpp"
 #include "host/record/drive_units.hpp"
+#include "host/response/distortion.hpp"
 #include "host/response/periodic_run.hpp"
 #include "host/response/robust_method.hpp"
 #include "host/response/welch_method.hpp"
@@ -77,8 +78,14 @@ void analyse_periodic(const std::vector<Record>& records, FrequencyResponse& res
     response.is_indirect = response.is_indirect || runs.front().excitation.is_closed_loop;
     response.realisations = std::min(response.realisations, runs.size());
     for (const PeriodicRun& run : runs) response.periods = std::min(response.periods, run.period.size());
-    for (const ResponseLine& line : robust_response(runs)) response.lines.push_back(line);
+    const std::vector<ResponseLine> lines = robust_response(runs);
+    response.lines.insert(response.lines.end(), lines.begin(), lines.end());
+    const Distortion distortion = distortion_of(runs, lines, response.channel());
+    response.even.insert(response.even.end(), distortion.even.begin(), distortion.even.end());
+    response.odd.insert(response.odd.end(), distortion.odd.begin(), distortion.odd.end());
   }
+  for (std::vector<DistortionLine>* lines : {&response.even, &response.odd})
+    std::ranges::stable_sort(*lines, {}, &DistortionLine::f_Hz);
   if (response.realisations < 2)
     response.warnings.push_back(
         "one realisation of the phases: bands tell noise, but not what a nonlinear drive leaves; repeat with other "
@@ -111,9 +118,24 @@ std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel) 
   return fmt::format("{}/V", channel == 0 ? units.travel : units.speed);
 }
 
-double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights) {
+namespace {
+
+/// Standard deviation of either part.
+double deviation(const ResponseLine& line, const Eigen::Vector2cd& weights) {
   const std::complex<double> power = weights.transpose() * line.covariance * weights.conjugate();
-  return student_t_95(std::max(1.0, line.degrees)) * std::sqrt(0.5 * std::max(0.0, power.real()));
+  return std::sqrt(0.5 * std::max(0.0, power.real()));
+}
+
+}  // namespace
+
+double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights) {
+  return student_t_95(std::max(1.0, line.degrees)) * deviation(line, weights);
+}
+
+bool stands_out(const ResponseLine& line, const Eigen::Vector2cd& weights) {
+  constexpr double kMost = 0.3;
+  const std::complex<double> value = weights.transpose() * line.plant;
+  return deviation(line, weights) < kMost * std::abs(value);
 }
 
 FrequencyResponse frequency_response(const std::vector<Record>& records) {

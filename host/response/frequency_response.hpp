@@ -24,6 +24,13 @@ struct ResponseLine {
   double degrees = 1.0;    ///< of freedom behind the covariance
 };
 
+/// What the drive answers at lines that nobody excites, between two that are excited: there noise alone is no cause.
+struct DistortionLine {
+  double f_Hz = 0.0;
+  double level =
+      0.0;  ///< root mean square, per volt of the excited lines beside it: as `plant`; 0 where noise hides it
+};
+
 /// Lines are in the order of their frequencies.
 struct FrequencyResponse {
   enum class Method { periodic, welch };
@@ -35,6 +42,9 @@ struct FrequencyResponse {
   bool has_position = false, has_speed = false;
   std::size_t realisations = 0, periods = 0;  ///< the fewest of any line
   std::vector<ResponseLine> lines;
+  /// Of multisines alone. Even powers of a nonlinearity (friction that falls with speed, a drive stronger to one side)
+  /// and odd ones (backlash, stiction, saturation) show apart (Pintelon & Schoukens, 2nd ed., 3.4).
+  std::vector<DistortionLine> even, odd;
   std::vector<std::string> warnings;
 
   /// 0 position, 1 speed: what `noise` and `nonlinearity` belong to.
@@ -47,6 +57,10 @@ std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel);
 /// Half width of a 95 % interval of the real part, the imaginary part or the magnitude of weights' * plant, where
 /// `weights` are taken as known: Student's factor times the standard deviation of one part.
 double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights);
+
+/// Whether weights' * plant is known well enough to build on: either part to 30 % of it. A line that falls on what the
+/// machine does of itself while it rides (cogging, once a turn) is not.
+bool stands_out(const ResponseLine& line, const Eigen::Vector2cd& weights);
 
 /// The response that records of one machine show. Those that carry an excitation of whole periods (`axistool excite …
 /// multisine`) are analysed by the robust method (Pintelon & Schoukens, System Identification, 2nd ed., 4.3.1):

@@ -55,6 +55,23 @@ Smoother smoother_at(double f, const std::vector<double>& lines, const std::vect
   return found;
 }
 
+/// The places of those that stand out; all where these are too few for a straight line.
+std::vector<std::size_t> places_of(const std::vector<bool>& stands_out) {
+  std::vector<std::size_t> places, all;
+  for (std::size_t i = 0; i < stands_out.size(); ++i) {
+    all.push_back(i);
+    if (stands_out[i]) places.push_back(i);
+  }
+  return places.size() < kNearest ? all : places;
+}
+
+template <typename Value>
+std::vector<Value> picked(const std::vector<Value>& all, const std::vector<std::size_t>& places) {
+  std::vector<Value> some;
+  for (const std::size_t place : places) some.push_back(all[place]);
+  return some;
+}
+
 /// From the first to the last line evenly over the logarithm, denser about resonances.
 std::vector<double> fine_frequencies(const std::vector<double>& lines, const PlantFit& fit) {
   const double low = std::log(lines.front()), high = std::log(lines.back());
@@ -83,8 +100,10 @@ class FineLoop {
       throw Failure(ExitCode::bad_input,
                     "the controller uses a channel that the records lack: record position, and speed where a "
                     "tachometer is fitted");
+    std::vector<bool> clear;
     for (const ResponseLine& line : response.lines) {
       const Eigen::RowVector2cd C = controller.at(line.f_Hz);
+      clear.push_back(stands_out(line, C.transpose()));
       const Complex L = (C * line.plant)(0), fitted = (C * fit.at(line.f_Hz))(0);
       loop_.f_Hz.push_back(line.f_Hz);
       loop_.L.push_back(L);
@@ -92,10 +111,14 @@ class FineLoop {
       ratio_.push_back(L / fitted);
       spread_.push_back(loop_.half_width.back() / (kNormal95 * std::abs(fitted)) + 1e-6);
     }
-    loop_.fine_f_Hz = fine_frequencies(loop_.f_Hz, fit);
+    const std::vector<std::size_t> places = places_of(clear);
+    ratio_ = picked(ratio_, places);
+    spread_ = picked(spread_, places);
+    const std::vector<double> lines = picked(loop_.f_Hz, places);
+    loop_.fine_f_Hz = fine_frequencies(lines, fit);
     for (const double f : loop_.fine_f_Hz) {
       carrier_.push_back((controller.at(f) * fit.at(f))(0));
-      smoothers_.push_back(smoother_at(f, loop_.f_Hz, spread_));
+      smoothers_.push_back(smoother_at(f, lines, spread_));
     }
     loop_.fine_L = along(ratio_);
   }
@@ -193,26 +216,33 @@ OpenLoop open_loop(const FrequencyResponse& response, const PlantFit& fit, const
 }
 
 FinePlant fine_plant(const FrequencyResponse& response, const PlantFit& fit) {
-  std::vector<double> lines;
-  for (const ResponseLine& line : response.lines) lines.push_back(line.f_Hz);
-  FinePlant fine{fine_frequencies(lines, fit), {}};
-  std::vector<Eigen::Vector2cd> ratio;
-  std::array<std::vector<double>, 2> spread;
-  for (const ResponseLine& line : response.lines) {
-    const Eigen::Vector2cd fitted = fit.at(line.f_Hz);
-    ratio.emplace_back(line.plant.cwiseQuotient(fitted));
-    for (Eigen::Index channel = 0; channel < 2; ++channel)
-      spread[static_cast<std::size_t>(channel)].push_back(
-          half_width_95(line, Eigen::Vector2cd::Unit(channel)) / (kNormal95 * std::abs(fitted(channel))) + 1e-6);
+  struct Channel {
+    std::vector<double> f_Hz, spread;
+    std::vector<Complex> ratio;
+  };
+  std::array<Channel, 2> channels;
+  for (Eigen::Index at = 0; at < 2; ++at) {
+    std::vector<bool> clear;
+    for (const ResponseLine& line : response.lines) clear.push_back(stands_out(line, Eigen::Vector2cd::Unit(at)));
+    Channel& channel = channels[static_cast<std::size_t>(at)];
+    for (const std::size_t place : places_of(clear)) {
+      const ResponseLine& line = response.lines[place];
+      const Complex fitted = fit.at(line.f_Hz)(at);
+      channel.f_Hz.push_back(line.f_Hz);
+      channel.ratio.push_back(line.plant(at) / fitted);
+      channel.spread.push_back(half_width_95(line, Eigen::Vector2cd::Unit(at)) / (kNormal95 * std::abs(fitted)) + 1e-6);
+    }
   }
+  FinePlant fine{fine_frequencies(channels[static_cast<std::size_t>(response.channel())].f_Hz, fit), {}};
   for (const double f : fine.f_Hz) {
     Eigen::Vector2cd plant = fit.at(f);
-    for (Eigen::Index channel = 0; channel < 2; ++channel) {
-      const Smoother smoother = smoother_at(f, lines, spread[static_cast<std::size_t>(channel)]);
+    for (Eigen::Index at = 0; at < 2; ++at) {
+      const Channel& channel = channels[static_cast<std::size_t>(at)];
+      const Smoother smoother = smoother_at(f, channel.f_Hz, channel.spread);
       Complex sum = 0.0;
       for (std::size_t k = 0; k < smoother.weight.size(); ++k)
-        sum += smoother.weight[k] * ratio[smoother.first + k](channel);
-      plant(channel) *= sum;
+        sum += smoother.weight[k] * channel.ratio[smoother.first + k];
+      plant(at) *= sum;
     }
     fine.plant.push_back(plant);
   }

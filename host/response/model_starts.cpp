@@ -65,13 +65,29 @@ void put_delay(const PlantFit& fit, const std::string& from, ModelStarts& starts
                   1e3 * delay.value, 0.5 / (std::numbers::pi * delay.value)));
 }
 
+void put_lag(const PlantFit& fit, const std::string& from, ModelStarts& starts) {
+  const Interval95& lag = fit.lag_s;
+  if (!(lag.ci95[0] > 0.0) || lag.value < kLeastDelay * fit.sample_period_s) return;
+  const auto bandwidth = [](double lag_s) { return 0.5 / (std::numbers::pi * lag_s); };
+  const Interval95 f_Hz{bandwidth(lag.value), {bandwidth(lag.ci95[1]), bandwidth(lag.ci95[0])}};
+  if (!is_possible(*sim::find_effect("current_loop_lag"), "bandwidth", f_Hz.value)) return;
+  sim::EffectEntry& entry = entry_of(starts.model, "current_loop_lag");
+  put(entry, "bandwidth", f_Hz);
+  entry.from = from;
+  starts.said.push_back(
+      fmt::format("magnitude and phase fall as behind a lag of {:.3g} ms: current_loop_lag, {:.3g} Hz", 1e3 * lag.value,
+                  f_Hz.value));
+}
+
 }  // namespace
 
 ModelStarts with_response(const sim::DriveDescription& model, const PlantFit& fit, const std::string& from) {
   ModelStarts starts{model, {}};
   put_compliance(fit, from, starts);
   put_delay(fit, from, starts);
-  if (starts.said.empty()) starts.said.emplace_back("no resonance and no delay stand out: the model stays as it is");
+  put_lag(fit, from, starts);
+  if (starts.said.empty())
+    starts.said.emplace_back("no resonance, no delay and no lag stand out: the model stays as it is");
   return starts;
 }
 

@@ -28,16 +28,22 @@ constexpr double kEarns = 14.0;      ///< fall of chi^2 by a mode of four values
 constexpr double kEarnsShare = 0.1;  ///< and at least so much of what was left
 constexpr double kLeastShare = 0.1;  ///< of the rigid part, at the resonance: less is no mode
 
-// Values of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
-constexpr std::size_t kRigid = 5, kPerMode = 4;
+constexpr double kLagTells = 4.0;  ///< chi^2 by which a lag has to be better than a delay: 5 % by chance
+constexpr double kNoDelay = 0.05;  ///< of a sample: neither
 
-PlantFit unpack(const double* value, std::size_t modes, double sample_period_s) {
+// Values of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
+constexpr std::size_t kRigid = 5, kPerMode = 4, kDelay = 3;
+
+/// What the value at kDelay is.
+enum class Late { delay, lag };
+
+PlantFit unpack(const double* value, std::size_t modes, Late late, double sample_period_s) {
   PlantFit fit;
   fit.sample_period_s = sample_period_s;
   fit.position_gain = std::exp(value[0]);
   fit.speed_gain = std::exp(value[1]);
   fit.pole = value[2];
-  fit.delay_s.value = value[3] * sample_period_s;
+  (late == Late::delay ? fit.delay_s : fit.lag_s).value = value[kDelay] * sample_period_s;
   fit.speed_delay_s = value[4] * sample_period_s;
   for (std::size_t i = 0; i < modes; ++i) {
     const double* mode = value + kRigid + i * kPerMode;
@@ -57,10 +63,8 @@ class Deviations {
   explicit Deviations(const FrequencyResponse& response) : response_(response) {
     for (const ResponseLine& line : response.lines)
       for (Eigen::Index channel = 0; channel < 2; ++channel) {
-        const double size = std::abs(line.plant(channel));
-        if (!(size > 0.0)) continue;
-        const double spread = std::sqrt(0.5 * line.covariance(channel, channel).real()) / size;
-        if (spread > 0.3) continue;  // noise
+        if (!stands_out(line, Eigen::Vector2cd::Unit(channel))) continue;
+        const double spread = std::sqrt(0.5 * line.covariance(channel, channel).real()) / std::abs(line.plant(channel));
         points_.push_back({line.f_Hz, channel, line.plant(channel), std::hypot(spread, kLeastSpread)});
       }
   }
@@ -115,28 +119,32 @@ class Deviations {
 struct Functor {
   const Deviations& deviations;
   std::size_t modes;
+  Late late;
   bool operator()(double const* const* value, double* out) const {
-    deviations(unpack(value[0], modes, deviations.sample_period_s()), out);
+    deviations(unpack(value[0], modes, late, deviations.sample_period_s()), out);
     return true;
   }
 };
 
 struct Fitted {
   std::vector<double> value;
+  Late late = Late::delay;
   double chi2 = 0.0;
   Eigen::MatrixXd covariance;
+
+  std::size_t modes() const { return (value.size() - kRigid) / kPerMode; }
 };
 
 /// `iterations`: few are enough to compare starts.
-Fitted solve(const Deviations& deviations, std::vector<double> value, int iterations) {
+Fitted solve(const Deviations& deviations, std::vector<double> value, Late late, int iterations) {
   const std::size_t modes = (value.size() - kRigid) / kPerMode;
-  auto* cost = new ceres::DynamicNumericDiffCostFunction<Functor, ceres::FORWARD>(new Functor{deviations, modes});
+  auto* cost = new ceres::DynamicNumericDiffCostFunction<Functor, ceres::FORWARD>(new Functor{deviations, modes, late});
   cost->AddParameterBlock(static_cast<int>(value.size()));
   cost->SetNumResiduals(static_cast<int>(deviations.count()));
   ceres::Problem problem;
   problem.AddResidualBlock(cost, nullptr, value.data());
-  problem.SetParameterLowerBound(value.data(), 3, -0.5);
-  problem.SetParameterUpperBound(value.data(), 3, 20.0);
+  problem.SetParameterLowerBound(value.data(), kDelay, late == Late::delay ? -0.5 : 0.0);
+  problem.SetParameterUpperBound(value.data(), kDelay, 20.0);
   for (std::size_t i = 0; i < modes; ++i) {
     const int at = static_cast<int>(kRigid + i * kPerMode);
     problem.SetParameterLowerBound(value.data(), at, std::log(0.8 * deviations.lowest()));
@@ -150,7 +158,7 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, int iterat
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  Fitted found{std::move(value), 2.0 * summary.final_cost, {}};
+  Fitted found{std::move(value), late, 2.0 * summary.final_cost, {}};
   if (iterations < kIterations) return found;
   ceres::CRSMatrix sparse;
   problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
@@ -174,7 +182,7 @@ Fitted with_one_more(const Deviations& deviations, const Fitted& before, const s
       value.insert(value.end(), {std::log(deviations.lowest()) * (1.0 - part) + std::log(deviations.highest()) * part,
                                  std::log(kStartDamping), position_share, speed_share});
       const std::size_t modes = (value.size() - kRigid) / kPerMode;
-      const PlantFit fit = unpack(value.data(), modes, deviations.sample_period_s());
+      const PlantFit fit = unpack(value.data(), modes, before.late, deviations.sample_period_s());
       starts.emplace_back(deviations.sum_of_squares(fit), std::move(value));
     }
   std::ranges::sort(starts, {}, [](const auto& start) { return start.first; });
@@ -184,10 +192,10 @@ Fitted with_one_more(const Deviations& deviations, const Fitted& before, const s
     const double log_f = value[value.size() - kPerMode];
     if (std::ranges::any_of(tried, [&](double other) { return std::abs(other - log_f) < 0.05; })) continue;
     tried.push_back(log_f);
-    if (Fitted one = solve(deviations, value, kTrial); one.chi2 < best.chi2) best = std::move(one);
+    if (Fitted one = solve(deviations, value, before.late, kTrial); one.chi2 < best.chi2) best = std::move(one);
     if (tried.size() == kStarts) break;
   }
-  return best.value.size() > before.value.size() ? solve(deviations, best.value, kIterations) : best;
+  return best.value.size() > before.value.size() ? solve(deviations, best.value, before.late, kIterations) : best;
 }
 
 bool is_mode(const double* mode, const Deviations& deviations) {
@@ -213,6 +221,39 @@ void drop_what_is_no_mode(std::vector<double>& value, const Deviations& deviatio
                   value.begin() + static_cast<std::ptrdiff_t>(at + kPerMode));
 }
 
+/// With as many modes as earn it.
+Fitted with_modes(const Deviations& deviations, Late late) {
+  const std::vector<double> plain = {std::log(deviations.start_gain(0)), std::log(deviations.start_gain(1)), 1.0, 0.1,
+                                     0.0};
+  Fitted fitted = solve(deviations, plain, late, kTrial);
+  for (std::size_t modes = 0; modes < kMostModes; ++modes) {
+    if (deviations.count() < fitted.value.size() + kPerMode + 2) break;
+    Fitted next = with_one_more(deviations, fitted, plain);
+    const double count = static_cast<double>(deviations.count());
+    // Where the fit is not as good as the noise, what is left stands for the noise.
+    const double unit = std::max(1.0, next.chi2 / (count - static_cast<double>(next.value.size())));
+    const double fall = fitted.chi2 - next.chi2;
+    if (fall < kEarns * unit || fall < kEarnsShare * fitted.chi2 || next.value.size() == fitted.value.size() ||
+        !is_mode(next.value.data() + next.value.size() - kPerMode, deviations))
+      break;
+    fitted = std::move(next);
+  }
+  drop_what_is_no_mode(fitted.value, deviations);
+  return solve(deviations, fitted.value, late, kIterations);
+}
+
+/// With a lag where that explains more, or as much with fewer modes: a delay alone needs modes to bend magnitudes.
+Fitted fitted_best(const Deviations& deviations) {
+  Fitted delayed = with_modes(deviations, Late::delay);
+  if (delayed.modes() == 0 && delayed.value[kDelay] < kNoDelay) return delayed;
+  Fitted lagging = with_modes(deviations, Late::lag);
+  const double count = static_cast<double>(deviations.count());
+  const double free = std::max(1.0, count - static_cast<double>(delayed.value.size()));
+  const double unit = std::max(1.0, std::min(delayed.chi2, lagging.chi2) / free);
+  const auto cost = [&](const Fitted& one) { return one.chi2 / unit + kEarns * static_cast<double>(one.modes()); };
+  return lagging.value[kDelay] >= kNoDelay && cost(lagging) + kLagTells < cost(delayed) ? lagging : delayed;
+}
+
 }  // namespace
 
 Eigen::Vector2cd PlantFit::at(double f_Hz) const {
@@ -227,7 +268,8 @@ Eigen::Vector2cd PlantFit::at(double f_Hz) const {
       x += mode.position_share * one;
       w += mode.speed_share * one * s;
     }
-    const Complex held = (1.0 - std::exp(-s * sample_period_s)) / (s * sample_period_s) * std::exp(-s * delay_s.value);
+    const Complex held = (1.0 - std::exp(-s * sample_period_s)) / (s * sample_period_s) * std::exp(-s * delay_s.value) /
+                         (1.0 + s * lag_s.value);
     sum += Eigen::Vector2cd(position_gain * x * held, speed_gain * w * held * std::exp(-s * speed_delay_s));
   }
   return sum;
@@ -239,25 +281,8 @@ PlantFit fit_plant(const FrequencyResponse& response) {
     throw Failure(ExitCode::refused,
                   fmt::format("{} lines of the response stand out of the noise: too few to fit a drive to",
                               deviations.count() / 2));
-  const std::vector<double> plain = {std::log(deviations.start_gain(0)), std::log(deviations.start_gain(1)), 1.0, 0.1,
-                                     0.0};
-  Fitted fitted = solve(deviations, plain, kTrial);
-  for (std::size_t modes = 0; modes < kMostModes; ++modes) {
-    if (deviations.count() < fitted.value.size() + kPerMode + 2) break;
-    Fitted next = with_one_more(deviations, fitted, plain);
-    const double count = static_cast<double>(deviations.count());
-    // Where the fit is not as good as the noise, what is left stands for the noise.
-    const double unit = std::max(1.0, next.chi2 / (count - static_cast<double>(next.value.size())));
-    const double fall = fitted.chi2 - next.chi2;
-    if (fall < kEarns * unit || fall < kEarnsShare * fitted.chi2 || next.value.size() == fitted.value.size() ||
-        !is_mode(next.value.data() + next.value.size() - kPerMode, deviations))
-      break;
-    fitted = std::move(next);
-  }
-  drop_what_is_no_mode(fitted.value, deviations);
-  fitted = solve(deviations, fitted.value, kIterations);
-  const std::size_t modes = (fitted.value.size() - kRigid) / kPerMode;
-  PlantFit fit = unpack(fitted.value.data(), modes, response.sample_period_s);
+  const Fitted fitted = fitted_best(deviations);
+  PlantFit fit = unpack(fitted.value.data(), fitted.modes(), fitted.late, response.sample_period_s);
   const double free = std::max(1.0, static_cast<double>(deviations.count() - fitted.value.size()));
   fit.misfit = std::sqrt(fitted.chi2 / free);
   const double factor = student_t_95(free) * std::max(1.0, fit.misfit);
@@ -265,9 +290,10 @@ PlantFit fit_plant(const FrequencyResponse& response) {
     const auto at = static_cast<Eigen::Index>(i);
     return factor * std::sqrt(std::max(0.0, fitted.covariance(at, at)));
   };
-  const double delay = reach(3) * response.sample_period_s;
-  fit.delay_s.ci95 = {fit.delay_s.value - delay, fit.delay_s.value + delay};
-  for (std::size_t i = 0; i < modes; ++i) {
+  const double delay = reach(kDelay) * response.sample_period_s;
+  Interval95& late = fitted.late == Late::delay ? fit.delay_s : fit.lag_s;
+  late.ci95 = {late.value - delay, late.value + delay};
+  for (std::size_t i = 0; i < fit.resonances.size(); ++i) {
     Resonance& mode = fit.resonances[i];
     const auto scaled = [&](Interval95& value, std::size_t at) {
       value.ci95 = {value.value * std::exp(-reach(at)), value.value * std::exp(reach(at))};

@@ -23,14 +23,15 @@ struct Resonance {
   double position_share = 0.0, speed_share = 0.0;
 };
 
-/// Position: Kx e^(-s delay) (1 / (s (s + p)) + sum of r / (s^2 + 2 zeta w s + w^2)); speed: likewise times s, with a
-/// gain and a delay of its own; all behind a hold, as sampled.
+/// Position: Kx e^(-s delay) / (1 + s lag) (1 / (s (s + p)) + sum of r / (s^2 + 2 zeta w s + w^2)); speed: likewise
+/// times s, with a gain and a delay of its own; all behind a hold, as sampled.
 struct PlantFit {
   double sample_period_s = 0.0;
   double position_gain = 0.0;  ///< mm/s^2 (m/s^2) per V
   double speed_gain = 0.0;     ///< rad/s^2 (m/s^2) per V
   double pole = 0.0;           ///< p, 1/s: viscous friction over inertia
   Interval95 delay_s;          ///< of the drive, beyond the hold
+  Interval95 lag_s;            ///< of its current loop: 1 / (2 pi bandwidth). Of delay and lag one is 0
   double speed_delay_s = 0.0;  ///< of the tachometer beyond that
   std::vector<Resonance> resonances;
   double misfit = 0.0;  ///< root mean square of what is left, in the lines' own standard deviations
@@ -38,7 +39,8 @@ struct PlantFit {
   Eigen::Vector2cd at(double f_Hz) const;
 };
 
-/// Modes are added while each explains more than chance would. Throws Failure(refused) for fewer than six lines.
+/// Modes are added while each explains more than chance would; what turns the phase is a lag where magnitudes fall as
+/// its do, otherwise a delay. Throws Failure(refused) for fewer than six lines.
 PlantFit fit_plant(const FrequencyResponse& response);
 
 }  // namespace host

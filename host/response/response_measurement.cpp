@@ -27,9 +27,11 @@ constexpr double kRun = kPeriods + 1.4;     ///< periods in which it rides: it g
 constexpr double kRunAndStop = kRun + 1.1;  ///< it goes away within one
 constexpr double kShareOfBands = 0.6;       ///< of the time; the rest looks closer at resonances
 constexpr double kMostRealisations = 12.0;
-constexpr double kRideOfBox = 0.45;      ///< the excitation adds as much, and noise its share
-constexpr double kAnswerOfRide = 0.5;    ///< peak speed of the answer, so that the axis never turns back
-constexpr double kWindow = 0.85;         ///< of half the travel that the board turns round in
+constexpr double kRideOfBox = 0.45;     ///< the excitation adds as much, and noise its share
+constexpr double kAnswerOfRide = 0.5;   ///< peak speed of the answer, so that the axis never turns back
+constexpr double kAnswerOfWatch = 0.4;  ///< peak of its position, of the following error that is watched: the drive may
+                                        ///< answer twice as much as its rigid model says
+constexpr double kWindow = 0.85;        ///< of half the travel that the board turns round in
 constexpr double kLinesPerOctave = 6.0;  ///< wanted
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
@@ -120,23 +122,29 @@ class Planner {
   /// Peak, V.
   double amplitude(double from, double to, double ride) const {
     constexpr int kPoints = 24;
-    double power = 0.0;
+    double speed_power = 0.0, position_power = 0.0;
     for (int i = 0; i < kPoints; ++i) {
-      const double f = from * std::pow(to / from, (i + 0.5) / kPoints);
-      power += std::norm(speed_per_volt(f)) / kPoints;
+      const Eigen::Vector2cd answer = answer_per_volt(from * std::pow(to / from, (i + 0.5) / kPoints));
+      position_power += std::norm(answer(0)) / kPoints;
+      speed_power += std::norm(answer(1)) / kPoints;
     }
-    const double most = kAnswerOfRide * ride / scale_.lead / std::sqrt(power);  // RMS as of one line, times its peak
-    return std::min(plan_.box.volts, most);
+    const double speed = ride / scale_.lead;
+    const auto& watch = parameters_.monitors;
+    const double allowed = static_cast<double>(watch.following_error_floor) +
+                           static_cast<double>(watch.following_error_per_velocity) * speed;
+    // RMS as of one line, times its peak
+    return plan_.share * std::min({plan_.box.volts, kAnswerOfRide * speed / std::sqrt(speed_power),
+                                   kAnswerOfWatch * allowed / std::sqrt(position_power)});
   }
 
-  /// Of the rigid axis in its loop, from the controller's output.
-  Complex speed_per_volt(double f_Hz) const {
+  /// Position and speed of the rigid axis in its loop, from the controller's output.
+  Eigen::Vector2cd answer_per_volt(double f_Hz) const {
     const Complex z = std::polar(1.0, kTwoPi * f_Hz * static_cast<double>(parameters_.sample_period_s));
     const auto& drive = parameters_.drive;
     const Complex speed = static_cast<double>(drive.Bd2) / (z - static_cast<double>(drive.Ad22));
     const Complex position = (static_cast<double>(drive.Ad12) * speed + static_cast<double>(drive.Bd1)) / (z - 1.0);
-    return speed * controller_.own_response(f_Hz) /
-           (1.0 + (controller_.at(f_Hz) * Eigen::Vector2cd(position, speed))(0));
+    const Eigen::Vector2cd drive_answers(position, speed);
+    return drive_answers * controller_.own_response(f_Hz) / (1.0 + (controller_.at(f_Hz) * drive_answers)(0));
   }
 
   const ResponsePlan& plan_;

@@ -18,12 +18,13 @@ struct ResponsePlan {
   double to_Hz = 0.0;            ///< 0: a quarter of the control rate, 250 Hz at most
   std::size_t realisations = 4;  ///< of the phases, in each band, at least; more where the time allows
   unsigned seed = 1;
+  double share = 1.0;  ///< of the amplitude that is otherwise chosen: less where an axis answers more than expected
 };
 
 /// One run after the other: bands of at most kExcitationEntries lines, the lowest first, each realisation by turns
-/// forward and backward. Where friction would change its sign the amplitude is less than the box's volts: the answer's
-/// speed stays below the jog's. `parameters`: what the board runs; they tell how far the axis answers. Throws
-/// Failure(refused) where travel or time of the box is too little.
+/// forward and backward. The amplitude is less than the box's volts where friction would change its sign (the answer's
+/// speed stays below the jog's) or the following error would come near to what is watched. `parameters`: what the board
+/// runs; they tell how far the axis answers. Throws Failure(refused) where travel or time of the box is too little.
 std::vector<Excitation> plan_response(const ResponsePlan& plan, const ExcitationScale& scale,
                                       const firmware::AxisParameters<float>& parameters);
 

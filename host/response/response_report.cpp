@@ -99,6 +99,16 @@ ScatterSeries level(const FrequencyResponse& response, const std::string& name, 
   return series;
 }
 
+ScatterSeries distortion(const std::string& name, SeriesRole role, const std::vector<DistortionLine>& lines) {
+  ScatterSeries series{name, role, SeriesStyle::points, {}, {}, {}, {}};
+  for (const DistortionLine& line : lines) {
+    if (!(line.level > 0.0)) continue;
+    series.x.push_back(line.f_Hz);
+    series.y.push_back(decibels(line.level));
+  }
+  return series;
+}
+
 void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* before) {
   const FrequencyResponse& response = axis.response;
   report.section("Drive",
@@ -128,9 +138,15 @@ void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* bef
     if (channel == response.channel()) {
       magnitudes.push_back(level(response, "noise", SeriesRole::floor, &ResponseLine::noise));
       magnitudes.push_back(level(response, "nonlinearity", SeriesRole::residual, &ResponseLine::nonlinearity));
+      magnitudes.push_back(distortion("even distortion", SeriesRole::other, response.even));
+      magnitudes.push_back(distortion("odd distortion", SeriesRole::before, response.odd));
+      std::erase_if(magnitudes, [](const ScatterSeries& series) { return series.x.empty(); });
       caption =
           "Noise: what it leaves of doubt in the estimate. Nonlinearity: by how much one run differs from the mean "
-          "of all beyond noise (friction, backlash).";
+          "of all beyond noise (friction, backlash). Distortion: what the drive answers where nobody asks, even "
+          "(friction "
+          "that falls with speed, one side stronger) and odd (backlash, stiction, saturation) apart; of noise it is "
+          "free.";
     }
     report.add(over_frequency(capitalised(name) + ", magnitude", caption,
                               {name, fmt::format("dB {}", plant_unit(response, channel))}, std::move(magnitudes)));
@@ -316,6 +332,10 @@ Report response_report(const AxisResponse& axis, const std::string& subtitle, co
         with_interval(Interval95{1e3 * axis.fit->delay_s.value,
                                  {1e3 * axis.fit->delay_s.ci95[0], 1e3 * axis.fit->delay_s.ci95[1]}}) +
             " ms");
+    if (axis.fit->lag_s.value > 0.0)
+      facts.items.emplace_back("lag of the current loop",
+                               fmt::format("{} ms: a bandwidth of {:.3g} Hz", format_value(1e3 * axis.fit->lag_s.value),
+                                           0.5 / (std::numbers::pi * axis.fit->lag_s.value)));
     facts.items.emplace_back("misfit of the fit", format_value(axis.fit->misfit) + " standard deviations");
   }
   report.add(std::move(facts));

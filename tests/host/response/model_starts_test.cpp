@@ -35,6 +35,18 @@ TEST(ModelStarts, TakeASpringAndADelayThatAModelCanHold) {
   EXPECT_NO_THROW(host::parse_model(host::format_model(starts.model), "written"));
 }
 
+TEST(ModelStarts, TakeALagAsTheBandwidthOfTheCurrentLoop) {
+  host::PlantFit fit = fit_with(2000.0, 0.25, 0.0);
+  fit.lag_s = {1e-3, {0.8e-3, 1.25e-3}};
+  const host::ModelStarts starts = host::with_response(model(), fit, "bode");
+  EXPECT_EQ(starts.model.find("input_delay"), nullptr);
+  const sim::EffectEntry* lag = starts.model.find("current_loop_lag");
+  ASSERT_NE(lag, nullptr);
+  EXPECT_NEAR(lag->at("bandwidth"), 159.15, 0.01);
+  EXPECT_NEAR(lag->ci95.at("bandwidth")[0], 127.32, 0.01);
+  EXPECT_NEAR(lag->ci95.at("bandwidth")[1], 198.94, 0.01);
+}
+
 TEST(ModelStarts, LeaveOutWhatNoDriveHas) {
   EXPECT_EQ(host::with_response(model(), fit_with(90.0, -1.0, 1e-5), "bode").model.find("compliance"), nullptr)
       << "seen at the load alone";

@@ -91,6 +91,18 @@ TEST_F(MeasuredOnABoard, AResponseSurvivesItsFile) {
   EXPECT_NEAR(axis.margins->phase_deg->ci95[0], again.margins->phase_deg->ci95[0], 1e-6);
 }
 
+/// A light axis with a long lead answers far: without regard to what is watched it stops with a following error.
+TEST_F(MeasuredOnABoard, TheAnswerStaysWellWithinTheFollowingErrorThatIsWatched) {
+  const auto lowest_V = [&](float watched_mm) {
+    parameters_.monitors.following_error_floor = watched_mm;
+    parameters_.monitors.following_error_per_velocity = 0.0F;
+    const auto runs = host::plan_response({.box = {60.0, 100.0, 4.0, 60.0}}, scale_, parameters_);
+    return std::stod(runs.front().header.at("excitation_amplitude"));
+  };
+  EXPECT_NEAR(lowest_V(0.02F), 0.5 * lowest_V(0.04F), 1e-3 * lowest_V(0.04F));
+  EXPECT_LT(lowest_V(0.04F), lowest_V(4.0F));
+}
+
 TEST_F(MeasuredOnABoard, TooNarrowABoxIsRefusedBeforeAnythingMoves) {
   const auto code_of = [&](const host::ResponsePlan& plan) {
     try {

@@ -36,6 +36,22 @@ TEST_F(TwoMasses, AreMeasuredToHalfADecibelAndThreeDegreesUpToFiveTimesTheCrosso
   }
 }
 
+/// As cogging does that recurs with a line's own frequency while the axis rides.
+TEST_F(TwoMasses, KeepTheirMarginsWhereTheRideDrownsALine) {
+  auto response = host::frequency_response(rides(machine_, controller_, 1));
+  const auto fit = host::fit_plant(response);
+  const host::AxisController law(controller_);
+  const auto right = host::margins_of(response, fit, law);
+  response.lines[1].plant *= -0.05;
+  response.lines[1].covariance *= 1e6;
+  const auto drowned = host::margins_of(response, fit, law);
+  EXPECT_TRUE(drowned.is_stable);
+  ASSERT_TRUE(right.modulus && drowned.modulus);
+  EXPECT_NEAR(drowned.modulus->value, right.modulus->value, 0.02);
+  const auto quick = host::quick_margins(host::fine_plant(response, fit), law);
+  EXPECT_TRUE(quick.is_stable);
+}
+
 TEST_F(TwoMasses, HaveTheirResonanceAndMarginsFound) {
   const auto response = host::frequency_response(rides(machine_, controller_, 2));
   const auto fit = host::fit_plant(response);
