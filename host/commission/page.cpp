@@ -70,6 +70,7 @@ struct Page {
       return fmt::format("values were off: {}", fmt::join(verdict["parameters"].get<std::vector<std::string>>(), ", "));
     if (status == "ambiguous")
       return fmt::format("one of {}", fmt::join(verdict["effects"].get<std::vector<std::string>>(), ", "));
+    if (status == "insufficient_data") return "none that these motions could show";
     return "no effect of the catalogue";
   }
 };

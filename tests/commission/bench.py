@@ -17,6 +17,7 @@ import sys
 import tempfile
 
 MOST_OVER_TRUTH, MOST_MOTION_S, MOST_COMPUTING_S = 1.5, 360.0, 180.0
+SURE = 0.95
 
 
 def toml(value):
@@ -125,7 +126,9 @@ def answer(result):
     if verdict["status"] == "ambiguous":
         return " or ".join(sorted(verdict["effects"])), any(hidden & group for group in groups) or bool(
             hidden & set(verdict["effects"]))
-    return verdict["status"], not hidden and verdict["status"] in ("adequate", "parameters")
+    # Nothing, but for effects that it names and that no motion of these would have shown, is an honest answer, too.
+    is_noise = verdict["probability_nothing"] > SURE and not verdict["effects"]
+    return verdict["status"], not hidden and (verdict["status"] in ("adequate", "parameters") or is_noise)
 
 
 def judge(result):

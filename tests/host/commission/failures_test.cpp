@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "tests/host/commission/own_machine.hpp"
@@ -84,10 +87,16 @@ TEST(CommissioningGoesWrong, WhereTheUserInterruptsAndCanGoOn) {
   }
 }
 
+/// Moments at which something goes wrong: so many, or what AXIS_COMMISSION_TRIALS says.
+int trials(int usual) {
+  const char* wanted = std::getenv("AXIS_COMMISSION_TRIALS");
+  return wanted != nullptr ? std::atoi(wanted) : usual;
+}
+
 /// The program dies, or its cable is pulled: nobody tells the board to stop, and it does.
 TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   std::mt19937 random(11);
-  for (int trial = 0; trial < 50; ++trial) {
+  for (int trial = 0; trial < trials(20); ++trial) {
     const TemporaryFolder folder;
     OwnBoard board;
     board.reports_left = std::uniform_int_distribution<long>(1, 14000)(random);
@@ -107,6 +116,54 @@ TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
     const auto again = commission(board, folder.path("x"), host::kCommissionSteps[*next].name.data(), "response");
     EXPECT_EQ(again.first, ExitCode::done) << again.second;
   }
+}
+
+/// No handler of the program runs: what it has not put into the folder by then is not there, and what is there is
+/// whole. A commissioning that was killed goes on, on a board that somebody switched on again.
+TEST(CommissioningGoesWrong, WhereTheProgramIsKilledAtAnyMoment) {
+  std::mt19937 random(17);
+  for (int trial = 0; trial < trials(10); ++trial) {
+    const TemporaryFolder folder;
+    const long reports = std::uniform_int_distribution<long>(1, 14000)(random);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      OwnBoard board;
+      board.reports_left = reports;
+      board.dies_then = true;
+      ::_exit(commission(board, folder.path("x"), "look", "response").first == ExitCode::done ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0) << trial;
+    expect_usable(folder.path("x"));
+    if (!WIFSIGNALED(status) || trial % 5 != 0) continue;
+    OwnBoard board;
+    const auto next = host::CommissionFolder(folder.path("x")).first_undone();
+    ASSERT_TRUE(next.has_value());
+    const auto again = commission(board, folder.path("x"), host::kCommissionSteps[*next].name.data(), "response");
+    EXPECT_EQ(again.first, ExitCode::done) << trial << ": " << again.second;
+  }
+}
+
+TEST(CommissioningGoesWrong, WhereTheAxisSeizes) {
+  const TemporaryFolder folder;
+  OwnBoard board;
+  ASSERT_EQ(commission(board, folder.path("x"), "look", "home").first, ExitCode::done);
+  board.machine->seizes_at_s = 0.0;
+  const auto [code, words] = commission(board, folder.path("x"), "ladder", "ladder");
+  EXPECT_EQ(code, ExitCode::device_fault);
+  EXPECT_THAT(words, HasSubstr("command_without_motion"));
+  EXPECT_THAT(words, HasSubstr("--from ladder"));
+  expect_standing(board);
+  expect_usable(folder.path("x"));
+  board.machine->seizes_at_s = HUGE_VAL;
+  {
+    host::BoardClient client = board.client();
+    client.clear_faults();
+    client.wait(std::chrono::milliseconds(500));
+  }
+  EXPECT_EQ(commission(board, folder.path("x"), "ladder", "friction").first, ExitCode::done);
 }
 
 TEST(CommissioningGoesWrong, WhereTheDiskIsFull) {

@@ -1,6 +1,8 @@
 // A machine that shares no code with the simulator, behind the simulated board and its protocol.
 #pragma once
 
+#include <signal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -18,10 +20,12 @@ class OwnMachine : public sim::ForeignMotion {
   bool counts_backward = false;
   double cogging_Nm = 0.0;  ///< every 4 mm
   double weight_Nm = 0.0;
+  double seizes_at_s = HUGE_VAL;  ///< its bearing does, for good; of its own time
 
   void command(std::optional<double> u_V) override { u_V_ = u_V; }
   void advance(double duration_s) override {
     constexpr int kSteps = 20;
+    lived_s_ += duration_s;
     for (int step = 0; step < kSteps; ++step) move(duration_s / kSteps);
   }
   sim::ForeignReading reading() const override {
@@ -35,7 +39,9 @@ class OwnMachine : public sim::ForeignMotion {
     constexpr double kEffort = 3.0, kInertia = 0.008, kFriction = 2.0, kLead = 1.6;
     const double magnets = cogging_Nm * std::sin(2.0 * std::numbers::pi * x_ / 4.0);
     const double drive = kEffort * u_V_.value_or(0.0) + magnets - weight_Nm;
-    if (w_ == 0.0 && std::abs(drive) <= kFriction) return;
+    const bool is_seized = lived_s_ > seizes_at_s;
+    if (is_seized) w_ = 0.0;
+    if (is_seized || (w_ == 0.0 && std::abs(drive) <= kFriction)) return;
     const double way = w_ != 0.0 ? std::copysign(1.0, w_) : std::copysign(1.0, drive);
     const double w = w_ + dt / kInertia * (drive - 0.03 * w_ - kFriction * way);
     x_ += kLead * dt * (w_ + w) / 2.0;
@@ -44,7 +50,7 @@ class OwnMachine : public sim::ForeignMotion {
   }
 
   std::optional<double> u_V_;
-  double x_ = 0.0, w_ = 0.0, noisy_ = 0.0;
+  double x_ = 0.0, w_ = 0.0, noisy_ = 0.0, lived_s_ = 0.0;
   std::mt19937 random_{7};
   std::normal_distribution<double> normal_;
 };
@@ -66,6 +72,7 @@ struct OwnBoard {
   std::shared_ptr<OwnMachine> machine = std::make_shared<OwnMachine>();
   std::shared_ptr<host::SimulatedLink> link;
   long reports_left = -1;  ///< below 0: it does not break
+  bool dies_then = false;  ///< the whole program, at once
 
   /// With a home switch, which own_options() look for.
   static hal::pc::AxisWiring usual_wiring() {
@@ -84,6 +91,7 @@ struct OwnBoard {
    public:
     explicit Way(OwnBoard& board) : board_(board) {}
     void send(const hal::HidReport& report) override {
+      if (board_.reports_left == 0 && board_.dies_then) ::raise(SIGKILL);
       if (board_.reports_left == 0) throw host::Failure(host::ExitCode::no_such_device, "the board is gone");
       if (board_.reports_left > 0) --board_.reports_left;
       board_.link->send(report);
