@@ -75,6 +75,23 @@ struct Page {
   }
 };
 
+/// What was found, for someone who has not seen this tool; how it was found is told below.
+std::vector<std::string> findings(const Page& page) {
+  const std::vector<std::string> kinds = page.added();
+  if (kinds.empty()) return {page.state.at("verdict").at("explanation")};
+  std::vector<std::string> sentences;
+  for (const std::string& kind : kinds)
+    if (const sim::EffectInfo* info = sim::find_effect(kind))
+      sentences.push_back(fmt::format("{}: {}. Usual origin: {}.", info->title, info->shows, info->origin));
+  const auto& ladder = page.improvement["ladder"];
+  sentences.push_back(
+      fmt::format("On motions that no fit has seen, the model errs by {} times what the sensors leave open without {}, "
+                  "and by {} times with {}.",
+                  format_value(ladder.front()["validate"].get<double>()), kinds.size() > 1 ? "them" : "it",
+                  format_value(ladder.back()["validate"].get<double>()), kinds.size() > 1 ? "them" : "it"));
+  return sentences;
+}
+
 Verdict verdict_of(const Page& page) {
   Verdict verdict;
   verdict.tone = page.is_new() ? Tone::good : Tone::neutral;
@@ -83,7 +100,7 @@ Verdict verdict_of(const Page& page) {
       fmt::format("Following error: {} µm before, {}, floor {}. Cause: {}.", format_value(page.before()),
                   page.has_after() ? format_value(page.after()) + " after" : "stopped by the new parameters",
                   format_value(page.floor()), page.cause());
-  verdict.sentences.push_back(page.state.at("verdict").at("explanation"));
+  verdict.sentences = findings(page);
   verdict.sentences.push_back(
       fmt::format("The {} parameters are on the board{}.", page.is_new() ? "new" : "old",
                   page.state.value("saved", false) ? " and saved" : "; they are not saved yet"));
@@ -192,7 +209,8 @@ Table pages_table(const Page& page) {
   table.headings = {"page", "what it shows"};
   for (const auto& [file, shows] :
        {std::pair{"improvement.html", "the residual before and after, along speed, travel and time"},
-        {"diagnosis.html", "every effect that was tried, and how much each explains"}}) {
+        {"diagnosis.html", "every effect that was tried, and how much each explains"},
+        {"response.html", "the measured frequency response, and the loop that was designed on it"}}) {
     if (!page.session.folder().has(file)) continue;
     table.rows.push_back({file, shows});
     table.links.emplace_back(file);
