@@ -57,11 +57,13 @@ class ExcitationService {
     plan_.amplitude = in_core_units(r.amplitude, r.input, values, rate_Hz);
     plan_.ride = in_core_units(r.ride, static_cast<std::uint8_t>(ExcitationInput::jog), values, rate_Hz);
     axis_ = r.axis;
-    return is_possible(plan_);
+    if (!is_possible(plan_)) return false;
+    run_.prepare(plan_);
+    return true;
   }
 
   // The background, while the control interrupt is shut out.
-  void start() { run_.start(plan_); }
+  void start() { run_.start(); }
   void stop() { run_.stop(); }
   ExcitationStatePayload state() const {
     return {.phase = static_cast<std::uint8_t>(run_.phase()),

@@ -1,10 +1,12 @@
 // The excitations themselves: what comes out is what was asked for, in float and in fixed point.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "firmware/core/arithmetic/fixed_point.hpp"
@@ -107,6 +109,36 @@ TYPED_TEST(Excitation, AMultisineHasItsLinesAndNothingBetweenThem) {
     else
       EXPECT_LT(found, 1.1 * rounding) << "between the lines, at " << harmonic;
   }
+}
+
+/// Ten seconds at 20 kHz, of which the slowest line takes all. Catches oscillators that gain, lose or drift, and a step
+/// that is too coarse for a slow line.
+TYPED_TEST(Excitation, ALongPeriodIsAsExactAtItsEnd) {
+  constexpr std::uint32_t kPeriod = 200'000;
+  constexpr std::array<std::uint32_t, 4> kLines = {1, 77, 9'999, 79'999};
+  this->plan.kind = ExcitationKind::multisine;
+  this->plan.count = kLines.size();
+  this->plan.period = kPeriod;
+  for (std::size_t i = 0; i < kLines.size(); ++i)
+    this->plan.entry[i] = {volts<TypeParam>(0.5),
+                           static_cast<std::uint32_t>(std::llround(std::ldexp(kLines[i], 32) / kPeriod)),
+                           static_cast<std::uint32_t>(i * 0x1F3D5B79u)};
+  this->generator.start(this->plan);
+  double most = 0.1 * kStep_V;  // what the words of the steps, of 2^-31, add up to
+  for (const std::uint32_t line : kLines)
+    most += 0.5 * kPeriod * std::ldexp(1.0, -30) / std::cos(std::numbers::pi * line / kPeriod);
+  EXPECT_LT(most, 2.5 * kStep_V);
+  double worst = 0.0;
+  for (std::uint32_t k = 0; k < 2 * kPeriod; ++k) {
+    double wanted = 0.0;
+    for (const auto& line : std::span(this->plan.entry).first(kLines.size())) {
+      const std::uint32_t turn = line.second + k % kPeriod * line.first;
+      wanted += 0.5 * std::sin(2.0 * std::numbers::pi * std::ldexp(static_cast<double>(turn), -32));
+    }
+    const double error = std::abs(in_volts(this->generator.next(false)) - wanted);
+    if (k > 1) worst = std::max(worst, error);
+  }
+  EXPECT_LT(worst, most);
 }
 
 TYPED_TEST(Excitation, AChirpGoesFromItsFirstFrequencyToItsLast) {

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "firmware/core/excitation/excitation_plan.hpp"
-#include "firmware/core/excitation/sine_table.hpp"
+#include "firmware/core/excitation/line_bank.hpp"
 
 namespace firmware {
 
 /// No division and no library call in next(); its loop is bounded by kExcitationEntries. Periodic kinds are exactly
-/// periodic: phases are whole numbers, and those of a multisine begin anew with each of its periods.
+/// periodic: phases are whole numbers, and the lines of a multisine begin anew with each of its periods.
 template <typename Scalar>
 class ExcitationGenerator {
  public:
@@ -21,6 +21,7 @@ class ExcitationGenerator {
     fade_step_ = Scalar(1) / ScalarTraits<Scalar>::from_integer(bounded(plan.fade_samples));
     fade_ = Scalar(0);
     is_fading_ = false;
+    if (plan.kind == ExcitationKind::multisine) lines_.prepare(plan.entry.data(), plan.count);
     phase_ = 0;
     step_ = std::uint64_t{plan.step} << 32;
     const std::int64_t sweep = std::int64_t{plan.last_step} - std::int64_t{plan.step};
@@ -97,14 +98,9 @@ class ExcitationGenerator {
   }
 
   constexpr Scalar next_of_lines() {
-    if (left_ == 0) left_ = plan_->period;
-    const Turn passed = plan_->period - left_;  // samples; whole turns do not count
-    --left_;
-    Scalar sum{};
-    const ExcitationEntry<Scalar>* const end = plan_->entry.data() + plan_->count;
-    for (const ExcitationEntry<Scalar>* line = plan_->entry.data(); line != end; ++line)
-      sum = sum + line->value * quick_sine_of<Scalar>(line->second + passed * line->first);
-    return sum;
+    const bool is_last = --left_ == 0;
+    if (is_last) left_ = plan_->period;
+    return lines_.next(is_last);
   }
 
   constexpr Scalar next_of_triangle() {
@@ -117,6 +113,7 @@ class ExcitationGenerator {
   }
 
   const ExcitationPlan<Scalar>* plan_ = nullptr;
+  LineBank<Scalar> lines_;
   std::size_t level_ = 0;
   std::uint32_t left_ = 0;  ///< samples of the level, of the ramp, of the period
   Scalar value_{}, slope_{};

@@ -101,6 +101,8 @@ constexpr bool is_possible(const ExcitationPlan<Scalar>& p) {
   for (std::size_t i = 0; i < p.count; ++i) {
     if (!Traits::is_finite(p.entry[i].value)) return false;
     if (p.kind == ExcitationKind::train && p.entry[i].first == 0) return false;
+    if (p.kind == ExcitationKind::multisine && Traits::magnitude(p.entry[i].value) > Scalar(kMostReferenceCounts))
+      return false;
   }
   // Only a train fits a jog, and only what comes back to where it began a reference.
   if ((p.input == ExcitationInput::jog) != (p.kind == ExcitationKind::train && p.input != ExcitationInput::open_loop))

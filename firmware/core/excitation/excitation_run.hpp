@@ -41,12 +41,17 @@ enum class ExcitationEnd : std::uint8_t {
 template <typename Scalar>
 class ExcitationRun {
  public:
-  /// `plan` is possible, and outlives the run. In an open loop the axis is enabled once it may be; a closed loop is
-  /// enabled already.
-  constexpr void start(const ExcitationPlan<Scalar>& plan) {
+  /// What takes long, and a control interrupt need not wait for, while nothing is active. `plan` is possible, and
+  /// outlives the run.
+  constexpr void prepare(const ExcitationPlan<Scalar>& plan) {
     plan_ = &plan;
     room_ = plan.box.travel_counts - plan.box.travel_counts / 10;
+    too_fast_ = plan.box.speed / 256;
+    nearly_too_fast_ = plan.box.speed / 320;
     generator_.start(plan);
+  }
+  /// In an open loop the axis is enabled once it may be; a closed loop is enabled already.
+  constexpr void start() {
     phase_ = ExcitationPhase::opening;
     end_ = ExcitationEnd::none;
     elapsed_ = waited_ = longest_silence_ = 0;
@@ -55,7 +60,8 @@ class ExcitationRun {
     moved_forward_by_ = moved_backward_by_ = Scalar(0);
     farthest_ = fastest_ = 0;
     sum_of_effects_ = 0;
-    last_value_ = ride_ = last_ride_ = unseen_ = Scalar(0);
+    last_value_ = ride_ = unseen_ = Scalar(0);
+    last_ride_ = plan_->ride;
     earlier_value_ = {};
     last_reference_ = 0;
     is_braking_ = is_asked_ = is_requested_ = false;
@@ -129,10 +135,6 @@ class ExcitationRun {
   template <typename Telemetry>
   constexpr void see(const Telemetry& seen) {
     way_ = static_cast<std::int32_t>(seen.encoder_counts - start_);
-    const bool is_still = magnitude(way_ - still_at_) <= kFlicker;
-    still_before_ = still_samples_;
-    still_samples_ = is_still ? still_samples_ + 1 : 0;
-    if (!is_still) still_at_ = way_;
     const std::int32_t last_speed = speed_;
     const std::int32_t middle = seen_[(place_ + kSpeedSamples) % seen_.size()];
     speed_ = way_ - middle;
@@ -143,7 +145,13 @@ class ExcitationRun {
       is_forward_ = speed_ > 0;
       turned_at_ = way_;
     }
-    if (plan_->input == ExcitationInput::open_loop && phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
+    if (plan_->input == ExcitationInput::open_loop) {
+      const bool is_still = magnitude(way_ - still_at_) <= kFlicker;
+      still_before_ = still_samples_;
+      still_samples_ = is_still ? still_samples_ + 1 : 0;
+      if (!is_still) still_at_ = way_;
+      if (phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
+    }
     farthest_ = larger(farthest_, magnitude(way_));
     fastest_ = larger(fastest_, magnitude(speed_));
   }
@@ -162,11 +170,11 @@ class ExcitationRun {
   constexpr void judge(const Telemetry& seen) {
     if (magnitude(way_) > plan_->box.travel_counts) return leave(ExcitationEnd::travel);
     // One count is the encoder's resolution, and no speed.
-    if (std::int64_t{magnitude(speed_) - 1} * 256 > plan_->box.speed) return leave(ExcitationEnd::speed);
-    if (plan_->box.drive_velocity > Scalar(0) &&
-        Traits::magnitude(seen.tachometer_velocity) > plan_->box.drive_velocity)
-      return leave(ExcitationEnd::speed);
-    if (is_blind(seen)) return leave(ExcitationEnd::blind);
+    if (magnitude(speed_) - 1 > too_fast_) return leave(ExcitationEnd::speed);
+    if (plan_->box.drive_velocity > Scalar(0)) {
+      if (Traits::magnitude(seen.tachometer_velocity) > plan_->box.drive_velocity) return leave(ExcitationEnd::speed);
+      if (is_blind(seen)) return leave(ExcitationEnd::blind);
+    }
     if (plan_->input != ExcitationInput::open_loop) return;
     if (does_nothing()) leave(ExcitationEnd::no_motion);
   }
@@ -201,7 +209,6 @@ class ExcitationRun {
   /// tachometer's scale may be off by as much.
   template <typename Telemetry>
   constexpr bool is_blind(const Telemetry& seen) {
-    if (plan_->box.drive_velocity <= Scalar(0)) return false;
     const Scalar travel = Traits::from_integer(seen.encoder_travel);
     unseen_ = unseen_ + seen.tachometer_velocity * plan_->box.counts_per_velocity - travel;
     const Scalar forgiven = Traits::magnitude(travel) * Scalar(0.125f);
@@ -223,24 +230,33 @@ class ExcitationRun {
     waited_ = 0;
   }
 
-  /// On its way out, so far that it must turn round now; or nearly as fast as it may be. `is_turning`: what acts now
+  /// On its way out, so far that it must turn round now; or nearly as fast as it may be. `is_turning()`: what acts now
   /// slows it down already, and what comes next might not.
-  constexpr bool must_turn(bool is_turning) {
-    const bool is_outward = way_ > 0 ? speed_ > 0 : speed_ < 0;
-    const std::int32_t taken = magnitude(way_ - turned_at_);
-    const std::int32_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
-    const bool is_far = is_outward && magnitude(way_) + needed > room_;
-    const std::int32_t ahead = magnitude(2 * speed_ - speed_before_);  // in kSpeedSamples from now
-    const bool is_fast = std::int64_t{ahead} * 320 > plan_->box.speed && ahead >= magnitude(speed_);
+  template <typename IsTurning>
+  constexpr bool must_turn(IsTurning is_turning) {
     const std::int32_t speed = magnitude(speed_);
-    if (speed < slowest_) slowest_ = speed;
-    // What turned it round still slows it down, until it goes the other way or gains speed again.
-    if (is_forward_ != turned_forward_ || speed > slowest_ + slowest_ / 4 + kSpeedSamples) may_turn_ = true;
-    if (!may_turn_ || is_turning || !(is_far || is_fast)) return false;
+    if (!may_turn_) {
+      // What turned it round still slows it down, until it goes the other way or gains speed again.
+      if (speed < slowest_) slowest_ = speed;
+      may_turn_ = is_forward_ != turned_forward_ || speed > slowest_ + slowest_ / 4 + kSpeedSamples;
+      if (!may_turn_) return false;
+    }
+    if (!(is_far_out() || is_nearly_too_fast(speed)) || is_turning()) return false;
     may_turn_ = false;
     turned_forward_ = is_forward_;
     slowest_ = speed;
     return true;
+  }
+
+  constexpr bool is_far_out() const {
+    if (way_ > 0 ? speed_ <= 0 : speed_ >= 0) return false;
+    const std::int32_t taken = magnitude(way_ - turned_at_);
+    const std::int32_t needed = plan_->box.margin_counts != 0 ? plan_->box.margin_counts : taken + taken / 2;
+    return magnitude(way_) + needed > room_;
+  }
+  constexpr bool is_nearly_too_fast(std::int32_t speed) const {
+    const std::int32_t ahead = magnitude(2 * speed_ - speed_before_);  // in kSpeedSamples from now
+    return ahead > nearly_too_fast_ && ahead >= speed;
   }
 
   constexpr bool is_against_motion(Scalar command) const {
@@ -252,7 +268,7 @@ class ExcitationRun {
   constexpr void drive_open(Axis& axis) {
     Scalar value{};
     if (phase_ == ExcitationPhase::running)
-      value = within(generator_.next(must_turn(is_against_motion(last_value_))), plan_->box.volts);
+      value = within(generator_.next(must_turn([this] { return is_against_motion(last_value_); })), plan_->box.volts);
     else
       value = brake();
     axis.excite(value);
@@ -273,16 +289,16 @@ class ExcitationRun {
   template <typename Axis>
   constexpr void drive_closed(Axis& axis) {
     if (plan_->input == ExcitationInput::jog) {
-      follow(axis, phase_ == ExcitationPhase::running ? generator_.next(must_turn(jogs_back(ride_))) : Scalar(0));
+      follow(axis, phase_ == ExcitationPhase::running ? generator_.next(must_turn([this] { return jogs_back(ride_); }))
+                                                      : Scalar(0));
       return;
     }
-    if (plan_->ride != Scalar(0)) {
+    if (last_ride_ != Scalar(0)) {
       // A turn is decided in one sample and asked for in the next: either takes time.
-      if (last_ride_ == Scalar(0)) last_ride_ = plan_->ride;
       const Scalar wanted = phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0);
       if (wanted != ride_)
         follow(axis, wanted);
-      else if (must_turn(jogs_back(last_ride_)))
+      else if (must_turn([this] { return jogs_back(last_ride_); }))
         last_ride_ = Scalar(0) - last_ride_;
     }
     const Scalar value = generator_.next(false);
@@ -337,6 +353,7 @@ class ExcitationRun {
   std::int64_t start_ = 0;                              ///< counts
   std::int32_t turned_at_ = 0;                          ///< where the axis last went the other way
   std::int32_t way_ = 0;                                ///< from the start
+  std::int32_t too_fast_ = 0, nearly_too_fast_ = 0;     ///< counts in kSpeedSamples
   std::int32_t room_ = 0;                               ///< that a train or a ride may use
   std::array<std::int32_t, 2 * kSpeedSamples> seen_{};  ///< ways
   std::size_t place_ = 0;

@@ -209,7 +209,8 @@ void start_multisine() {
   plan.box.counts_per_velocity = static_cast<Scalar>(std::is_floating_point_v<Scalar> ? kCountsPerVelocity : 1.0f);
   plan.ride = kParameters[0].velocity_limit;
   for (std::uint32_t i = 0; i < plan.count; ++i) plan.entry[i] = {volts(0.01f), (2 * i + 1) * 4294967u, i << 27};
-  excitation.start(plan);
+  excitation.prepare(plan);
+  excitation.start();
 }
 
 void start_capture() {
