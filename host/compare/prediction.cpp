@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <span>
 
 namespace host {
@@ -13,10 +14,11 @@ namespace {
 /// same readings.
 class Restarts {
  public:
-  Restarts(const sim::Drive& drive, const PreparedRecord& prepared)
+  Restarts(const sim::Drive& drive, const PreparedRecord& prepared, std::size_t stride)
       : drive_(drive),
         prepared_(prepared),
         motion_(prepared.motion()),
+        stride_(stride),
         memory_(static_cast<std::size_t>(std::ceil(drive.memory_s() / prepared.period_s))),
         errs_(!drive.encoder_error.empty()),
         shapes_(drive.shapes_effort()) {
@@ -24,32 +26,54 @@ class Restarts {
     if (shapes_) command_V_.resize(motion_.x.size());
   }
 
-  /// Windows must be asked for in rising order.
-  sim::DriveState at(const Window& window) {
+  /// Every stride-th window must be asked for, in rising order.
+  sim::DriveState at(std::size_t index) {
+    const Window& window = prepared_.windows[index];
     const std::size_t row = window.begin;
     const bool shifts = errs_ || shapes_;
     if (memory_ == 0 && !shifts) return drive_.at(motion_.x[row], motion_.w[row]);
+    const ShiftWeights* weights = shifts ? &prepared_.weights_of(window) : nullptr;
     // Rows further back than the drive remembers need not be gone through.
-    const std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother.reach() : 0));
-    here_.begin_at(needed, *this);
-    while (here_.row < row) follow(here_);
-    return shifts ? shifted(here_.state, needed, prepared_.weights_of(window)) : here_.state;
+    std::size_t needed = row - std::min(row, rows_back(row) + (shifts ? prepared_.smoother.reach() : 0));
+    if (shifts) needed = std::min(needed, weights->first);
+    if (!begun_ || needed > row_) begin_at(needed, index);
+    follow_to(row);
+    sim::DriveState state = kept_.front();
+    kept_.pop_front();
+    return shifts ? shifted(state, *weights) : state;
   }
 
  private:
-  /// The drive's state as it goes along the measured motion.
-  struct Follower {
-    sim::DriveState state;
-    std::size_t row = 0;
-    bool begun = false;
+  void begin_at(std::size_t row, std::size_t index) {
+    state_ = drive_.at(motion_.x[row], motion_.w[row]);
+    row_ = row;
+    next_kept_ = index;
+    begun_ = true;
+    keep();
+  }
 
-    void begin_at(std::size_t needed, const Restarts& restarts) {
-      if (begun && needed <= row) return;
-      state = restarts.drive_.at(restarts.motion_.x[needed], restarts.motion_.w[needed]);
-      row = needed;
-      begun = true;
+  /// The shift of a window's readings needs rows beyond those where the next windows begin: their states are kept on
+  /// the way.
+  void keep() {
+    while (next_kept_ < prepared_.windows.size() && prepared_.windows[next_kept_].begin == row_) {
+      kept_.push_back(state_);
+      next_kept_ += stride_;
     }
-  };
+  }
+
+  void follow_to(std::size_t row) {
+    while (row_ < row) {
+      if (errs_) {
+        const double x = motion_.x[row_];
+        reading_[row_] = -drive_.encoder_error_at(x - drive_.encoder_error_at(x));
+      }
+      const double effort = drive_.follow(state_, prepared_.u_V[row_], motion_.x[row_ + 1], motion_.w[row_ + 1],
+                                          prepared_.record->t_s[row_], prepared_.period_s);
+      if (shapes_) command_V_[row_] = effort / drive_.effort_per_volt - prepared_.u_V[row_];
+      ++row_;
+      keep();
+    }
+  }
 
   /// Rest keeps what the motion before it has left: where a second mass stands in its gap, how a bristle is bent.
   std::size_t rows_back(std::size_t row) const {
@@ -59,25 +83,9 @@ class Restarts {
     return std::min(row, back + memory_);
   }
 
-  /// Goes on by a row; returns the effort that the drive delivers meanwhile.
-  double follow(Follower& follower) const {
-    const std::size_t row = follower.row++;
-    return drive_.follow(follower.state, prepared_.u_V[row], motion_.x[row + 1], motion_.w[row + 1],
-                         prepared_.record->t_s[row], prepared_.period_s);
-  }
-
-  sim::DriveState shifted(sim::DriveState restart, std::size_t needed, const ShiftWeights& weights) {
+  sim::DriveState shifted(sim::DriveState restart, const ShiftWeights& weights) {
     const std::size_t count = weights.x_of_reading.size();
-    ahead_.begin_at(std::min(needed, weights.first), *this);
-    while (ahead_.row < weights.first + count) {
-      const std::size_t row = ahead_.row;
-      if (errs_) {
-        const double x = motion_.x[row];
-        reading_[row] = -drive_.encoder_error_at(x - drive_.encoder_error_at(x));
-      }
-      const double effort = follow(ahead_);
-      if (shapes_) command_V_[row] = effort / drive_.effort_per_volt - prepared_.u_V[row];
-    }
+    follow_to(weights.first + count);
     const auto reached = [&](const std::vector<double>& changes) {
       return changes.empty() ? std::span<const double>{} : std::span(changes).subspan(weights.first, count);
     };
@@ -91,10 +99,14 @@ class Restarts {
   const sim::Drive& drive_;
   const PreparedRecord& prepared_;
   const SmoothedMotion& motion_;
+  std::size_t stride_;
   std::size_t memory_;
   bool errs_, shapes_;
-  Follower here_;
-  Follower ahead_;  ///< of here_, by what a row's readings reach back
+  sim::DriveState state_;  ///< as the drive goes along the measured motion
+  std::size_t row_ = 0;
+  bool begun_ = false;
+  std::deque<sim::DriveState> kept_;  ///< at the beginnings of windows not yet asked for
+  std::size_t next_kept_ = 0;
   std::vector<double> reading_, command_V_;
 };
 
@@ -104,9 +116,8 @@ std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const Prepa
                                             std::size_t stride) {
   std::vector<sim::DriveState> states;
   states.reserve(prepared.windows.size() / stride + 1);
-  Restarts restarts(drive, prepared);
-  for (std::size_t index = 0; index < prepared.windows.size(); index += stride)
-    states.push_back(restarts.at(prepared.windows[index]));
+  Restarts restarts(drive, prepared, stride);
+  for (std::size_t index = 0; index < prepared.windows.size(); index += stride) states.push_back(restarts.at(index));
   return states;
 }
 
@@ -127,11 +138,11 @@ void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, s
 void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction& out, std::size_t stride) {
   out.x.resize(prepared.record->size());
   out.w.resize(prepared.record->size());
-  Restarts restarts(drive, prepared);
+  Restarts restarts(drive, prepared, stride);
   std::vector<WindowRun> runs;
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
-    runs.push_back({&window, restarts.at(window), &out.x[window.begin + 1], &out.w[window.begin + 1]});
+    runs.push_back({&window, restarts.at(index), &out.x[window.begin + 1], &out.w[window.begin + 1]});
     if (runs.size() < kSideBySide && index + stride < prepared.windows.size()) continue;
     run_side_by_side(drive, prepared, runs);
     runs.clear();

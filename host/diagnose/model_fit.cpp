@@ -116,7 +116,8 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   solver.max_num_iterations = options.most_iterations;
   solver.function_tolerance = options.least_gain;
   solver.parameter_tolerance = 1e-6;
-  solver.max_num_line_search_step_size_iterations = 6;  // a step that is still bad at a hundredth is bad
+  solver.line_search_interpolation_type = ceres::QUADRATIC;  // a cubic takes all slopes anew at each trial
+  solver.max_num_line_search_step_size_iterations = 6;       // a step that is still bad at a hundredth is bad
   solver.logging_type = ceres::SILENT;
   solver.num_threads = 1;  // candidates are fitted side by side
   Budget budget(*residuals, options.most_steps);

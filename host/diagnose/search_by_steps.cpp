@@ -24,7 +24,7 @@ struct Errors {
 
 /// A pair that takes most of what there is, and leaves more than a complete model does, is part of something.
 bool promises_a_third(const Errors& base, const Errors& pair) {
-  constexpr double kMost = 0.6;
+  constexpr double kMost = 0.4;
   return pair.validation > kExplained && explained_share(base.training, pair.training) > kMost &&
          explained_share(base.validation, pair.validation) > kMost;
 }

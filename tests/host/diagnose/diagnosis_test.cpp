@@ -62,8 +62,8 @@ TEST(Diagnosis, ATachometerWithoutADataSheetHasTheNoiseThatItsRecordShows) {
 
 TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  // One slow record trains, one that is thrice as fast judges: the viscous coefficient of the first is far off there.
-  const host::SimulatedNull null = host::simulated_null(2'002'000'006);
+  // What trains moves so that its viscous coefficient is far off where another motion judges.
+  const host::SimulatedNull null = host::simulated_null(3'000'054);
   const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
   const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
   EXPECT_GT(diagnosis.before_validate, 5.0) << "nothing is left open here";
