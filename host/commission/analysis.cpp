@@ -9,6 +9,7 @@
 #include "host/diagnose/improvement_report.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/model/model_file.hpp"
+#include "sim/drive.hpp"
 
 namespace host {
 
@@ -28,6 +29,10 @@ std::string named(const DiagnosisVerdict& verdict) {
                      fmt::join(verdict.effects, verdict.status == Status::ambiguous ? " or " : " + "),
                      verdict.explanation);
 }
+
+/// What a second mass leaves depends on where spring and gap stood when a window began: the machine's own values leave
+/// three floors. The diagnosis has tried every further effect on top of it, and once more would take minutes.
+int rungs_for(const sim::DriveDescription& model) { return sim::Drive(model).has_second_mass() ? 1 : kMostRungs; }
 
 }  // namespace
 
@@ -75,8 +80,9 @@ CommissionStepResult improve_model(CommissionSession& session) {
   std::optional<Measurements> anew;
   const bool is_known = !is_decided && session.found && session.folder().document().value("runs", 0) == 0;
   if (!is_known) anew = read_measurements(session, model);
-  const Improvement improvement =
-      is_known ? improve(model, session.found->measured, {}, {}, session.found->diagnosis) : improve(model, *anew);
+  const Improvement improvement = is_known ? improve(model, session.found->measured, {}, {}, session.found->diagnosis,
+                                                     rungs_for(session.found->diagnosis.best))
+                                           : improve(model, *anew, {}, {}, {}, rungs_for(model));
   const std::string output = session.folder().path("improved.toml");
   write_model(improvement.model, output);
   const nlohmann::json document = to_json(improvement, output);

@@ -21,9 +21,6 @@ namespace host {
 
 namespace {
 
-/// More rungs than a drive has ever needed; the loop ends long before.
-constexpr int kMostRungs = 5;
-
 Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::string>& added) {
   Rung rung;
   rung.added = added;
@@ -63,10 +60,10 @@ std::vector<ParameterEstimate> document_fit(sim::DriveDescription& model, const 
 }
 
 Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
-                    const std::vector<std::string>& absent, std::optional<Diagnosis> known) {
+                    const std::vector<std::string>& absent, std::optional<Diagnosis> known, int most_rungs) {
   Improvement result;
   sim::DriveDescription current = model;
-  for (int step = 0; step < kMostRungs; ++step) {
+  for (int step = 0; step < most_rungs; ++step) {
     const auto part = [&](double share) {
       if (progress) progress((step + share) / (step + 2.0));
     };

@@ -25,10 +25,14 @@ struct Improvement {
   Diagnosis first;  ///< the diagnosis that the ladder began with
 };
 
+/// More rungs than a drive has ever needed; the ladder ends long before.
+inline constexpr int kMostRungs = 5;
+
 /// Never adds what does not replicate on validation data, nor of the kinds in `absent`. `known`: the diagnosis of this
 /// model on these measurements, where it is there already. Throws as diagnose() does.
 Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
-                    const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt);
+                    const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt,
+                    int most_rungs = kMostRungs);
 
 /// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.

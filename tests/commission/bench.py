@@ -94,8 +94,8 @@ def commission(axistool, base, entry, folder):
     truth.write_text(machine(base, entry["hides"]))
     alike = entry["sheet"].get("one_level")
     sheet.write_text(data_sheet(base, entry["sheet"]["torque"]) + (one_level(base) if alike else ""))
-    common = ["--sim", str(truth), "--seed", str(entry["seed"]), "--box", base["box"]]
-    done, took = run(axistool, str(out), [*common, "--drive", str(sheet)])
+    common = ["--sim", str(truth), "--seed", str(entry["seed"])]
+    done, took = run(axistool, str(out), [*common, "--box", base["box"], "--drive", str(sheet)])
     result = {"name": entry["name"], "hides": [e["kind"] for e in entry["hides"]], "computing_s": took}
     if done.returncode != 0:
         return {**result, "failed": (done.stderr or done.stdout).strip().splitlines()[-1]}
@@ -105,7 +105,8 @@ def commission(axistool, base, entry, folder):
     told = folder / "told"
     shutil.copytree(out, told)
     shutil.copy(truth, told / "improved.toml")
-    other, _ = run(axistool, str(told), [*common, "--drive", str(truth), "--from", "compensate", "--to", "compensate"])
+    roomy = base["box"].replace("time=", "time=1")  # the commissioning itself may have used up the box's time
+    other, _ = run(axistool, str(told), [*common, "--box", roomy, "--drive", str(truth), "--from", "compensate", "--to", "compensate"])
     best = json.loads((told / "commission.json").read_text())["following_error_um"] if other.returncode == 0 else {}
     return {**result, "verdict": state["verdict"], "added": (state.get("decided") or []) + [k for rung in ladder for k in rung["added"]],
             "error": state["following_error_um"], "truth_um": best.get("after"), "kept": state["kept"],
