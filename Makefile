@@ -180,11 +180,12 @@ plan-bench: ## Plan, run and decide on machines made by independent code, pair b
 	$(BUILD)/bin/axis_plan_bench $(or $(CASES),tests/data/drive-cases)
 
 .PHONY: commission-bench
-commission-bench: ## axistool commission on twenty machines whose hidden effects it is not told (ONLY="01-cogging …")
+commission-bench: ## axistool commission on twenty machines whose hidden effects it is not told (ONLY="01-cogging …"), and two of them on a circle
 	$(NEED) build test
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	python3 tests/commission/bench.py $(BUILD)/bin/axistool tests/commission/machines.json $(if $(ONLY),--only $(ONLY))
+	$(if $(ONLY),,python3 tests/commission/contour.py $(BUILD)/bin/axistool tests/commission/machines.json)
 
 .PHONY: mutants
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
