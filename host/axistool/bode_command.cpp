@@ -181,8 +181,9 @@ void add_bode(CLI::App& app) {
       ->check(CLI::Range(0, 60));
   add_output(*command, "-o,--records", arguments->folder, "folder for the records of the runs",
              FileRole::output_folder);
-  add_output(*command, "--model-output", arguments->model_output,
-             "with --model: the model with compliance and delay as starts for a fit, where the response shows them");
+  add_output(
+      *command, "--model-output", arguments->model_output,
+      "with --model: the model with compliance, and delay or lag, as starts for a fit, where the response shows them");
   add_output(*command, "--report", arguments->report, "write an HTML page with plots to this file");
   add_accept_option(*command, arguments->accepted);
   add_device_options(*command, *arguments);

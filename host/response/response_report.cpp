@@ -22,17 +22,15 @@ constexpr double kNyquistReach = 2.5;  ///< what of the open loop is drawn about
 
 double decibels(double value) { return 20.0 * std::log10(std::max(value, std::numeric_limits<double>::min())); }
 
-/// Degrees without jumps of a turn, beginning between -360 and 0.
+/// Degrees without jumps of a turn, in the middle between -360 and 0: lines at the ends may be noise.
 std::vector<double> unwrapped(const std::vector<Complex>& values) {
   std::vector<double> phase;
   for (const Complex& value : values) {
-    double next = std::arg(value) * kDegrees;
-    if (phase.empty())
-      next -= next > 0.0 ? 360.0 : 0.0;
-    else
-      next += 360.0 * std::round((phase.back() - next) / 360.0);
-    phase.push_back(next);
+    const double next = std::arg(value) * kDegrees;
+    phase.push_back(phase.empty() ? next : next + 360.0 * std::round((phase.back() - next) / 360.0));
   }
+  const double turns = phase.empty() ? 0.0 : 360.0 * std::ceil(phase[phase.size() / 2] / 360.0);
+  for (double& one : phase) one -= turns;
   return phase;
 }
 
