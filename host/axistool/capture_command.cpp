@@ -130,6 +130,12 @@ void run(const CaptureArguments& arguments) {
   }
   double seconds = settings.duration_s;
   for (const host::JogStep& jog : settings.jogs) seconds += arguments.duration_s > 0.0 ? 0.0 : jog.duration_s;
+  const auto mask = static_cast<std::uint8_t>(1u << settings.axis);
+  const bool enables = !settings.jogs.empty() && !host::are_enabled(board, mask);
+  if (enables) {
+    require_consent(arguments, fmt::format("Enable axis {} and jog it?", arguments.axis));
+    host::enable_and_wait(board, mask);
+  }
   host::Capture capture;
   {
     host::Progress progress("capture", std::max<std::size_t>(1, static_cast<std::size_t>(seconds * rate_Hz)));
@@ -139,6 +145,7 @@ void run(const CaptureArguments& arguments) {
       shown = std::max(shown, rows);
     });
   }
+  if (enables) host::disable_and_wait(board, mask);
   write(arguments, capture, settings);
   if (capture.lost > 0)
     throw host::Failure(
@@ -175,7 +182,7 @@ void add_capture(CLI::App& app) {
   command->add_flag("--wide", arguments->wide, "in the board's memory: all digits of speeds, errors and voltages");
   command->add_flag("--last", arguments->last, "what the board's memory holds, also from before its last reset");
   command->add_option("--wait", arguments->wait_s, "seconds to wait for the trigger")->capture_default_str();
-  command->add_option("--jog", arguments->jogs, "SPEED:SECONDS, one after the other, meanwhile; the axis is enabled")
+  command->add_option("--jog", arguments->jogs, "SPEED:SECONDS, one after the other, meanwhile; an axis that is not enabled is so for that time")
       ->delimiter(',');
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--drive", arguments->drive, "name of the drive in the record; default: the axis");

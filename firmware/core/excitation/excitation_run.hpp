@@ -56,6 +56,9 @@ class ExcitationRun {
     end_ = ExcitationEnd::none;
     elapsed_ = waited_ = longest_silence_ = 0;
     still_samples_ = still_before_ = still_at_ = rest_at_ = 0;
+    largest_for_ = 0;
+    largest_change_ = 0;
+    is_abrupt_ = was_forward_ = false;
     woken_by_ = Scalar(0);
     moved_forward_by_ = moved_backward_by_ = Scalar(0);
     farthest_ = fastest_ = 0;
@@ -150,6 +153,7 @@ class ExcitationRun {
       still_before_ = still_samples_;
       still_samples_ = is_still ? still_samples_ + 1 : 0;
       if (!is_still) still_at_ = way_;
+      largest_change_ = larger(largest_change_, magnitude(speed_ - last_speed));
       if (phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
     }
     farthest_ = larger(farthest_, magnitude(way_));
@@ -179,18 +183,26 @@ class ExcitationRun {
     if (does_nothing()) leave(ExcitationEnd::no_motion);
   }
 
-  /// A command near the largest, or well above what has moved the axis this way before, and no more than a flicker of
-  /// the encoder: for as long as the plan says, or, once the axis has moved, for four times the longest such silence
-  /// until then. Weight, cogging and friction differ by direction.
+  /// No more than a flicker of the encoder under a command near the largest, for as long as the plan says: all in all
+  /// before the axis has moved at all, at one time afterwards, for it may hang in a cog, or be shaken too quickly to
+  /// move. An encoder that died in motion looks alike. Where no tachometer shows that, a standstill that began more
+  /// abruptly than the axis ever changed its speed is not believed: then a command well above what has moved the axis
+  /// this way before has only four times the longest silence until then. Weight, cogging and friction differ by
+  /// direction.
   constexpr bool does_nothing() {
     const Scalar command = Traits::magnitude(last_value_);
     Scalar& moved_by = last_value_ > Scalar(0) ? moved_forward_by_ : moved_backward_by_;
-    const bool is_large =
-        command >= plan_->amplitude * Scalar(0.9f) || (moved_by > Scalar(0) && command > moved_by + moved_by * kUneven);
     if (still_samples_ > 0) {
-      if (is_large) ++waited_;
-      const std::uint32_t patience = 4 * longest_silence_ + kStill;
-      return waited_ > (moved_by > Scalar(0) && patience < plan_->stall_samples ? patience : plan_->stall_samples);
+      if (still_samples_ == kSpeedSamples) is_abrupt_ = magnitude(speed_before_) > 2 * largest_change_;
+      const bool is_largest = command >= plan_->amplitude * Scalar(0.9f) && (last_value_ > Scalar(0)) == was_forward_;
+      largest_for_ = is_largest ? largest_for_ + 1 : 0;
+      was_forward_ = last_value_ > Scalar(0);
+      const bool is_enough = moved_by > Scalar(0) && command > moved_by + moved_by * kUneven;
+      if (is_enough || is_largest) ++waited_;
+      const bool is_seen = plan_->box.drive_velocity > Scalar(0);
+      const bool has_moved = moved_forward_by_ > Scalar(0) || moved_backward_by_ > Scalar(0);
+      return (has_moved ? largest_for_ : waited_) > plan_->stall_samples ||
+             (is_abrupt_ && !is_seen && moved_by > Scalar(0) && waited_ > 4 * longest_silence_ + kStill);
     }
     if (still_before_ >= kStill) {
       rest_at_ = way_;
@@ -201,7 +213,7 @@ class ExcitationRun {
     if (is_away && (woken_by_ > Scalar(0)) == (last_value_ > Scalar(0)) && Traits::magnitude(woken_by_) > moved_by)
       moved_by = Traits::magnitude(woken_by_);
     if (waited_ > longest_silence_) longest_silence_ = waited_;
-    waited_ = 0;
+    waited_ = largest_for_ = 0;
     return false;
   }
 
@@ -345,6 +357,8 @@ class ExcitationRun {
   std::uint32_t elapsed_ = 0;                           ///< samples of the excitation
   std::uint32_t waited_ = 0;                            ///< samples: for the enable, for a first count, of braking
   std::uint32_t longest_silence_ = 0;                   ///< under a large command, samples
+  std::uint32_t largest_for_ = 0;                       ///< samples of a standstill under a command near the largest
+  std::int32_t largest_change_ = 0;                     ///< of speed_ in a sample
   std::int32_t still_samples_ = 0, still_before_ = 0;   ///< with no more than a flicker: now, and a sample ago
   std::int32_t still_at_ = 0;                           ///< where
   std::int32_t rest_at_ = 0;                            ///< where a longer standstill ended
@@ -366,6 +380,7 @@ class ExcitationRun {
   std::array<Scalar, 2> earlier_value_{};
   Scalar unseen_{};  ///< counts
   Increment last_reference_ = 0;
+  bool is_abrupt_ = false, was_forward_ = false;  ///< how the standstill began; the command's direction in it
   bool is_asked_ = false, is_requested_ = false, is_braking_ = false, brakes_forward_ = true;
   bool is_forward_ = true, turned_forward_ = true, may_turn_ = true;
 };

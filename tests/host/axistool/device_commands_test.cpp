@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -129,6 +130,17 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_EQ(run("capture -o " + file("fast.csv") + " --jog 20:0.1,-5000:0.1").exit_code, 8);
   EXPECT_EQ(run("disable").exit_code, 0);
   EXPECT_EQ(json("faults")["axes"][0]["fault"], "none");
+}
+
+TEST_F(DeviceCommands, CaptureEnablesTheAxisThatItJogs) {
+  fit();
+  const std::string capture = "capture -o " + file("jogs.csv") + " --jog 20:0.2,-20:0.2";
+  EXPECT_EQ(run(capture).exit_code, 8) << "nobody answers the question";
+  const ProgramRun done = run(capture + " --yes");
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  const host::Record record = host::read_record(file("jogs.csv"));
+  EXPECT_GT(*std::max_element(record.x.begin(), record.x.end()) - record.x.front(), 2.0);
+  EXPECT_EQ(run("jog x 10").exit_code, 8) << "still enabled";
 }
 
 TEST_F(DeviceCommands, ATriggerKeepsWhatWasBefore) {

@@ -120,4 +120,31 @@ TEST_P(ExciteRefuses, ToGoOnOutsideTheBox) {
   EXPECT_LT(std::abs(record.x.back() - record.x[record.size() - 20]), 0.002) << "it stands at the end";
 }
 
+#define COGGING_SHEET                                                                                             \
+  "kind = \"rotary\"\namplifier_gain_A_per_V = 6.5\ntorque_constant_Nm_per_A = 0.48\nlead_mm_per_rad = 1.59155\n" \
+  "sample_period_s = 0.001\n[drive.dac]\nresolution_V = 0.00030517578125\nlimit_V = 10.0\n[drive.encoder]\n"      \
+  "resolution_mm = 0.001\n"
+constexpr const char* kCogging =
+    "[[effect]]\nkind = \"inertia\"\nJ_kg_m2 = 0.0081\n[[effect]]\nkind = \"coulomb\"\npositive_Nm = 2.1\n"
+    "negative_Nm = -1.8\n[[effect]]\nkind = \"cogging\"\ncosine_Nm = 1.5\nsine_Nm = 0.0\nperiod_mm = 4.0\n";
+const Drive kCoggingDrives[] = {
+    {"with a tachometer", COGGING_SHEET "[drive.tach]\nnoise_variance_rad2_s2 = 0.05\n", kCogging, "", "", 0, 0, 0},
+    {"encoder alone", COGGING_SHEET, kCogging, "", "", 0, 0, 0},
+};
+class ExciteACoggingAxis : public Excite {};
+INSTANTIATE_TEST_SUITE_P(Drives, ExciteACoggingAxis, testing::ValuesIn(kCoggingDrives), name_of);
+
+/// Friction and cogging hold it at up to 1.2 V in one place and at 0.2 V in another. Catches a standstill in a cog that
+/// is taken for a jam.
+TEST_P(ExciteACoggingAxis, GoesOnWhereItHangs) {
+  for (const char* words : {"x ramp", "x sine", "x chirp", "x steps"}) {
+    const ProgramRun done =
+        excite(std::string(words) + " --yes --box travel=40,speed=150,volts=2,time=5 --drive " + data_sheet());
+    EXPECT_EQ(done.exit_code, 0) << words << ": " << done.output;
+  }
+  const ProgramRun weak = excite("x steps --yes --box travel=40,speed=150,volts=0.15,time=5 --drive " + data_sheet());
+  EXPECT_EQ(weak.exit_code, 8);
+  EXPECT_THAT(weak.output, HasSubstr("nothing moved")) << "and what never moves is told";
+}
+
 }  // namespace
