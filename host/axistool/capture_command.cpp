@@ -182,7 +182,9 @@ void add_capture(CLI::App& app) {
   command->add_flag("--wide", arguments->wide, "in the board's memory: all digits of speeds, errors and voltages");
   command->add_flag("--last", arguments->last, "what the board's memory holds, also from before its last reset");
   command->add_option("--wait", arguments->wait_s, "seconds to wait for the trigger")->capture_default_str();
-  command->add_option("--jog", arguments->jogs, "SPEED:SECONDS, one after the other, meanwhile; an axis that is not enabled is so for that time")
+  command
+      ->add_option("--jog", arguments->jogs,
+                   "SPEED:SECONDS, one after the other, meanwhile; an axis that is not enabled is so for that time")
       ->delimiter(',');
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--drive", arguments->drive, "name of the drive in the record; default: the axis");
