@@ -65,6 +65,7 @@ struct RichContact {
         level(product(drive.level_factor, t_s, x)),
         viscosity(product(drive.viscous_factor, t_s)),
         carried(drive.transmitted_share * std::abs(motor)) {
+    for (const auto& further : drive.friction_along_position) carried += further(x);
     for (const auto& further : drive.friction_after_reversal) carried += further(std::abs(x - motion.turned_x));
   }
 

@@ -9,8 +9,8 @@
 namespace sim {
 
 /// Coordinates that a free curve may go over.
-inline constexpr std::string_view kCurveCoordinates[] = {"speed", "position", "travel_since_reversal", "time",
-                                                         "current"};
+inline constexpr std::string_view kCurveCoordinates[] = {
+    "speed", "position", "friction_along_position", "travel_since_reversal", "time", "current"};
 
 /// Straight between knots, level beyond the first and the last.
 class Curve {

@@ -40,8 +40,8 @@ void Drive::settle() {
   const bool stribeck =
       std::ranges::any_of(friction, [](const FrictionSide& side) { return side.omega1 > 0.0 || side.omega2 > 0.0; });
   const bool rich = !level_factor.empty() || !viscous_factor.empty() || !sliding_friction.empty() ||
-                    !friction_after_reversal.empty() || transmitted_share != 0.0 || friction_memory_s > 0.0 ||
-                    dwell_gain > 0.0;
+                    !friction_along_position.empty() || !friction_after_reversal.empty() || transmitted_share != 0.0 ||
+                    friction_memory_s > 0.0 || dwell_gain > 0.0;
   contact_form_ = rich ? ContactForm::rich : (stribeck ? ContactForm::stribeck : ContactForm::coulomb);
   bare_ = !rich && current_lag_s <= 0.0 && tach_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
           load_effort.empty();

@@ -131,6 +131,7 @@ class Drive {
   std::vector<std::function<double(double t_s)>> viscous_factor;
   /// Further friction of a direction (0 forward, 1 backward) at speed >= 0.
   std::vector<std::function<FrictionPoint(int side, double speed)>> sliding_friction;
+  std::vector<std::function<double(double x)>> friction_along_position;  ///< further friction level, Nm or N
   /// Further friction level by the travel since the last reversal, mm or m.
   std::vector<std::function<double(double travelled)>> friction_after_reversal;
   double transmitted_share = 0.0;  ///< friction per transmitted effort

@@ -245,17 +245,18 @@ void name_coordinate(Diagnosis& diagnosis) {
       " A free curve of {} knots over {} takes {:.0f} % of the squared effort that is left (axistool add MODEL "
       "free_curve --over {}).",
       curve->knots, spaced(curve->over), 100.0 * share, curve->over);
-  const auto along = [&](const std::string& coordinate) {
-    return std::ranges::find(diagnosis.residual.dependences, coordinate, &ResidualDependence::coordinate);
+  const std::string coordinate = curve->over == "friction_along_position" ? "position" : curve->over;
+  const auto along = [&](const std::string& name) {
+    return std::ranges::find(diagnosis.residual.dependences, name, &ResidualDependence::coordinate);
   };
   const auto none = diagnosis.residual.dependences.end();
-  const auto named = along(verdict.coordinate), taken = along(curve->over);
+  const auto named = along(verdict.coordinate), taken = along(coordinate);
   // From one moment to the next everything lasts.
   if (named != none && named->coordinate != "time" && named->share >= share) return;
-  if (verdict.coordinate == curve->over) return;
-  verdict.coordinate = curve->over;
+  if (verdict.coordinate == coordinate) return;
+  verdict.coordinate = coordinate;
   verdict.where = taken == none ? "over all of it" : taken->where;
-  verdict.explanation += fmt::format(" So it goes with {}.", spaced(curve->over));
+  verdict.explanation += fmt::format(" So it goes with {}.", spaced(coordinate));
 }
 
 nlohmann::json effort_screen_json(const EffortScreen& screen) {

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "host/compare/chance.hpp"
-#include "host/effort/effort_terms.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
 
@@ -49,10 +48,12 @@ struct Prior {
   bool held = false;
 };
 
-/// Regression of the effort of the training rows.
+/// Regression of the effort of the training rows, or of a part of it.
 class Regressor {
  public:
-  Regressor(const sim::DriveDescription& model, const EffortRows& rows) : model_(model), rows_(rows) {
+  Regressor(const sim::DriveDescription& model, const EffortRows& rows) : Regressor(model, rows, rows.effort) {}
+  Regressor(const sim::DriveDescription& model, const EffortRows& rows, const VectorXd& effort)
+      : model_(model), rows_(rows), effort_(effort) {
     train_.resize(rows.effort.size());
     for (Index k = 0; k < train_.size(); ++k) train_(k) = rows.judges[static_cast<std::size_t>(k)] ? 0.0 : 1.0;
     effort_train_ = root_mean_square(rows, rows.effort, false);
@@ -85,7 +86,7 @@ class Regressor {
     }
     const MatrixXd seen = train_.asDiagonal() * phi;
     const MatrixXd moments = seen.transpose() * seen;
-    const VectorXd projection = seen.transpose() * rows_.effort;
+    const VectorXd projection = seen.transpose() * effort_;
     std::vector<bool> fixed(static_cast<std::size_t>(width));
     for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = beliefs[c].held;
     VectorXd theta = solve(moments, projection, beliefs, fixed, 0.0);
@@ -107,7 +108,7 @@ class Regressor {
         held->push_back(fmt::format("{} would come out negative", base[static_cast<std::size_t>(worst)].kind));
     }
     if (!theta.allFinite()) return false;
-    out.residual = rows_.effort - phi * theta;
+    out.residual = effort_ - phi * theta;
     out.model = model_;
     out.factors = static_cast<std::size_t>(width);
     at = 0;
@@ -175,7 +176,7 @@ class Regressor {
 
   /// Variance of a row's residual as if rows were independent: rows of a block are alike, and count for fewer.
   double effective_variance(const MatrixXd& phi, const VectorXd& theta) const {
-    const VectorXd residual = train_.asDiagonal() * (rows_.effort - phi * theta);
+    const VectorXd residual = train_.asDiagonal() * (effort_ - phi * theta);
     double squares = 0.0, sums = 0.0, sum = 0.0;
     for (Index k = 0; k < residual.size(); ++k) {
       const auto row = static_cast<std::size_t>(k);
@@ -211,6 +212,7 @@ class Regressor {
 
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
+  const VectorXd& effort_;  ///< what is left to explain, one element a row
   VectorXd train_;
   double effort_train_, effort_validate_;  ///< RMS of all that the motor gave
 };
@@ -440,6 +442,22 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
   }
   screen.repeatable = repeatability(screen.rows, screen.best().residual);
   return screen;
+}
+
+std::optional<ScreenedModel> refitted_with(const EffortScreen& screen, const EffortTerm& term) {
+  const ScreenedModel& now = screen.best();
+  // What stands beside the term is fitted again where the regression knows all of it.
+  const bool whole = screen.chosen.empty() || has_linear_form(now.model);
+  const Regressor regressor(now.model, screen.rows, whole ? screen.rows.effort : now.residual);
+  ScreenedModel with;
+  if (!regressor.fit(whole ? base_terms(now.model, screen.rows) : std::vector<EffortTerm>{}, {&term}, with)) return {};
+  with.kinds = now.kinds;
+  with.kinds.push_back(term.kind);
+  with.words = term.words;
+  with.train = root_mean_square(screen.rows, with.residual, false) / screen.effort_train;
+  with.validate = root_mean_square(screen.rows, with.residual, true) / screen.effort_validate;
+  with.confidence = regressor.confidence(now, with);
+  return with;
 }
 
 }  // namespace host

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/effort/effort_rows.hpp"
+#include "host/effort/effort_terms.hpp"
 #include "host/effort/repeatability.hpp"
 
 namespace host {
@@ -42,5 +43,9 @@ struct EffortScreen {
 /// slide.
 EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
                            std::size_t most_steps = 3, const std::vector<std::string>& absent = {});
+
+/// The best model with one term more, and all that it held fitted again beside it. Nothing where a factor has no room
+/// within physics.
+std::optional<ScreenedModel> refitted_with(const EffortScreen& screen, const EffortTerm& term);
 
 }  // namespace host

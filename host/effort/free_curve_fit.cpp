@@ -19,8 +19,6 @@ using Eigen::VectorXd;
 
 /// A further knot must take this part of the judging rows' squared error.
 constexpr double kLeastGain = 0.01;
-/// Neighbouring values are drawn together as by so many rows that see no difference between them.
-constexpr double kSmoothing = 1e-3;
 
 /// Travel since the motion last turned over, at the rows.
 VectorXd travel_since_reversal(const EffortRows& rows) {
@@ -51,7 +49,8 @@ std::optional<Coordinate> coordinate_of(const EffortRows& rows, std::string_view
   if (over == "current") return Coordinate{rows.effort, one};
   if (!rows.has_position) return {};
   if (over == "position") return Coordinate{rows.x, one};
-  return Coordinate{travel_since_reversal(rows), rows.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; })};
+  return Coordinate{over == "friction_along_position" ? rows.x : travel_since_reversal(rows),
+                    rows.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; })};
 }
 
 /// Knots that part the training rows evenly.
@@ -84,40 +83,13 @@ MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
   return columns;
 }
 
-std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view over, std::size_t count) {
-  const EffortRows& rows = screen.rows;
-  const std::optional<Coordinate> coordinate = coordinate_of(rows, over);
-  if (!coordinate) return {};
-  const std::vector<double> knots = knots_of(rows, coordinate->at, count);
-  if (knots.size() < 2) return {};
-  const MatrixXd columns = hats(*coordinate, knots);
-  MatrixXd seen = columns;
-  for (Index k = 0; k < seen.rows(); ++k)
-    if (rows.judges[static_cast<std::size_t>(k)]) seen.row(k).setZero();
-  MatrixXd moments = seen.transpose() * seen;
-  const double smooth = kSmoothing * moments.trace();
-  for (Index n = 1; n < moments.cols(); ++n) {
-    moments(n, n) += smooth;
-    moments(n - 1, n - 1) += smooth;
-    moments(n, n - 1) -= smooth;
-    moments(n - 1, n) -= smooth;
-  }
-  moments.diagonal().array() += 1e-9 * moments.trace();
-  const ScreenedModel& before = screen.best();
-  const VectorXd values = moments.ldlt().solve(seen.transpose() * before.residual);
-  if (!values.allFinite()) return {};
-
-  FreeCurveFit fit{std::string(over), knots.size(), before};
-  fit.model.residual = before.residual - columns * values;
-  fit.model.train = root_mean_square(rows, fit.model.residual, false) / screen.effort_train;
-  fit.model.validate = root_mean_square(rows, fit.model.residual, true) / screen.effort_validate;
-  fit.model.kinds.emplace_back("free_curve");
-  fit.model.words = fmt::format("over {}, {} knots", over, knots.size());
+/// The curve's entry: `values` at `knots`, with bands that take the rest of the model as it is.
+sim::EffectEntry entry_of(std::string_view over, const std::vector<double>& knots, const VectorXd& values,
+                          const MatrixXd& information, double variance) {
   sim::EffectEntry entry;
   entry.kind = "free_curve";
   entry.over = over;
-  const double variance = std::pow(root_mean_square(rows, fit.model.residual, false), 2);
-  const MatrixXd covariance = variance * moments.ldlt().solve(MatrixXd::Identity(moments.cols(), moments.cols()));
+  const MatrixXd covariance = variance * information.ldlt().solve(MatrixXd::Identity(values.size(), values.size()));
   for (std::size_t n = 0; n < knots.size(); ++n) {
     const auto c = static_cast<Index>(n);
     const std::string id = sim::numbered_id("value", static_cast<double>(n));
@@ -126,8 +98,30 @@ std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view 
     const double reach = kNormal95 * std::sqrt(std::max(0.0, covariance(c, c)));
     entry.ci95[id] = {values(c) - reach, values(c) + reach};
   }
-  fit.model.model.effects.push_back(std::move(entry));
-  return fit;
+  return entry;
+}
+
+std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view over, std::size_t count) {
+  const EffortRows& rows = screen.rows;
+  const std::optional<Coordinate> coordinate = coordinate_of(rows, over);
+  if (!coordinate) return {};
+  const std::vector<double> knots = knots_of(rows, coordinate->at, count);
+  if (knots.size() < 2) return {};
+  EffortTerm term{"free_curve", hats(*coordinate, knots), std::vector<int>(knots.size(), 0), {}, {}};
+  MatrixXd seen = term.columns;
+  for (Index k = 0; k < seen.rows(); ++k)
+    if (rows.judges[static_cast<std::size_t>(k)]) seen.row(k).setZero();
+  MatrixXd information = seen.transpose() * seen;
+  information.diagonal().array() += 1e-9 * information.trace();
+  const double variance = std::pow(root_mean_square(rows, screen.best().residual, false), 2);
+  term.words = fmt::format("over {}, {} knots", over, knots.size());
+  term.write = [&](const VectorXd& values, sim::DriveDescription& model) {
+    model.effects.push_back(entry_of(over, knots, values, information, variance));
+    return true;
+  };
+  std::optional<ScreenedModel> with = refitted_with(screen, term);
+  if (!with) return {};
+  return FreeCurveFit{std::string(over), knots.size(), *std::move(with)};
 }
 
 }  // namespace

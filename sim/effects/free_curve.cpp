@@ -14,6 +14,8 @@ void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
       const double sign = side == 0 ? 1.0 : -1.0;
       return FrictionPoint{sign * curve(sign * speed), curve.slope(sign * speed)};
     });
+  } else if (entry.over == "friction_along_position") {
+    drive.friction_along_position.push_back(curve);
   } else if (entry.over == "travel_since_reversal") {
     drive.friction_after_reversal.push_back(curve);
   } else if (entry.over == "current") {
@@ -32,8 +34,8 @@ const EffectInfo free_curve{
     .title = "A curve without a formula",
     .equation =
         "T_motor = ... + f(q), f straight between its knots and level beyond them; q: speed, position, "
-        "travel_since_reversal, time or current (the motor's torque). Over speed and travel since reversal f is "
-        "friction",
+        "friction_along_position, travel_since_reversal, time or current (the motor's torque). Over speed, along the "
+        "position and since a reversal f is friction",
     .stage = Stage::load,
     .curve = true,
     .parameters = {{.id = "knot",

@@ -98,6 +98,15 @@ TEST(FreeCurve, OverPositionIsWhatTheMotorMustGiveThere) {
   EXPECT_GT(run(drive, drive.at(4.0, 0.0), kCoulomb + 0.2 + 1e-6, 5, 0.001).w, 0.0);
 }
 
+TEST(FreeCurve, FrictionAlongThePositionHoldsBothWays) {
+  const auto drive = Drive(with_curve(coulomb_drive(), "friction_along_position",
+                                      {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 10.0}, {"value_1", 0.5}}));
+  for (const double way : {-1.0, 1.0}) {
+    EXPECT_EQ(run(drive, drive.at(4.0, 0.0), way * (kCoulomb + 0.2 - 1e-6), 5, 0.001).w, 0.0);
+    EXPECT_GT(way * run(drive, drive.at(4.0, 0.0), way * (kCoulomb + 0.2 + 1e-6), 5, 0.001).w, 0.0);
+  }
+}
+
 TEST(FreeCurve, OverTravelSinceReversalBeginsAnewWhenTheMotionTurns) {
   const auto drive = Drive(with_curve(coulomb_drive(), "travel_since_reversal",
                                       {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 1.0}, {"value_1", 0.3}}));

@@ -8,8 +8,10 @@
 
 #include "host/compare/residual_tests.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
+#include "host/diagnose/improvement.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/scoreboard/simulated_null.hpp"
+#include "sim/curve.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
@@ -131,6 +133,16 @@ TEST(Diagnosis, AnEffectOutsideTheCatalogueIsUnexplainedAndItsPlaceIsNamed) {
   EXPECT_LT(from_mm, place_mm);
   EXPECT_GT(to_mm, place_mm);
   EXPECT_LT(to_mm - from_mm, 15.0);  // of 150 mm of travel
+  // A curve of the friction along the travel has a peak there, and is flat elsewhere.
+  const host::Addition added =
+      host::add_free_curve(spoilt.model, "friction_along_position",
+                           host::MeasurementGate(spoilt.model).admit(spoilt.train, spoilt.validate));
+  EXPECT_LT(added.judged.after, 0.7 * added.judged.before);
+  EXPECT_GT(added.judged.confidence, 0.95);
+  const sim::Curve curve(added.judged.model.effects.back());
+  EXPECT_NEAR(curve(place_mm), 1.0, 0.3);
+  EXPECT_NEAR(curve(place_mm - 30.0), 0.0, 0.15);
+  EXPECT_NEAR(curve(place_mm + 30.0), 0.0, 0.15);
   // Programs see what it depends on, too.
   const nlohmann::json residual = host::to_json(diagnosis).at("residual");
   EXPECT_GT(residual.at("dependences").at(0).at("share").get<double>(), 0.1);
