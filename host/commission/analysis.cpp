@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "host/commission/steps.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
@@ -9,6 +12,9 @@
 #include "host/diagnose/improvement_report.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/model/model_file.hpp"
+#include "host/read_file.hpp"
+#include "host/record/edit_record.hpp"
+#include "host/record/read_record.hpp"
 #include "sim/drive.hpp"
 
 namespace host {
@@ -24,15 +30,41 @@ std::vector<std::string> paths(CommissionSession& session, const std::vector<std
   return all;
 }
 
+/// A record from where its axis has been in motion for a moment. How a spring, a gap or bristles stood before is
+/// nowhere recorded: of a machine of two masses, the first tenth of a second makes nine tenths of what its own values
+/// leave.
+Record settled_record(const std::string& path, double resolution) {
+  constexpr double kMoved = 5.0;         // counts: more than an encoder shivers
+  constexpr double kForgotten_s = 0.15;  // a tenth of a second (sim::Drive::memory_s), and what smoothing reaches
+  Record whole = read_record(path);
+  const auto moves =
+      std::ranges::find_if(whole.x, [&](double x) { return std::abs(x - whole.x.front()) > kMoved * resolution; });
+  if (moves == whole.x.end()) return whole;
+  const double from_s = whole.t_s[static_cast<std::size_t>(moves - whole.x.begin())] + kForgotten_s;
+  if (from_s > whole.t_s[whole.size() / 2]) return whole;
+  return cut_record(read_file(path), path, from_s, whole.t_s.back());
+}
+
+Measurements settled(const sim::DriveDescription& model, const std::vector<std::string>& training,
+                     const std::vector<std::string>& judging) {
+  std::vector<Record> train, judge;
+  for (const std::string& path : training) train.push_back(settled_record(path, model.data.encoder_resolution));
+  for (const std::string& path : judging) judge.push_back(settled_record(path, model.data.encoder_resolution));
+  return MeasurementGate(model).admit(std::move(train), std::move(judge));
+}
+
 std::string named(const DiagnosisVerdict& verdict) {
   return fmt::format("{}{}{}. {}", status_name(verdict.status), verdict.effects.empty() ? "" : ": ",
                      fmt::join(verdict.effects, verdict.status == Status::ambiguous ? " or " : " + "),
                      verdict.explanation);
 }
 
-/// What a second mass leaves depends on where spring and gap stood when a window began: the machine's own values leave
-/// three floors. The diagnosis has tried every further effect on top of it, and once more would take minutes.
-int rungs_for(const sim::DriveDescription& model) { return sim::Drive(model).has_second_mass() ? 1 : kMostRungs; }
+/// What a second mass or bristles leave depends on how they stood when a window began: the machine's own values leave
+/// two or three floors. The diagnosis has tried every further effect on top, and once more would take minutes.
+int rungs_for(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return drive.has_second_mass() || drive.bristles.has_value() ? 1 : kMostRungs;
+}
 
 }  // namespace
 
@@ -42,13 +74,13 @@ Measurements read_measurements(CommissionSession& session, const sim::DriveDescr
     for (const auto& file : step.at("files"))
       if (const auto name = file.get<std::string>(); name.starts_with("run-") && name.ends_with(".csv"))
         training.push_back(session.folder().path(name));
-  return MeasurementGate(model).read(training, paths(session, kJudgingFiles));
+  return settled(model, training, paths(session, kJudgingFiles));
 }
 
 CommissionStepResult compare_first(CommissionSession& session) {
   const Computing computing(session);
   const sim::DriveDescription given = read_model(session.folder().require("model.toml", "friction"));
-  const Measurements measured = MeasurementGate(given).read(paths(session, kJudgingFiles));
+  const Measurements measured = settled(given, paths(session, kJudgingFiles), {});
   const sim::DriveDescription model = with_measured_sensors(given, measured);
   const RecordSet set = compare_on(measured.training_records(), model, kWindow_s);
   const ModelComparison comparison = compare_model(model, measured, set, kWindow_s);
