@@ -11,6 +11,7 @@
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/compare/tracking_error.hpp"
+#include "host/evidence/measured_sensors.hpp"
 #include "host/model/model_file.hpp"
 #include "host/output_target.hpp"
 #include "host/record/channel_checks.hpp"

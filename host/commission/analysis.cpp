@@ -10,6 +10,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/improvement_report.hpp"
+#include "host/evidence/measured_sensors.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/model/model_file.hpp"
 #include "host/read_file.hpp"

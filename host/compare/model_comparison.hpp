@@ -39,10 +39,6 @@ struct ModelComparison {
   std::vector<LogFault> log_faults;
 };
 
-/// Completes a data sheet by what the training records show: an encoder's step, a tachometer's noise. Without them a
-/// window in which the axis stands has a floor of nothing.
-sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const Measurements& measured);
-
 /// Compares on a set made of the training records with `compare_on`; `model` has its sensors (with_measured_sensors).
 ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set,
                               double window_s);

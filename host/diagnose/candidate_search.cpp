@@ -314,9 +314,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     const double base_error = fit_model(model, set, options).robust;
     for_each_in_parallel(list.size(), [&](std::size_t k) {
       // What needed a scan on many windows would be lost on a few.
-      FitOptions own = options;
-      if (list[k].scanned) own.most_steps = std::max(own.most_steps, budgeted(kSeriousFit).most_steps);
-      fit_start(list[k], model, list[k].scanned ? medium : set, base_error, own);
+      fit_start(list[k], model, list[k].scanned ? medium : set, base_error, options);
       report();
     });
     std::ranges::stable_sort(list, {}, &Start::error);

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "host/compare/model_comparison.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -16,6 +15,7 @@
 #include "host/diagnose/search_by_steps.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
+#include "host/evidence/measured_sensors.hpp"
 #include "host/identify/inverse_model.hpp"
 
 namespace host {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "host/compare/model_comparison.hpp"
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/effort/free_curve_fit.hpp"
+#include "host/evidence/measured_sensors.hpp"
 #include "host/exit_codes.hpp"
 #include "host/statistics.hpp"
 #include "sim/catalogue.hpp"

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "host/compare/model_comparison.hpp"
+#include "host/evidence/measured_sensors.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/model/model_file.hpp"
