@@ -148,16 +148,19 @@ class ExcitationRun {
       is_forward_ = speed_ > 0;
       turned_at_ = way_;
     }
-    if (plan_->input == ExcitationInput::open_loop) {
-      const bool is_still = magnitude(way_ - still_at_) <= kFlicker;
-      still_before_ = still_samples_;
-      still_samples_ = is_still ? still_samples_ + 1 : 0;
-      if (!is_still) still_at_ = way_;
-      largest_change_ = larger(largest_change_, magnitude(speed_ - last_speed));
-      if (phase_ == ExcitationPhase::running) learn(speed_ - last_speed);
-    }
+    if (plan_->input == ExcitationInput::open_loop) see_open_loop(speed_ - last_speed);
     farthest_ = larger(farthest_, magnitude(way_));
     fastest_ = larger(fastest_, magnitude(speed_));
+  }
+
+  /// Out of line, like does_nothing(): a closed loop has no time to save registers for what it has no use for.
+  [[gnu::noinline]] constexpr void see_open_loop(std::int32_t change_of_speed) {
+    const bool is_still = magnitude(way_ - still_at_) <= kFlicker;
+    still_before_ = still_samples_;
+    still_samples_ = is_still ? still_samples_ + 1 : 0;
+    if (!is_still) still_at_ = way_;
+    largest_change_ = larger(largest_change_, magnitude(change_of_speed));
+    if (phase_ == ExcitationPhase::running) learn(change_of_speed);
   }
 
   /// Which way a command accelerates: the sum of signs of command times change of speed. The speed's middle is two
@@ -189,7 +192,7 @@ class ExcitationRun {
   /// abruptly than the axis ever changed its speed is not believed: then a command well above what has moved the axis
   /// this way before has only four times the longest silence until then. Weight, cogging and friction differ by
   /// direction.
-  constexpr bool does_nothing() {
+  [[gnu::noinline]] constexpr bool does_nothing() {
     const Scalar command = Traits::magnitude(last_value_);
     Scalar& moved_by = last_value_ > Scalar(0) ? moved_forward_by_ : moved_backward_by_;
     if (still_samples_ > 0) {
