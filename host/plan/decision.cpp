@@ -44,7 +44,8 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
     sim::DriveDescription& model = decision.rivals[k].model;
     const double known = chi_square(model, before);
     model = refitted(model, both);
-    decision.chi_square[k] = chi_square(model, both) - known;
+    // A fit that the run has freed from a valley explains no more of the run for explaining more of what was before.
+    decision.chi_square[k] = chi_square(model, both) - std::min(known, chi_square(model, before));
   });
   decision.best = static_cast<std::size_t>(std::ranges::min_element(decision.chi_square) - decision.chi_square.begin());
   const double least = decision.chi_square[decision.best];
