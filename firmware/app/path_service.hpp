@@ -41,10 +41,10 @@ class PathService {
       using Traits = ScalarTraits<float>;
       const float velocity = Traits::from_increment(limits.velocity);
       acceleration[i] = limits.acceleration;
-      // Of an axis's limits the path may need most itself. A share of them keeps both together near the limits: above
-      // by 5 % of the acceleration and 27 % of the jerk at most (tests/host/path/path_slowing_test.cpp).
-      clock_acceleration = std::min(clock_acceleration, 0.75F * Traits::from_increment(limits.acceleration) / velocity);
-      clock_jerk = std::min(clock_jerk, 0.25F * Traits::from_increment(limits.jerk) / velocity);
+      const float per_velocity = 1.0F / velocity;
+      clock_acceleration = std::min(clock_acceleration, PathClock::kAccelerationShare * per_velocity *
+                                                            Traits::from_increment(limits.acceleration));
+      clock_jerk = std::min(clock_jerk, PathClock::kJerkShare * per_velocity * Traits::from_increment(limits.jerk));
     }
     follower_.open(request.mask, request.units, start, acceleration,
                    ScalarTraits<float>::to_increment(clock_acceleration),

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/compare/chance.hpp"
+#include "host/diagnose/probability.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -29,6 +30,8 @@ constexpr double kMostLeft = 0.15;
 constexpr double kSomething = 1.1;
 
 bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  // Where the base is more probably complete than not, whatever improves on it is none.
+  if (std::max(candidate.before, diagnosis.before_train) < ProbabilityScale{}.complete) return false;
   const double least = diagnosis.rough ? kLeastRoughShare : kLeastShare;
   const auto on = [&](double before, double after) {
     return before > kSomething && after < (1.0 - kLeastGain) * before && explained_share(before, after) >= least;

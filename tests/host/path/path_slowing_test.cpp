@@ -29,10 +29,11 @@ Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& 
   const host::PathWords words = path_words(path, scale, units_of(path, scale), {{}, {}});
   auto follower = std::make_unique<firmware::PathFollower<2, 400>>();
   const firmware::Increment most = increment(kAcceleration, 2);
-  follower->open(
-      3, words.units, {}, {most, most},
-      static_cast<firmware::Increment>(0.75 * kAcceleration / kVelocity / kRate_Hz * firmware::kOneCount),
-      static_cast<firmware::Increment>(0.25 * kJerk / kVelocity / kRate_Hz / kRate_Hz * firmware::kOneCount));
+  constexpr double kOne = firmware::kOneCount, kAccelerationShare{firmware::PathClock::kAccelerationShare},
+                   kJerkShare{firmware::PathClock::kJerkShare};
+  follower->open(3, words.units, {}, {most, most},
+                 static_cast<firmware::Increment>(kAccelerationShare * kAcceleration / kVelocity / kRate_Hz * kOne),
+                 static_cast<firmware::Increment>(kJerkShare * kJerk / kVelocity / kRate_Hz / kRate_Hz * kOne));
   follower->override_rate(firmware::kOneCount);
   LedAxes axes;
   Disturbed seen;
