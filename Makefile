@@ -125,8 +125,8 @@ soak: ## A day of motion with sparks, jitter and drift, 10000 random paths, 50 c
 	AXIS_COMMISSION_TRIALS=50 $(BUILD)/bin/test_host_commission --gtest_filter='*AnyMoment*'
 	AXIS_SOAK_HOURS=$(or $(HOURS),24) $(BUILD)/bin/test_firmware_app --gtest_filter='Soak.*'
 	AXIS_EXCITATION_TRIALS=5000 $(BUILD)/bin/test_firmware_app --gtest_filter='ExcitedBoard.*'
-	AXIS_PATH_PROGRAMS=10000 $(BUILD)/bin/test_host_path --gtest_filter='*RandomPrograms*:*ThePathClock*'
 	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
+	AXIS_PATH_PROGRAMS=10000 $(BUILD)/bin/test_host_path --gtest_filter='*RandomPrograms*:*ThePathClock*'
 
 .PHONY: response
 response: ## How often measured frequency responses lie within their own bands, over 200 seeds (SEEDS=n)

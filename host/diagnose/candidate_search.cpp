@@ -69,9 +69,10 @@ RecordSet affordable(const RecordSet& set, const sim::DriveDescription& model, c
 struct Start {
   const sim::EffectInfo* info;
   sim::DriveDescription model;
-  double error = HUGE_VAL;  ///< what is left of the base's error
-  bool scanned = false;     ///< one of many starts, of which a scan has found it the best
-  bool cut_short = false;   ///< a fit ended at its budget
+  double error = HUGE_VAL;                         ///< what is left of the base's error
+  bool scanned = false;                            ///< one of many starts, of which a scan has found it the best
+  bool cut_short = false;                          ///< a fit ended at its budget
+  sim::EffectEntry effect = model.effects.back();  ///< before any fit
 
   /// Takes over what a fit has reached.
   void take(const FitResult& fit) {
@@ -267,6 +268,19 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   return fitted(set, kSeriousFit).front().model;
 }
 
+/// An effect that is no more complicated than the leader's, on the leader's base: its own fit may have bent the base
+/// into a valley from which it did not come back.
+void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescription& base, const RecordSet& set,
+                    const FitOptions& options) {
+  if (rival.effect.parameters.size() > leader.effect.parameters.size()) return;
+  const double base_error = error_of(sim::Drive(base), set).robust;
+  Start again = rival;
+  again.model = leader.model;
+  again.model.effects.back() = rival.effect;
+  fit_start(again, base, set, base_error, options);
+  if (error_of(sim::Drive(again.model), set).robust < error_of(sim::Drive(rival.model), set).robust) rival = again;
+}
+
 }  // namespace
 
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
@@ -344,7 +358,10 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
   }
   const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
+  const std::vector<Start> shaken_first(finalists.begin(), finalists.begin() + (finalists.empty() ? 0 : 1));
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
+    if (k > 0 && k < effort.finalists && finalists[k].error < within)
+      try_on_base_of(shaken_first.front(), finalists[k], model, medium, budgeted(kSeriousFit));
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
     if (k < effort.finalists && finalists[k].error < within)
