@@ -29,8 +29,9 @@ Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& 
   const host::PathWords words = path_words(path, scale, units_of(path, scale), {{}, {}});
   auto follower = std::make_unique<firmware::PathFollower<2, 400>>();
   const firmware::Increment most = increment(kAcceleration, 2);
-  constexpr double kOne = firmware::kOneCount, kAccelerationShare{firmware::PathClock::kAccelerationShare},
-                   kJerkShare{firmware::PathClock::kJerkShare};
+  constexpr double kOne = firmware::kOneCount,
+                   kAccelerationShare = static_cast<double>(firmware::PathClock::kAccelerationShare),
+                   kJerkShare = static_cast<double>(firmware::PathClock::kJerkShare);
   follower->open(3, words.units, {}, {most, most},
                  static_cast<firmware::Increment>(kAccelerationShare * kAcceleration / kVelocity / kRate_Hz * kOne),
                  static_cast<firmware::Increment>(kJerkShare * kJerk / kVelocity / kRate_Hz / kRate_Hz * kOne));
