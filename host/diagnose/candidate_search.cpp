@@ -352,16 +352,17 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     if (std::ranges::find(finalists, start.info, &Start::info) == finalists.end()) finalists.push_back(start);
 
   std::vector<Candidate> candidates(finalists.size());
+  std::optional<Start> leader;
   if (!finalists.empty()) {
     const sim::DriveDescription& first = finalists.front().model;
     const RecordSet own = suited_to(first, affordable(medium, first, kSeriousFit));
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
+    leader = finalists.front();
   }
-  const double within = finalists.empty() ? 0.0 : kClose * finalists.front().error;
-  const std::vector<Start> shaken_first(finalists.begin(), finalists.begin() + (finalists.empty() ? 0 : 1));
+  const double within = leader ? kClose * leader->error : 0.0;
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
     if (k > 0 && k < effort.finalists && finalists[k].error < within)
-      try_on_base_of(shaken_first.front(), finalists[k], model, medium, budgeted(kSeriousFit));
+      try_on_base_of(*leader, finalists[k], model, medium, budgeted(kSeriousFit));
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
     if (k < effort.finalists && finalists[k].error < within)

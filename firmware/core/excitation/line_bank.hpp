@@ -36,7 +36,7 @@ constexpr std::int64_t sine_of_turn(Turn turn) {
 
 /// a * b / 2^32, downwards: one instruction.
 constexpr std::int32_t upper_product(std::int32_t a, std::int32_t b) {
-  return static_cast<std::int32_t>(std::int64_t{a} * b >> 32);
+  return static_cast<std::int32_t>((static_cast<std::int64_t>(a) * b) >> 32);
 }
 
 }  // namespace line_bank

@@ -104,7 +104,7 @@ class PathPiece {
     const auto bits = static_cast<std::uint64_t>(time);
     const std::uint32_t scaled = static_cast<std::uint32_t>(bits) >> shift_ | static_cast<std::uint32_t>(bits >> 32)
                                                                                   << (32 - shift_);
-    return static_cast<std::uint32_t>(std::uint64_t{scaled} * reciprocal_ >> 32);
+    return static_cast<std::uint32_t>((static_cast<std::uint64_t>(scaled) * reciprocal_) >> 32);
   }
 
   /// Of an axis from where the piece begins, 2^-kBits counts.
