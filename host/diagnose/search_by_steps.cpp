@@ -22,7 +22,7 @@ struct Errors {
         validation(error_of(sim::Drive(model), sets.validation).combined) {}
 };
 
-/// A pair that takes most of what there is, and leaves more than a complete model does, is part of something.
+/// A pair that takes two fifths of what there is, and leaves more than a complete model does, is part of something.
 bool promises_a_third(const Errors& base, const Errors& pair) {
   constexpr double kMost = 0.4;
   return pair.validation > kExplained && explained_share(base.training, pair.training) > kMost &&
