@@ -273,11 +273,10 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
 void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescription& base, const RecordSet& set,
                     const FitOptions& options) {
   if (rival.effect.parameters.size() > leader.effect.parameters.size()) return;
-  const double base_error = error_of(sim::Drive(base), set).robust;
   Start again = rival;
   again.model = leader.model;
   again.model.effects.back() = rival.effect;
-  fit_start(again, base, set, base_error, options);
+  fit_start(again, base, set, 1.0, options);
   if (error_of(sim::Drive(again.model), set).robust < error_of(sim::Drive(rival.model), set).robust) rival = again;
 }
 
@@ -361,12 +360,11 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   }
   const double within = leader ? kClose * leader->error : 0.0;
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
-    if (k > 0 && k < effort.finalists && finalists[k].error < within)
-      try_on_base_of(*leader, finalists[k], model, medium, budgeted(kSeriousFit));
+    const bool is_close = k < effort.finalists && finalists[k].error < within;
+    if (k > 0 && is_close) try_on_base_of(*leader, finalists[k], model, medium, budgeted(kSeriousFit));
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
-    if (k < effort.finalists && finalists[k].error < within)
-      fit_start(finalists[k], model, last, 1.0, budgeted(kLastWord));
+    if (is_close) fit_start(finalists[k], model, last, 1.0, budgeted(kLastWord));
     candidates[k] = judged(all, finalists[k].model, model, training, validation);
   });
   std::ranges::stable_sort(candidates, {}, &Candidate::left);
