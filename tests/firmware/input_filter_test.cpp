@@ -32,6 +32,17 @@ TEST(InputFilter, CountsPeriodsInARow) {
   EXPECT_FALSE(filter.filtered(false)) << "let go at once";
 }
 
+TEST(InputFilter, IsNotBegunAnewByAChangeOfParameters) {
+  firmware::InputFilter filter;
+  filter.configure(3);
+  filter.filtered(true);
+  filter.filtered(true);
+  filter.configure(3);
+  EXPECT_TRUE(filter.filtered(true));
+  filter.configure(4);
+  EXPECT_TRUE(filter.filtered(true)) << "active in four periods by now";
+}
+
 struct Line {
   const char* name;
   std::function<void(firmware::boards::ValueAxis&, bool)> set;

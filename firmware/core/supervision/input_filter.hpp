@@ -19,10 +19,8 @@ constexpr std::int32_t input_samples(Real sample_period_s) {
 
 class InputFilter {
  public:
-  constexpr void configure(std::int32_t samples) {
-    samples_ = samples;
-    active_samples_ = 0;
-  }
+  /// An input that is active stays so: no change of parameters hides it.
+  constexpr void configure(std::int32_t samples) { samples_ = samples; }
 
   /// Once a control period, at least while the input is active or pending.
   constexpr bool filtered(bool is_active) {

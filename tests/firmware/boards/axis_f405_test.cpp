@@ -1,6 +1,7 @@
 // The axis board's own code, from start-up to control, on a chip that answers and with everything wired to its pins.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <new>
 
 #include "firmware/boards/axis-f405/board.hpp"
@@ -271,6 +272,38 @@ TEST_F(AxisBoard, IsOnTheBusOnlyWhileAComputersSupplyIs) {
   chip.port_a.put(8, Outside::high);
   run_ms(1.0);
   EXPECT_TRUE(board.usb().is_configured());
+}
+
+/// An input that moves to such a pin, or a resistor that goes, is a short circuit at the next download.
+TEST_F(AxisBoard, InputsThatTheRomsLoaderDrivesHaveAResistor) {
+  struct LoaderOutput {
+    const char* pin;
+    hal::stm32f4::Gpio& port;
+    unsigned number, function;
+  };
+  using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): ports
+  // AN2606, STM32F40xxx/41xxx; functions as in the datasheet's table 9.
+  const LoaderOutput outputs[] = {{"PA6", gpio_a(), 6, 5},
+                                  {"PA9", gpio_a(), 9, 7},
+                                  {"PB10", gpio_b(), 10, 7},
+                                  {"PB13", gpio_b(), 13, 9},
+                                  {"PC10", gpio_c(), 10, 7}};
+  start();
+  std::ifstream file(AXIS_TEST_DATA "/../../firmware/boards/axis-f405/front-end.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_NE(page.find("resistor in series"), std::string::npos);
+  int shared = 0;
+  for (const LoaderOutput& out : outputs) {
+    const unsigned mode = out.port.MODER >> 2 * out.number & 3u;
+    const unsigned function = out.port.AFR[out.number / 8] >> 4 * (out.number % 8) & 15u;
+    const bool is_output_here = mode == 1 || (mode == 2 && function == out.function && out.number == 9);
+    const std::size_t row = page.find("| " + std::string(out.pin) + " |");
+    EXPECT_EQ(row != std::string::npos, !is_output_here) << out.pin;
+    if (row == std::string::npos) continue;
+    ++shared;
+    EXPECT_NE(page.substr(row, page.find('\n', row) - row).find("ohm"), std::string::npos) << out.pin;
+  }
+  EXPECT_EQ(shared, 4);
 }
 
 TEST_F(AxisBoard, TellsWhyItWasReset) {

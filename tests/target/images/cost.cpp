@@ -12,6 +12,7 @@
 #include "hal/axis_count.hpp"
 #include "tests/firmware/paper_axes.hpp"
 #include "tests/target/images/instruction_counter.hpp"
+#include "tests/target/images/rigid_drive.hpp"
 
 namespace firmware::boards {
 void make_outputs_safe() noexcept {}
@@ -47,46 +48,8 @@ constexpr std::array kParameters{with_everything_on(firmware_test::kPaperX),
 
 std::array<ValueAxis, hal::kAxisCount> io;
 [[gnu::section(".ccm")]] Axes axes(io);
+std::array drives{RigidDrive{firmware_test::kPaperX}, RigidDrive{firmware_test::kPaperY}};
 std::uint32_t now_us = 0;
-
-std::uint32_t random_state = 1;
-std::int32_t random_code() {  // minimal standard generator's low-cost cousin: quality is of no matter here
-  random_state = random_state * 1664525u + 1013904223u;
-  return static_cast<std::int32_t>(random_state >> 24) - 128;
-}
-
-/// Eq. (7) without friction, in float whatever the scalar: what the axes drive between two counted steps.
-struct Drive {
-  const firmware_test::PaperAxis& axis;
-  std::int32_t counts = 0, last_pulse = 0;
-  float fraction_mm = 0.0f, velocity_rad_s = 0.0f;
-
-  void advance(std::int32_t dac_code) {
-    const float u = static_cast<float>(dac_code) * static_cast<float>(firmware_test::kDacResolution_V);
-    fraction_mm += static_cast<float>(axis.Ad12) * velocity_rad_s + static_cast<float>(axis.Bd1) * u;
-    velocity_rad_s = static_cast<float>(axis.Ad22) * velocity_rad_s + static_cast<float>(axis.Bd2) * u;
-    constexpr auto kCount_mm = static_cast<float>(firmware_test::kEncoderResolution_mm);
-    const auto passed = static_cast<std::int32_t>(fraction_mm / kCount_mm);
-    counts += passed;
-    fraction_mm -= static_cast<float>(passed) * kCount_mm;
-  }
-};
-std::array drives{Drive{firmware_test::kPaperX}, Drive{firmware_test::kPaperY}};
-
-/// One period of the drive, and its readings, with the tachometer's noise.
-void bring_readings(std::size_t axis) {
-  Drive& drive = drives[axis];
-  drive.advance(io[axis].dac().code);
-  io[axis].encoder().reading = {static_cast<std::uint32_t>(drive.counts), true};
-  const std::int32_t pulse = drive.counts & ~4095;  // the last one passed, in either direction
-  if (pulse != drive.last_pulse)
-    io[axis].encoder().index = {static_cast<std::uint32_t>(drive.counts > drive.last_pulse ? pulse : pulse + 4096),
-                                true, false};
-  drive.last_pulse = pulse;
-  constexpr auto kCodesPerVelocity = static_cast<float>(1.0 / firmware_test::kTachometerResolution_rad_s);
-  const auto code = static_cast<std::int32_t>(drive.velocity_rad_s * kCodesPerVelocity);
-  io[axis].tachometer().reading = {code + random_code() / 8, true};
-}
 
 template <std::size_t axis>
 [[gnu::noinline]] void step_one() {
@@ -142,7 +105,7 @@ void start_motion() {
   for (std::size_t i = 0; i < Axes::kAxes; ++i) axes[i].configure(kParameters[i]);
   for (int period = 0; period <= firmware::kSelfTestSamples; ++period) {
     for (std::size_t i = 0; i < Axes::kAxes; ++i) {
-      bring_readings(i);
+      drives[i].bring_readings(io[i]);
       axes[i].step();
     }
   }
@@ -170,7 +133,7 @@ void count_steps() {
   Cost one, both;
   for (int period = 0; period < 3000; ++period) {
     command(period);
-    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) drives[i].bring_readings(io[i]);
     if (period % 2 == 0) {
       one.add(count([] { step_one<0>(); }));
       step_one<1>();
@@ -239,7 +202,7 @@ void count_experiments() {
   start_capture();
   Cost excited, captured;
   for (int period = 0; period < 2000; ++period) {
-    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) drives[i].bring_readings(io[i]);
     excited.add(count([] { step_both_excited(); }));
     captured.add(count([] { take_row(); }));
   }
@@ -264,7 +227,7 @@ void end_motion() {
   excitation.stop();
   path.stop();
   for (int period = 0; period < 2000; ++period) {
-    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) drives[i].bring_readings(io[i]);
     if (excitation.is_active()) excitation.before_step(axes[0]);
     if (path.is_moving()) path.before_step(axes);
     step_both();
@@ -300,7 +263,7 @@ void count_path(const char* name, unsigned mask, Step step) {
     if (period == 0) path.start();
     if (period == 1500) path.hold(true);
     if (period == 2000) path.hold(false);
-    for (std::size_t i = 0; i < Axes::kAxes; ++i) bring_readings(i);
+    for (std::size_t i = 0; i < Axes::kAxes; ++i) drives[i].bring_readings(io[i]);
     cost.add(count(step));
   }
   if (!path.is_moving()) hal::qemu::exit_emulator(2);

@@ -1,0 +1,171 @@
+// Image that counts for how long the background's requests keep the control interrupt out while both axes move.
+#include <array>
+#include <cstdint>
+
+#include "firmware/app/board_application.hpp"
+#include "firmware/boards/image/capture_memory.hpp"
+#include "firmware/boards/image/fault_handler.hpp"
+#include "firmware/boards/pil/value_axis.hpp"
+#include "firmware/boards/qemu-usb/memory_flash.hpp"
+#include "tests/firmware/fitted_axis.hpp"
+#include "tests/target/images/instruction_counter.hpp"
+#include "tests/target/images/rigid_drive.hpp"
+
+namespace firmware::boards {
+void make_outputs_safe() noexcept {}
+}  // namespace firmware::boards
+
+extern "C" void control_interrupt() {}
+
+namespace {
+
+using namespace target_image;
+using firmware::Status;
+using firmware::boards::MemoryFlash;
+using firmware::boards::ValueAxis;
+
+MemoryFlash::Cells flash_cells;
+
+class CountedBoard {
+ public:
+  static constexpr std::size_t kAxes = hal::kAxisCount;
+  using AxisType = ValueAxis;
+
+  /// Notes what is executed while the outermost one lives.
+  class ControlShutOut {
+   public:
+    ControlShutOut() {
+      if (depth++ == 0) began = instructions();
+    }
+    ~ControlShutOut() {
+      if (--depth != 0) return;
+      const std::uint32_t lasted = instructions() - began;
+      if (lasted > longest) longest = lasted;
+    }
+    ControlShutOut(const ControlShutOut&) = delete;
+    ControlShutOut& operator=(const ControlShutOut&) = delete;
+
+    static inline std::uint32_t longest = 0;
+
+   private:
+    static inline std::uint32_t began = 0;
+    static inline int depth = 0;
+  };
+
+  struct Stop {
+    bool is_pressed() const { return false; }
+  };
+  struct Supply {
+    bool is_low() const { return false; }
+  };
+  struct Clock {
+    std::uint32_t us = 0;
+    std::uint32_t now_us() const { return us; }
+  };
+  struct Usb {
+    bool send(const hal::HidReport&) { return false; }
+    bool receive(hal::HidReport&) { return false; }
+    bool is_configured() const { return false; }
+  };
+
+  ValueAxis& axis(std::size_t index) { return axes_[index]; }
+  Stop& emergency_stop() { return stop_; }
+  Supply& supply() { return supply_; }
+  Clock& clock() { return clock_; }
+  Usb& usb() { return usb_; }
+  MemoryFlash& parameter_flash() { return flash_; }
+  firmware::TriggeredState& capture_state() { return firmware::boards::capture_state(); }
+  std::span<std::uint16_t> capture_rows() { return firmware::boards::capture_rows(); }
+  void set_control_rate(std::uint32_t) {}
+  void begin_stall() {}
+  void end_stall() {}
+  void restart() {}
+
+ private:
+  std::array<ValueAxis, kAxes> axes_;
+  Stop stop_;
+  Supply supply_;
+  Clock clock_;
+  Usb usb_;
+  MemoryFlash flash_{flash_cells};
+};
+static_assert(hal::Board<CountedBoard>);
+
+CountedBoard board;
+firmware::BoardApplication<float, CountedBoard> application(board);
+std::array drives{RigidDrive{firmware_test::kPaperX}, RigidDrive{firmware_test::kPaperY}};
+
+void run(int periods) {
+  for (int period = 0; period < periods; ++period) {
+    for (std::size_t axis = 0; axis < drives.size(); ++axis) drives[axis].bring_readings(board.axis(axis));
+    board.clock().us += 1000;
+    application.control_period();
+  }
+}
+
+void expect(bool holds, int exit_code) {
+  if (!holds) hal::qemu::exit_emulator(exit_code);
+}
+
+/// What `request` shuts out at the worst; the axes run on before and after it.
+template <typename Request>
+void report_shut_out(const char* name, Request request) {
+  Cost cost;
+  for (int trial = 0; trial < 100; ++trial) {
+    CountedBoard::ControlShutOut::longest = 0;
+    request(trial);
+    cost.add(CountedBoard::ControlShutOut::longest);
+    run(3);
+    application.owner_heard(firmware::ClientToken{1});
+  }
+  expect(application.any_enabled() && application.axis_status(0).velocity != 0.0F, 4);
+  report(name, cost);
+}
+
+}  // namespace
+
+extern "C" [[noreturn]] void run_board() {
+  firmware::boards::arm_fault_detection();
+  start_counting();
+  application.start();
+  application.staged() = application.active();
+  firmware_test::fit_axis(application.staged(), "x", firmware_test::kPaperX);
+  firmware_test::fit_axis(application.staged(), "y", firmware_test::kPaperY);
+  const std::size_t timeout = firmware_test::find_place("", "host.timeout").value_or(0);
+  const std::size_t standing = firmware_test::find_place("", "host.standing_timeout").value_or(0);
+  application.staged().set(timeout, 10.0F);
+  firmware::RefusedValuePayload refused;
+  expect(application.commit(refused) == Status::ok, 1);
+  const std::uint32_t reconfigured = CountedBoard::ControlShutOut::longest;
+  run(200);
+  std::size_t refused_axis = 0;
+  expect(application.enable(3, refused_axis) == Status::ok, 2);
+  application.become_owner(firmware::ClientToken{1});
+  run(500);
+  for (std::size_t axis = 0; axis < drives.size(); ++axis) expect(application.jog(axis, 20.0F) == Status::ok, 3);
+  run(200);
+
+  report_shut_out("parameter_change", [&](int trial) {
+    application.staged() = application.active();
+    application.staged().set(timeout, trial % 2 == 0 ? 8.0F : 10.0F);
+    application.staged().set(standing, trial % 2 == 0 ? 50.0F : 60.0F);
+    expect(application.commit(refused) == Status::ok, 5);
+  });
+  report_shut_out("other_requests", [&](int trial) {
+    for (std::size_t axis = 0; axis < drives.size(); ++axis) {
+      expect(application.jog(axis, trial % 2 == 0 ? 25.0F : 15.0F) == Status::ok, 6);
+      application.axis_status(axis);
+      application.move(axis, 1000, true);  // refused: in motion
+    }
+    application.owner_heard(firmware::ClientToken{1});
+    application.clear_faults();
+    application.timing();
+    application.trigger_state();
+    application.excitation_state();
+    application.start_capture({});
+  });
+  Cost standstill;
+  standstill.add(reconfigured);
+  report("reconfiguration_at_standstill", standstill);
+  hal::qemu::exit_emulator(0);
+}

@@ -1,0 +1,23 @@
+// How long requests keep the control interrupt out of the emulated processor while both axes move.
+#include <gtest/gtest.h>
+
+#include "tests/target/cost/cost.hpp"
+#include "tests/target/qemu.hpp"
+
+namespace {
+
+/// Instructions of a control period at the highest rate, 20 kHz of 168 MHz.
+constexpr int kShortestPeriod = 8400;
+
+TEST(ShutOut, IsATenthOfAPeriodAtMostWhileAxesMove) {
+  const std::string why = target_test::obstacle("shut-out-m4");
+  if (!why.empty()) GTEST_SKIP() << why;
+  auto costs = target_test::count_instructions("shut-out-m4");
+  EXPECT_GT(costs["parameter_change"].worst, 0);
+  EXPECT_LE(costs["parameter_change"].worst, 100) << "limits of the board, and nothing of an axis";
+  EXPECT_GT(costs["other_requests"].worst, 0);
+  EXPECT_LE(costs["other_requests"].worst, kShortestPeriod / 10);
+  EXPECT_GT(costs["reconfiguration_at_standstill"].worst, 10'000) << "nothing was measured";
+}
+
+}  // namespace
