@@ -184,26 +184,6 @@ TYPED_TEST(BoardMotion, StopsWhenTheHostFallsSilent) {
   EXPECT_NEAR(periods_until_a_stop<typename TestFixture::Bench>(0.05), 50, 2);
 }
 
-TYPED_TEST(BoardMotion, AParameterChangeDisturbsNoMovingAxis) {
-  const auto words_of_a_jog = [](bool change) {
-    typename TestFixture::Bench bench;
-    bench.fit_and_enable_x();
-    EXPECT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 50.0F}).status, Status::ok);
-    std::vector<std::int32_t> words;
-    for (int period = 0; period < 150; ++period) {
-      if (change && period == 70) {
-        ParameterValues values = bench.application.active();
-        set(values, "host.timeout", 0.25);
-        EXPECT_EQ(bench.download(values).status, Status::ok);
-      }
-      bench.run(1);
-      words.push_back(bench.application.axes()[0].telemetry().dac_code);
-    }
-    return words;
-  };
-  EXPECT_EQ(words_of_a_jog(true), words_of_a_jog(false));
-}
-
 /// A change in motion is no pause: an interrupt that comes late after it is still found.
 TYPED_TEST(BoardMotion, AParameterChangeHidesNoOverrun) {
   typename TestFixture::Bench bench;
