@@ -268,16 +268,40 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   return fitted(set, kSeriousFit).front().model;
 }
 
-/// An effect that is no more complicated than the leader's, on the leader's base: its own fit may have bent the base
-/// into a valley from which it did not come back.
+/// An effect that is no more complicated than the leader's, on the leader's base, as its own fit has left it and as it
+/// was before: that fit may have bent the base into a valley from which it did not come back.
 void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescription& base, const RecordSet& set,
                     const FitOptions& options) {
   if (rival.effect.parameters.size() > leader.effect.parameters.size()) return;
-  Start again = rival;
-  again.model = leader.model;
-  again.model.effects.back() = rival.effect;
-  fit_start(again, base, set, 1.0, options);
-  if (error_of(sim::Drive(again.model), set).robust < error_of(sim::Drive(rival.model), set).robust) rival = again;
+  double least = error_of(sim::Drive(rival.model), set).robust;
+  for (const sim::EffectEntry& effect : {rival.model.effects.back(), rival.effect}) {
+    Start again = rival;
+    again.model = leader.model;
+    again.model.effects.back() = effect;
+    fit_start(again, base, set, 1.0, options);
+    const double error = error_of(sim::Drive(again.model), set).robust;
+    if (error >= least) continue;
+    rival = again;
+    least = error;
+  }
+}
+
+/// A model that holds the base cannot be worse: an effect none of whose fits got anywhere starts again, its size alone
+/// first, from the base as it stands.
+std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::DriveDescription& base) {
+  std::vector<Start> lost;
+  for (const Start& start : looked_at) {
+    const auto is_promising = [&start](const Start& other) {
+      return other.info == start.info && other.error <= kPromise;
+    };
+    if (start.scanned || start.info->periodic || needs_own_floors(start.model) ||
+        std::ranges::any_of(looked_at, is_promising))
+      continue;
+    lost.push_back(start);
+    lost.back().model = base;
+    lost.back().model.effects.push_back(start.effect);
+  }
+  return lost;
 }
 
 }  // namespace
@@ -336,6 +360,12 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     if (starts[k].info->periodic) starts[k].model = fit_model(starts[k].model, coarse, kOwnSize).model;
   });
   fit_all(starts, coarse, budgeted(kFirstLook));
+  std::vector<Start> lost = lost_starts(starts, model);
+  for_each_in_parallel(lost.size(),
+                       [&](std::size_t k) { lost[k].model = fit_model(lost[k].model, coarse, kOwnSize).model; });
+  fit_all(lost, coarse, budgeted(kFirstLook));
+  std::ranges::move(lost, std::back_inserter(starts));
+  std::ranges::stable_sort(starts, {}, &Start::error);
   std::vector<Start> race;
   for (const Start& start : starts) {
     const bool far_behind = start.error > kOutOfSight * starts.front().error;

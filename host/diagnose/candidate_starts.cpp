@@ -17,13 +17,18 @@ namespace {
 /// The contact of guide and bristle is about so long in a machine, mm (rolling guides break away over 5 to 100 um).
 constexpr double kBreakawayTravel_mm = 0.02;
 
+/// Dry friction of the lightest drives, of what the largest command can do.
+constexpr double kLeastFriction = 0.02;
+
 /// A screw of 10 mm pitch that turns at 1 rad/s.
 constexpr double kUsualSpeed_mm_s = 10.0 / (2.0 * std::numbers::pi);
 
 double scale_value(sim::Scale scale, const sim::DriveDescription& model, const RecordScales& scales) {
   const sim::Drive drive(model);
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
-  const double coulomb = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
+  // A base that was bent to make up for what is missing may have no Coulomb friction left.
+  const double coulomb = std::max(0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb),
+                                  kLeastFriction * drive.effort_per_volt * scales.top_command_V);
   const double breakaway_travel = kBreakawayTravel_mm * (rotary ? 1.0 : 1e-3) / model.data.lead;
   switch (scale) {
     case sim::Scale::unity:

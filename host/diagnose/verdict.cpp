@@ -21,16 +21,17 @@ namespace {
 /// other), and a sixth of the error.
 constexpr double kLeastFurtherShare = 0.5;
 constexpr double kLeastFurtherGain = 0.15;
-/// Candidates whose errors are so close are not told apart.
+/// Candidates whose errors are so close, over both sets alike, are not told apart.
 constexpr double kTie = 0.05;
 /// Base parameters that moved by more than this were off, relative.
 constexpr double kMoved = 0.05;
 
+double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
+
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
   const JudgedCandidate* best = nullptr;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (candidate.kinds.size() == size &&
-        (best == nullptr || candidate.after * candidate.train_after < best->after * best->train_after))
+    if (candidate.kinds.size() == size && (best == nullptr || error_of_both(candidate) < error_of_both(*best)))
       best = &candidate;
   return best;
 }
@@ -62,8 +63,7 @@ std::vector<std::string> ties_of(const JudgedCandidate& best, const Diagnosis& d
   std::vector<std::string> tied;
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
     if (&candidate == &best || candidate.kinds.size() != 1 || !earns_its_place(candidate, diagnosis)) continue;
-    if (candidate.after > (1.0 + kTie) * best.after || candidate.train_after > (1.0 + kTie) * best.train_after)
-      continue;
+    if (error_of_both(candidate) > (1.0 + kTie) * error_of_both(best)) continue;
     if (parameters_added(candidate) > parameters_added(best)) continue;
     tied.push_back(candidate.kinds.front());
   }

@@ -5,17 +5,48 @@
 
 #include <filesystem>
 
+#include "host/scoreboard/trial.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
 
 namespace {
 
+const std::filesystem::path kSingles = std::filesystem::path(AXIS_SHARED_DIR) / "data" / "drive-cases" / "single";
+const std::filesystem::path kWeight = kSingles / "case-12", kWarm = kSingles / "case-18";
+
+/// The first `seconds` of the sweep alone.
+DriveCase sweep_of(const std::filesystem::path& folder, double seconds) {
+  DriveCase sweep(folder.string());
+  std::erase_if(sweep.train, [](const host::Record& record) { return !record.path.ends_with("train-sweep.csv"); });
+  sweep.train.front() = host::read_piece({sweep.train.front().path, 0.0, seconds}, sweep.model.data);
+  sweep.validate.clear();
+  return sweep;
+}
+
+/// Bent to make up for the weight, the base has no Coulomb friction left (8 s): a start that is a part of it would not
+/// move. And a fit of the weight that ends worse than the base (4 s) is no reason to leave the weight out.
+TEST(RivalFit, AWeightStaysAmongItsRivalsInASweepOfEveryLength) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";
+  for (const double seconds : {4.0, 8.0}) {
+    const host::Diagnosis diagnosis = sweep_of(kWeight, seconds).diagnose();
+    EXPECT_EQ(diagnosis.verdict.status, host::Status::ambiguous) << diagnosis.verdict.explanation;
+    EXPECT_THAT(diagnosis.verdict.effects, testing::IsSupersetOf({"constant_torque", "dac_offset"})) << seconds;
+  }
+}
+
+/// Where rivals are as close over both sets, the one that was a little worse on one of them is not left out.
+TEST(RivalFit, FrictionThatWarmsUpStaysBesideFrictionAlongTheTravel) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  if (!std::filesystem::exists(kWarm)) GTEST_SKIP() << kWarm << " is absent";
+  const host::Diagnosis diagnosis = sweep_of(kWarm, 4.0).diagnose();
+  EXPECT_THAT(diagnosis.verdict.effects, testing::Contains("thermal_friction_drift"));
+}
+
 /// Catches a weight whose fit ends in a valley, so that a spring eleven metres away is named in its place.
 TEST(RivalFit, AWeightIsNotTakenForASpringFarAway) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
-  const std::filesystem::path weight =
-      std::filesystem::path(AXIS_SHARED_DIR) / "data" / "drive-cases" / "single" / "case-12";
-  if (!std::filesystem::exists(weight)) GTEST_SKIP() << weight << " is absent";
-  DriveCase stepped(weight.string());
+  if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";
+  DriveCase stepped(kWeight.string());
   // Without the jog nothing moves far, and blocks of both records judge.
   std::erase_if(stepped.train, [](const host::Record& record) { return record.path.ends_with("train-jog.csv"); });
   ASSERT_EQ(stepped.train.size(), 2U);
