@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <memory>
 
 #include "host/axistool/commands.hpp"
@@ -28,20 +26,6 @@ struct CaptureArguments : DeviceArguments {
   unsigned every = 1;
   bool linear = false, wide = false, last = false;
 };
-
-/// "20:1.5": 20 mm/s for 1.5 s.
-host::JogStep parse_jog(const std::string& text) {
-  host::JogStep step;
-  const char* next = text.c_str();
-  char* end = nullptr;
-  step.velocity = std::strtod(next, &end);
-  const bool has_speed = end != next && *end == ':';
-  next = has_speed ? end + 1 : next;
-  step.duration_s = std::strtod(next, &end);
-  if (!has_speed || end == next || *end != '\0' || !std::isfinite(step.velocity) || !(step.duration_s > 0.0))
-    throw host::Failure(host::ExitCode::usage, fmt::format("--jog {}: write SPEED:SECONDS, for example 20:1.5", text));
-  return step;
-}
 
 /// "0.05", "50ms", "2s".
 double seconds_of(const std::string& text) {
@@ -70,7 +54,7 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
   settings.every = static_cast<std::uint16_t>(arguments.every);
   settings.before_s = seconds_of(arguments.before);
   settings.patience_s = arguments.wait_s;
-  for (const std::string& jog : arguments.jogs) settings.jogs.push_back(parse_jog(jog));
+  for (const std::string& jog : arguments.jogs) settings.jogs.push_back(host::parse_jog(jog));
   settings.duration_s = arguments.duration_s > 0.0 || !settings.jogs.empty() ? arguments.duration_s : 1.0;
   return settings;
 }
@@ -113,16 +97,8 @@ void run(const CaptureArguments& arguments) {
   const firmware::ParameterValues values = board.read_values();
   const host::CaptureSettings settings = settings_of(arguments, values);
   if (arguments.last || host::is_board_trigger(arguments.trigger)) return run_on_board(arguments, board, settings);
-  for (const host::JogStep& jog : settings.jogs) host::require_reachable(values, settings.axis, jog.velocity);
+  host::require_capturable(values, settings);
   const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
-  const double reports_Hz = rate_Hz / std::floor(static_cast<double>(firmware::kWordsPerReport) /
-                                                 static_cast<double>(settings.channels.size()));
-  if (reports_Hz > 1000.0)
-    throw host::Failure(host::ExitCode::usage,
-                        fmt::format("{} channels at {:g} Hz need {:.0f} reports a second, and USB carries 1000: fewer "
-                                    "channels, or --every {}",
-                                    settings.channels.size(), rate_Hz, reports_Hz,
-                                    settings.every * static_cast<unsigned>(std::ceil(reports_Hz / 1000.0))));
   if (arguments.dry_run) {
     if (talks(arguments))
       fmt::print("would capture {} channels at {:g} Hz into {}\n", settings.channels.size(), rate_Hz, arguments.output);
@@ -147,12 +123,7 @@ void run(const CaptureArguments& arguments) {
   }
   if (enables) host::disable_and_wait(board, mask);
   write(arguments, capture, settings);
-  if (capture.lost > 0)
-    throw host::Failure(
-        host::ExitCode::protocol,
-        fmt::format("{} rows were lost ({} dropped by the board); {} has gaps there, nothing is filled in: "
-                    "capture fewer channels or a lower rate, and close programs that load the computer",
-                    capture.lost, capture.dropped_by_board, arguments.output));
+  host::require_no_loss(capture, arguments.output);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/compare/tracking_error.hpp"
-#include "host/evidence/measured_sensors.hpp"
 #include "host/model/model_file.hpp"
 #include "host/output_target.hpp"
 #include "host/record/channel_checks.hpp"
@@ -78,13 +77,10 @@ void sort_files(CompareArguments& arguments) {
 }
 
 host::ComparedModel compared(const std::string& path, const CompareArguments& arguments) {
-  const sim::DriveDescription read = host::read_model(path);
-  const host::GateOptions as_logged{.accepted = arguments.accepted, .as_logged = true};
-  host::Measurements measured = host::MeasurementGate(read, as_logged).read(arguments.records);
-  sim::DriveDescription model = host::with_measured_sensors(read, measured);
-  host::RecordSet set = host::compare_on(measured.training_records(), model, arguments.window_s);
-  host::ModelComparison comparison = host::compare_model(model, measured, set, arguments.window_s);
-  return {path, std::move(model), std::move(measured), std::move(set), std::move(comparison)};
+  const sim::DriveDescription model = host::read_model(path);
+  std::vector<host::Record> records;
+  for (const std::string& record : arguments.records) records.push_back(host::read_record(record));
+  return host::compare_with(path, model, std::move(records), arguments.window_s, arguments.accepted);
 }
 
 /// As of the first model alone; all of them in "models".

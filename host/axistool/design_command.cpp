@@ -11,9 +11,8 @@
 #include "host/identify/design_json.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/model/model_file.hpp"
-#include "host/parameters/board_parameters.hpp"
 #include "host/parameters/compensation_parameters.hpp"
-#include "host/parameters/control_filters.hpp"
+#include "host/parameters/design_file.hpp"
 #include "host/record/read_record.hpp"
 #include "host/response/loop_design.hpp"
 #include "host/response/response_report.hpp"
@@ -85,16 +84,6 @@ std::string filter_text(const host::ControlFilterChoice& filters) {
   return text;
 }
 
-nlohmann::json filter_json(const host::ControlFilterChoice& filters) {
-  nlohmann::json document = {{"notch", nullptr}, {"low_pass", nullptr}};
-  if (filters.notch)
-    document["notch"] = {
-        {"f_Hz", filters.notch->f_Hz}, {"damping", filters.notch->damping}, {"depth", filters.notch->depth}};
-  if (filters.low_pass)
-    document["low_pass"] = {{"f_Hz", filters.low_pass->f_Hz}, {"damping", filters.low_pass->damping}};
-  return document;
-}
-
 void print_table(const sim::DriveDescription& model, const host::AxisDesign& design) {
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
   const char* travel = rotary ? "mm" : "m";
@@ -142,13 +131,11 @@ void run(const DesignArguments& arguments) {
                         "the measured drive would oscillate with this controller; nothing was written. --margin 0.5 "
                         "finds the bandwidth that it allows");
   if (!arguments.output.empty()) {
-    host::write_file_atomically(arguments.output, host::board_parameters_toml(model, design) +
-                                                      host::compensation_toml(model) +
-                                                      host::filter_toml(model, filters));
+    host::write_file_atomically(arguments.output, host::design_toml(model, design, filters));
   }
   if (!arguments.json.empty()) {
     nlohmann::json document = host::design_json(design);
-    document["filters"] = filter_json(filters);
+    document["filters"] = host::filter_json(filters);
     if (loop) {
       document["before"] = host::response_json(loop->before)["margins"];
       document["after"] = host::response_json(loop->after)["margins"];

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "host/device/board_client.hpp"
+#include "host/open_board.hpp"
 
 namespace axistool {
 
@@ -29,8 +29,7 @@ bool talks(const DeviceArguments& arguments);
 /// Asks on a terminal; elsewhere only --yes is a yes. Throws Failure(refused) on a no.
 void require_consent(const DeviceArguments& arguments, const std::string& question);
 
-/// "x" -> 0. Throws Failure(usage).
-std::uint8_t axis_index(const std::string& name, std::size_t axes);
+using host::axis_index;
 /// Of several; all when empty.
 std::uint8_t axis_mask(const std::vector<std::string>& names, std::size_t axes);
 

@@ -21,39 +21,10 @@ struct IdentifyArguments {
   host::MotionOptions options;
 };
 
-constexpr const char* kDriveExample = R"(  format = "axis-model/1"
-  name = "stage"
-  [drive]
-  kind = "linear"
-  force_constant_N_per_V = 35.1507
-  sample_period_s = 0.001
-A rotary drive has amplifier_gain_A_per_V, torque_constant_Nm_per_A and lead_mm_per_rad in place of the force constant.)";
-
 /// The data sheet to work with: the file that was named, or the paper's drive that the record names.
 sim::DriveDescription drive_for(const IdentifyArguments& arguments, std::vector<std::string>& warnings) {
   if (!arguments.drive.empty()) return host::read_drive(arguments.drive);
-  const host::Record first = host::read_record(arguments.records.front());
-  const auto known = first.kind == sim::DriveKind::rotary ? host::paper_drive(first.drive) : std::nullopt;
-  if (!known) {
-    throw host::Failure(
-        host::ExitCode::usage,
-        fmt::format("{}: which drive is this? Volts become {} only with its data sheet. Write one and "
-                    "give it with --drive DRIVE.toml, for example:\n{}",
-                    first.path, first.kind == sim::DriveKind::linear ? "newtons" : "torque", kDriveExample));
-  }
-  warnings.push_back(
-      fmt::format("no --drive was given: taking the data sheet of the paper's drive {} (Ka = {:g} A/V, "
-                  "Kt = {:g} Nm/A), which the record names",
-                  first.drive, known->data.amplifier_gain_A_per_V, known->data.torque_constant_Nm_per_A));
-  return *known;
-}
-
-host::IdentificationMethod method_for(const std::string& name, const std::vector<host::Record>& records) {
-  using enum host::IdentificationMethod;
-  for (const auto method : {simple_ls, unbiased_ls, sliding_ls}) {
-    if (name == host::method_name(method)) return method;
-  }
-  return host::default_method(records);
+  return host::drive_named_by(host::read_record(arguments.records.front()), warnings);
 }
 
 void print_row(const char* name, const char* unit, const host::Estimate& estimate) {
@@ -95,8 +66,8 @@ void run(const IdentifyArguments& arguments) {
   std::vector<std::string> warnings;
   const sim::DriveDescription drive = drive_for(arguments, warnings);
   const host::Measurements measured = host::MeasurementGate(drive, {arguments.accepted}).read(arguments.records);
-  host::Identification found =
-      host::identify_drive(measured, drive, method_for(arguments.method, measured.training()), arguments.options);
+  host::Identification found = host::identify_drive(
+      measured, drive, host::method_named(arguments.method, measured.training()), arguments.options);
   found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
   if (!arguments.json.empty()) {

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <memory>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
+#include "host/diagnose/addition.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/improvement_report.hpp"
 #include "host/identify/plausibility.hpp"
@@ -52,39 +52,11 @@ void run_improve(const InsightArguments& arguments) {
 void run_add(const InsightArguments& arguments, const std::string& kind, const std::string& over) {
   host::known_effect(kind);
   const InsightRecords records(arguments);
-  const bool curve = kind == "free_curve";
-  if (!curve && !over.empty()) throw host::Failure(host::ExitCode::usage, "--over belongs to free_curve");
-  const host::Addition addition = curve ? host::add_free_curve(records.model, over, records.measurements)
-                                        : host::add_effect(records.model, kind, records.measurements);
+  const host::Addition addition = host::add_kind(records.model, kind, over, records.measurements);
   const host::JudgedCandidate& judged = addition.judged;
-  if (!(judged.before > 0.0) || !std::isfinite(judged.before) || !std::isfinite(judged.after))
-    throw host::Failure(host::ExitCode::refused,
-                        fmt::format("{}: nothing was fitted: no stretch of these records judges it (error over floor "
-                                    "{:.3f} -> {:.3f}); record longer, or give --validate. No model is written",
-                                    kind, judged.before, judged.after));
   host::write_model(judged.model, arguments.output);
-  if (!arguments.json.empty()) {
-    nlohmann::json estimates = nlohmann::json::array();
-    for (const host::ParameterEstimate& estimate : addition.estimates)
-      estimates.push_back({{"name", estimate.name},
-                           {"value", estimate.value},
-                           {"deviation", estimate.deviation},
-                           {"determined", estimate.determined},
-                           {"correlated_with", estimate.correlated_with},
-                           {"correlation", estimate.correlation}});
-    write_json({{"format", "axis-addition/1"},
-                {"kind", kind},
-                {"before", judged.before},
-                {"after", judged.after},
-                {"train_after", judged.train_after},
-                {"confidence", judged.confidence},
-                {"held_back", addition.held_back},
-                {"parameters", estimates},
-                {"log", host::log_faults_json(records.measurements.log())},
-                {"warnings", host::messages_of(host::doubts_of(judged.model))},
-                {"model", arguments.output}},
-               arguments.json);
-  }
+  if (!arguments.json.empty())
+    write_json(host::to_json(addition, kind, records.measurements, arguments.output), arguments.json);
   if (arguments.json == "-") return;
   print_log(records.measurements.log());
   fmt::print("{}: error over floor on validation data {:.3f} -> {:.3f} ({:.1f} % confidence)\n\n", kind, judged.before,

@@ -52,15 +52,10 @@ void make_folder_of(const std::string& flash_file) {
                                     folder.string(), fault.message()));
 }
 
-hal::pc::AxisWiring wiring(const sim::DriveDescription& drive) {
-  return host::usual_wiring(drive.data, drive.data.kind == sim::DriveKind::rotary ? 25.0 : 0.025);
-}
-
 /// Where no model is given the paper's two axes take turns.
 host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
-  const sim::DriveDescription drive =
-      file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value() : host::read_drive(file);
-  return {drive, wiring(drive)};
+  return host::usual_axis(file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value()
+                                       : host::read_drive(file));
 }
 
 /// The program moves in the drives' place; of them the data sheets stay.

@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
+#include <utility>
 
 #include "host/compare/effort_residual.hpp"
+#include "host/evidence/measured_sensors.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/exit_codes.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/report/binned_curve.hpp"
 
@@ -55,6 +60,17 @@ ScatterPlot against(const std::string& title, Axis coordinate, Axis value, std::
 }
 
 }  // namespace
+
+ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
+                           double window_s, const std::vector<std::string>& accepted) {
+  if (!(window_s > 0.0) || !std::isfinite(window_s))
+    throw Failure(ExitCode::usage, fmt::format("window {}: a length in seconds above 0 belongs here", window_s));
+  Measurements measured = MeasurementGate(model, {.accepted = accepted, .as_logged = true}).admit(std::move(records));
+  sim::DriveDescription completed = with_measured_sensors(model, measured);
+  RecordSet set = compare_on(measured.training_records(), completed, window_s);
+  ModelComparison comparison = compare_model(completed, measured, set, window_s);
+  return {path, std::move(completed), std::move(measured), std::move(set), std::move(comparison)};
+}
 
 SeriesRole role_of_model(std::size_t index) {
   constexpr std::array roles{SeriesRole::predicted, SeriesRole::model, SeriesRole::other, SeriesRole::residual,

@@ -20,6 +20,11 @@ struct ComparedModel {
   std::string name() const;  ///< of the file
 };
 
+/// Admits the records as they were logged and compares the model, completed by their sensors, on windows of `window_s`.
+/// Throws Failure(usage) where that is no time, and what MeasurementGate, compare_on and compare_model throw.
+ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
+                           double window_s, const std::vector<std::string>& accepted);
+
 /// Roles that differ in colour, one a model; further models take their turn again.
 SeriesRole role_of_model(std::size_t index);
 

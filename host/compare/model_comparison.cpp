@@ -146,21 +146,30 @@ Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord p
   return prediction;
 }
 
-std::string predictions_csv(const sim::DriveDescription& model, const PreparedRecord& prepared) {
+std::vector<std::pair<std::string, std::vector<double>>> predicted_columns(const sim::DriveDescription& model,
+                                                                           const PreparedRecord& prepared) {
   const Record& record = *prepared.record;
-  const Prediction prediction = predict_all_rows(model, prepared);
+  Prediction prediction = predict_all_rows(model, prepared);
+  std::vector<std::pair<std::string, std::vector<double>>> columns{{"t_s", record.t_s}};
+  for (const auto channel : {&Record::w, &Record::x}) {
+    if ((record.*channel).empty()) continue;
+    columns.emplace_back(name_in_file(record, channel), record.*channel);
+    for (double& value : columns.back().second) value *= factor_in_file(record, channel);
+  }
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
-  std::string text = "t_s";
-  for (const auto channel : {&Record::w, &Record::x})
-    if (!(record.*channel).empty()) text += fmt::format(",{}", name_in_file(record, channel));
-  text += rotary ? ",x_pred_mm,w_pred_rad_s\n" : ",x_pred_m,v_pred_m_s\n";
-  const double w_factor = factor_in_file(record, &Record::w), x_factor = factor_in_file(record, &Record::x);
-  const auto out = std::back_inserter(text);
-  for (std::size_t k = 0; k < record.size(); ++k) {
-    fmt::format_to(out, "{}", record.t_s[k]);
-    if (record.has_speed()) fmt::format_to(out, ",{}", record.w[k] * w_factor);
-    if (record.has_position()) fmt::format_to(out, ",{}", record.x[k] * x_factor);
-    fmt::format_to(out, ",{:.9g},{:.9g}\n", prediction.x[k], prediction.w[k]);
+  columns.emplace_back(rotary ? "x_pred_mm" : "x_pred_m", std::move(prediction.x));
+  columns.emplace_back(rotary ? "w_pred_rad_s" : "v_pred_m_s", std::move(prediction.w));
+  return columns;
+}
+
+std::string predictions_csv(const sim::DriveDescription& model, const PreparedRecord& prepared) {
+  const auto columns = predicted_columns(model, prepared);
+  std::string text;
+  for (const auto& column : columns) text += (text.empty() ? "" : ",") + column.first;
+  text += '\n';
+  for (std::size_t row = 0; row < prepared.record->size(); ++row) {
+    for (const auto& column : columns) fmt::format_to(std::back_inserter(text), "{},", column.second[row]);
+    text.back() = '\n';
   }
   return text;
 }

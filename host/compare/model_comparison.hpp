@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/compare/comparison.hpp"
@@ -46,7 +47,11 @@ ModelComparison compare_model(const sim::DriveDescription& model, const Measurem
 /// Prediction of every row: the rows after the last whole window by a shorter one, row 0 as the restart state reads.
 Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord prepared);
 
-/// CSV: t_s, the record's own speed and position columns, x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s).
+/// t_s, the record's own speed and position columns, x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s).
+std::vector<std::pair<std::string, std::vector<double>>> predicted_columns(const sim::DriveDescription& model,
+                                                                           const PreparedRecord& prepared);
+
+/// The same as CSV; every number reads back as the same double.
 std::string predictions_csv(const sim::DriveDescription& model, const PreparedRecord& prepared);
 
 /// "axis-comparison/1".

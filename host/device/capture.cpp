@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <deque>
 
+#include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 #include "host/record/columns.hpp"
 
@@ -45,7 +46,7 @@ class CaptureRun {
     board_.start_capture(request);
     try {
       fetch(progress);
-    } catch (const Failure&) {
+    } catch (...) {
       end_quietly();
       throw;
     }
@@ -171,6 +172,40 @@ Trigger parse_trigger(std::string_view text, sim::DriveKind kind) {
     throw Failure(ExitCode::usage, fmt::format("{}: write CHANNEL>LEVEL or CHANNEL<LEVEL, for example '{}>5'", text,
                                                channel_name(firmware::Channel::tachometer_velocity, kind)));
   return {channel_named(text.substr(0, sign), kind), text[sign] == '>', value};
+}
+
+JogStep parse_jog(const std::string& text) {
+  JogStep step;
+  const char* next = text.c_str();
+  char* end = nullptr;
+  step.velocity = std::strtod(next, &end);
+  const bool has_speed = end != next && *end == ':';
+  next = has_speed ? end + 1 : next;
+  step.duration_s = std::strtod(next, &end);
+  if (!has_speed || end == next || *end != '\0' || !std::isfinite(step.velocity) || !(step.duration_s > 0.0))
+    throw Failure(ExitCode::usage, fmt::format("--jog {}: write SPEED:SECONDS, for example 20:1.5", text));
+  return step;
+}
+
+void require_capturable(const firmware::ParameterValues& values, const CaptureSettings& settings) {
+  for (const JogStep& jog : settings.jogs) require_reachable(values, settings.axis, jog.velocity);
+  const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
+  const double reports_Hz = rate_Hz / std::floor(static_cast<double>(firmware::kWordsPerReport) /
+                                                 static_cast<double>(settings.channels.size()));
+  if (reports_Hz > 1000.0)
+    throw Failure(ExitCode::usage,
+                  fmt::format("{} channels at {:g} Hz need {:.0f} reports a second, and USB carries 1000: fewer "
+                              "channels, or --every {}",
+                              settings.channels.size(), rate_Hz, reports_Hz,
+                              settings.every * static_cast<unsigned>(std::ceil(reports_Hz / 1000.0))));
+}
+
+void require_no_loss(const Capture& capture, const std::string& where) {
+  if (capture.lost > 0)
+    throw Failure(ExitCode::protocol,
+                  fmt::format("{} rows were lost ({} dropped by the board); {} has gaps there, nothing is filled in: "
+                              "capture fewer channels or a lower rate, and close programs that load the computer",
+                              capture.lost, capture.dropped_by_board, where));
 }
 
 std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels) {

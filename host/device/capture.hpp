@@ -28,6 +28,9 @@ struct JogStep {
   double duration_s = 0.0;
 };
 
+/// "20:1.5": 20 mm/s for 1.5 s. Throws Failure(usage).
+JogStep parse_jog(const std::string& text);
+
 struct CaptureSettings {
   std::uint8_t axis = 0;
   sim::DriveKind kind = sim::DriveKind::rotary;
@@ -58,6 +61,12 @@ void append_row(Capture& capture, const std::vector<firmware::Channel>& channels
 
 /// Of rows by their numbers: how many are missing between the first and the last.
 std::size_t lost_rows(const std::vector<std::uint32_t>& numbers);
+
+/// Throws Failure(refused) for jogs beyond the axis's limits, Failure(usage) for more rows than USB carries.
+void require_capturable(const firmware::ParameterValues& values, const CaptureSettings& settings);
+
+/// Rows that were lost are a failure, of code protocol: `where` names what has the gap.
+void require_no_loss(const Capture& capture, const std::string& where);
 
 /// Runs a capture. `progress` is told the rows so far. Throws Failure: time_out (no trigger), what BoardClient throws,
 /// device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and the board to end

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "host/cancellation.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
@@ -28,18 +29,19 @@ class WindowResiduals : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(vector.size()));
   }
 
-  /// Parameters arrive in units of their scales.
+  /// Parameters arrive in units of their scales. Nothing comes of it once the fit is cancelled.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const auto columns = static_cast<Eigen::Index>(vector_.size());
     const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], columns);
     Eigen::Map<Eigen::VectorXd> here(residuals, rows_);
     evaluate(scaled, here.data());
-    if (!here.allFinite()) return false;
+    if (!here.allFinite() || is_cancelled()) return false;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(jacobians[0], rows_,
                                                                                                 columns);
     Eigen::VectorXd there(rows_);
     for (Eigen::Index column = 0; column < columns; ++column) {
+      if (is_cancelled()) return false;
       const FreeParameter& free = vector_.parameters()[static_cast<std::size_t>(column)];
       // Away from the upper bound, where a step upwards would be clamped away.
       const bool at_top = scaled(column) * free.scale + kDifferenceStep * free.scale > free.upper;
@@ -85,6 +87,7 @@ class Budget : public ceres::IterationCallback {
   Budget(const WindowResiduals& residuals, double most_steps) : residuals_(residuals), most_steps_(most_steps) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    if (is_cancelled()) return ceres::SOLVER_ABORT;
     return spent() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
   bool spent() const { return residuals_.steps() >= most_steps_; }
@@ -124,6 +127,7 @@ FitResult fit_model(const sim::DriveDescription& start, const RecordSet& trainin
   solver.callbacks.push_back(&budget);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  throw_if_cancelled();
 
   FitResult result;
   result.model = start;
@@ -146,7 +150,9 @@ Linearisation linearise(const sim::DriveDescription& model, const ParameterVecto
   Linearisation found{Eigen::VectorXd(rows), {rows, scaled.size()}};
   const double* parameters = scaled.data();
   double* slopes = found.slopes.data();
-  if (!residuals.Evaluate(&parameters, found.residuals.data(), &slopes)) return {};
+  const bool runs = residuals.Evaluate(&parameters, found.residuals.data(), &slopes);
+  throw_if_cancelled();
+  if (!runs) return {};
   return found;
 }
 

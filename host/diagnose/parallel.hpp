@@ -8,17 +8,22 @@
 #include <thread>
 #include <vector>
 
+#include "host/cancellation.hpp"
+
 namespace host {
 
 /// Calls work(index) for 0 ... count-1 on all cores, in no particular order; the first exception is thrown again here.
+/// What cancels this thread cancels all of them.
 template <typename Work>
 void for_each_in_parallel(std::size_t count, Work work) {
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_lock;
-  const auto worker = [&] {
+  const auto worker = [&, flag = cancel_flag()] {
+    const CancelledBy scope(flag);
     for (std::size_t index = next++; index < count; index = next++) {
       try {
+        throw_if_cancelled();
         work(index);
       } catch (...) {
         const std::lock_guard lock(failure_lock);

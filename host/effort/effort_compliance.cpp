@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/cancellation.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/drive.hpp"
 
@@ -91,6 +92,7 @@ void append_compliance(const sim::DriveDescription& model, const EffortRows& row
   const sim::Drive drive(base);
   const double usual = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia;
   for (double resonance_Hz = kLowest_Hz; resonance_Hz < kShareOfCutoff * rows.lowest_cutoff_Hz; resonance_Hz *= kStep) {
+    throw_if_cancelled();
     for (const double damping : {0.02, 0.1, 0.3}) terms.push_back(compliance_term(rows, {resonance_Hz, damping, 0.0}));
     if (usual > 0.0)
       for (const double part : {0.25, 0.5, 1.0, 2.0, 4.0})

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "host/cancellation.hpp"
 #include "host/compare/chance.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
@@ -272,6 +273,7 @@ std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& scree
   const ScreenedModel& now = screen.best();
   std::vector<Tried> found;
   for (const std::vector<const EffortTerm*>& terms : combinations) {
+    throw_if_cancelled();
     std::vector<const EffortTerm*> further;
     for (const EffortTerm& before : chosen) further.push_back(&before);
     further.insert(further.end(), terms.begin(), terms.end());

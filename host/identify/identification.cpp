@@ -123,6 +123,14 @@ IdentificationMethod default_method(const std::vector<Record>& records) {
   return tachometer ? IdentificationMethod::sliding_ls : IdentificationMethod::unbiased_ls;
 }
 
+IdentificationMethod method_named(std::string_view name, const std::vector<Record>& records) {
+  using enum IdentificationMethod;
+  if (name.empty()) return default_method(records);
+  for (const auto method : {unbiased_ls, simple_ls, sliding_ls})
+    if (name == method_name(method)) return method;
+  throw Failure(ExitCode::usage, fmt::format("--method: {} not in {{unbiased-ls,ls,sliding-ls}}", name));
+}
+
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options) {
   const std::vector<Record>& given = measured.training();

@@ -23,6 +23,9 @@ std::string_view method_name(IdentificationMethod method);  ///< "ls", "unbiased
 /// The method where the user names none: sliding_ls with a tachometer, unbiased_ls with an encoder only.
 IdentificationMethod default_method(const std::vector<Record>& records);
 
+/// By its name; where that is empty the default. Throws Failure(usage) with the names that there are.
+IdentificationMethod method_named(std::string_view name, const std::vector<Record>& records);
+
 struct Identification {
   IdentificationMethod method{};
   sim::DriveDescription model;  ///< data sheet plus inertia, viscous, coulomb with intervals and origin

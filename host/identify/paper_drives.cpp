@@ -1,7 +1,10 @@
 #include "host/identify/paper_drives.hpp"
 
+#include <fmt/format.h>
+
 #include <numbers>
-#include <string>
+
+#include "host/exit_codes.hpp"
 
 namespace host {
 
@@ -13,6 +16,14 @@ struct Table1 {
 };
 constexpr Table1 kX = {6.4898, 7.65e-3, 0.0321, {3.647, -2.702}, {2.205, -1.656}, {2.0, -2.0}, {2.0, -2.0}};
 constexpr Table1 kY = {7.5768, 9.79e-3, 0.0287, {3.652, -3.218}, {3.058, -2.739}, {4.1, -3.6}, {5.4, -4.2}};
+
+constexpr const char* kDriveExample = R"(  format = "axis-model/1"
+  name = "stage"
+  [drive]
+  kind = "linear"
+  force_constant_N_per_V = 35.1507
+  sample_period_s = 0.001
+A rotary drive has amplifier_gain_A_per_V, torque_constant_Nm_per_A and lead_mm_per_rad in place of the force constant.)";
 
 }  // namespace
 
@@ -42,6 +53,21 @@ std::optional<sim::DriveDescription> paper_drive(std::string_view name) {
                    {"omega2_positive", table.omega2_rad_s[0]},
                    {"omega2_negative", table.omega2_rad_s[1]}});
   return drive;
+}
+
+sim::DriveDescription drive_named_by(const Record& record, std::vector<std::string>& warnings) {
+  const auto known = record.kind == sim::DriveKind::rotary ? paper_drive(record.drive) : std::nullopt;
+  if (!known)
+    throw Failure(
+        ExitCode::usage,
+        fmt::format("{}: which drive is this? Volts become {} only with its data sheet. Write one and "
+                    "give it with --drive DRIVE.toml, for example:\n{}",
+                    record.path, record.kind == sim::DriveKind::linear ? "newtons" : "torque", kDriveExample));
+  warnings.push_back(
+      fmt::format("no --drive was given: taking the data sheet of the paper's drive {} (Ka = {:g} A/V, "
+                  "Kt = {:g} Nm/A), which the record names",
+                  record.drive, known->data.amplifier_gain_A_per_V, known->data.torque_constant_Nm_per_A));
+  return *known;
 }
 
 }  // namespace host

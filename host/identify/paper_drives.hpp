@@ -3,8 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "host/record/record.hpp"
 #include "sim/drive_description.hpp"
 
 namespace host {
@@ -12,5 +15,9 @@ namespace host {
 /// Axis "x" or "y" as Table 1 has it: data sheet, inertia, corrected viscous friction, Coulomb and static friction with
 /// their velocity constants. Empty for any other name.
 std::optional<sim::DriveDescription> paper_drive(std::string_view name);
+
+/// The paper's drive that a record names, where no data sheet was given; says so in `warnings`. Throws Failure(usage)
+/// where it names none.
+sim::DriveDescription drive_named_by(const Record& record, std::vector<std::string>& warnings);
 
 }  // namespace host

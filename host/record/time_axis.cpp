@@ -104,9 +104,9 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
   if (header_period_s && std::abs(*header_period_s - spacing.period_s) >
                              kPeriodTolerance * *header_period_s + spacing.worst_jitter_s * 0.5)
     fail(
-        fmt::format("line {}: sample_period_s: {} s contradicts t_s, which advances by {:.6g} s a row; correct "
-                    "whichever is wrong",
-                    header_line, *header_period_s, spacing.period_s));
+        fmt::format("{}sample_period_s: {} s contradicts t_s, which advances by {:.6g} s a row; correct whichever is "
+                    "wrong",
+                    header_line > 0 ? fmt::format("line {}: ", header_line) : "", *header_period_s, spacing.period_s));
   const std::string jitter =
       fmt::format("{:.3g} ms rms, {:.3g} ms at worst, with a period of {:.6g} ms", spacing.rms_jitter_s * 1e3,
                   spacing.worst_jitter_s * 1e3, spacing.period_s * 1e3);

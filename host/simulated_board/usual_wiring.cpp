@@ -13,6 +13,10 @@ hal::pc::AxisWiring usual_wiring(const sim::DataSheet& data, double home) {
   return wiring;
 }
 
+SimulatedDrive usual_axis(const sim::DriveDescription& drive) {
+  return {drive, usual_wiring(drive.data, drive.data.kind == sim::DriveKind::rotary ? 25.0 : 0.025)};
+}
+
 UsualHome usual_home(const hal::pc::AxisWiring& wiring) {
   if (wiring.index_spacing == 0.0) return {firmware::HomingMode::home_switch, wiring.home};
   const double turns = std::ceil((wiring.home - wiring.index_offset) / wiring.index_spacing);

@@ -2,13 +2,15 @@
 #pragma once
 
 #include "firmware/core/motion/homing.hpp"
-#include "hal/pc/simulated_axis.hpp"
-#include "sim/drive_description.hpp"
+#include "host/simulated_board/simulated_device.hpp"
 
 namespace host {
 
 /// A home switch at `home` mm (m) from where the axis is at power-up and, on a shaft, an index pulse each turn.
 hal::pc::AxisWiring usual_wiring(const sim::DataSheet& data, double home);
+
+/// The drive with a home switch 25 mm (0.025 m) from where it is at power-up.
+SimulatedDrive usual_axis(const sim::DriveDescription& drive);
 
 /// What finds home on such an axis, and the place that is found, mm (m) from where the axis is at power-up.
 struct UsualHome {

@@ -1,0 +1,20 @@
+// A design as a file of one axis's parameters (`axis-params/1`), with all that the board compensates and filters.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/identify/axis_design.hpp"
+#include "host/parameters/control_filters.hpp"
+
+namespace host {
+
+/// Board parameters, compensations of the model's effects and filters. Throws as core_filters() for a filter out of its
+/// range.
+std::string design_toml(const sim::DriveDescription& model, const AxisDesign& design,
+                        const ControlFilterChoice& filters);
+
+/// {"notch": {…}, "low_pass": {…}}, null where there is none.
+nlohmann::json filter_json(const ControlFilterChoice& filters);
+
+}  // namespace host
