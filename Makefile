@@ -28,11 +28,12 @@ all: ## Build everything for this machine into build/; the program is build/bin/
 PREFIX ?= /usr/local
 
 .PHONY: install
-install: ## Install program, manual, completions and udev rule below PREFIX (now /usr/local); DESTDIR stages it
+install: ## Install program, Python package, manual, completions and udev rule below PREFIX (now /usr/local); DESTDIR stages it
 	$(NEED) build
-	$(call configure,$(BUILD),-DCMAKE_INSTALL_PREFIX=$(PREFIX))
-	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents
+	$(call configure,$(BUILD),-DCMAKE_INSTALL_PREFIX=$(PREFIX) -UAXIS_ZSH_DIR -UAXIS_PYTHON_DIR)
+	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents axis_python
 	cmake --install $(BUILD) --component axistool --prefix $(PREFIX) --strip
+	cmake --install $(BUILD) --component python --prefix $(PREFIX) --strip
 
 .PHONY: install-cpp
 install-cpp: ## Install the library, its headers and its CMake package (find_package(axis)) below PREFIX
@@ -44,8 +45,8 @@ install-cpp: ## Install the library, its headers and its CMake package (find_pac
 .PHONY: deb
 deb: ## Make the Debian packages axistool and python3-axistool (build/*.deb), and let lintian look at them
 	$(NEED) build package
-	$(call configure,$(BUILD),-DAXIS_ZSH_DIR=share/zsh/vendor-completions)
-	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents
+	$(call configure,$(BUILD),-DAXIS_ZSH_DIR=share/zsh/vendor-completions -DAXIS_PYTHON_DIR=lib/python3/dist-packages)
+	ninja -C $(BUILD) -j $(JOBS) axistool axistool_documents axis_python
 	rm -f $(BUILD)/*axistool_*.deb
 	cd $(BUILD) && cpack -G DEB --config CPackConfig.cmake
 	lintian --fail-on error,warning $(BUILD)/*axistool_*.deb

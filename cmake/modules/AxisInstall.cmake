@@ -23,9 +23,14 @@ install(FILES "${DOCUMENTS}/axistool.fish" DESTINATION share/fish/vendor_complet
 install(FILES "${DOCUMENTS}/70-axis.rules" DESTINATION lib/udev/rules.d ${IN_PACKAGE})
 install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/axistool ${IN_PACKAGE})
 
-# The Python package, of the component "python": in the Debian package python3-axistool; elsewhere pip installs it.
-install(DIRECTORY "${AXIS_ROOT}/host/python/axistool" DESTINATION lib/python3/dist-packages COMPONENT python
-  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+# The Python package, of the component "python": in the Debian package python3-axistool. Debian's Python looks in another
+# folder below /usr/local than below /usr.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)  # that of host/python
+set(AXIS_PYTHON_DIR "lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages" CACHE STRING
+    "Where Python looks for packages, below the prefix")
+install(DIRECTORY "${AXIS_ROOT}/host/python/axistool" DESTINATION "${AXIS_PYTHON_DIR}" COMPONENT python
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+install(TARGETS axis_python LIBRARY DESTINATION "${AXIS_PYTHON_DIR}/axistool" COMPONENT python)
 install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/python3-axistool COMPONENT python)
 
 # The library for C++, of the component "development": find_package(axis), target axis::host.
@@ -66,9 +71,11 @@ axis board.
 It sets the parameters of boards over USB, moves their axes and captures
 records; a simulated board takes the place of a real one for trying it out.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-axistool)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "axistool (>= ${AXIS_VERSION}), python3 (>= 3.11), python3:any, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+math(EXPR NEXT_PYTHON "${Python3_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${NEXT_PYTHON}), python3-numpy, libhidapi-hidraw0")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "axistool, libmatio11")  # the udev rule and the shipped drive come with the program
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "identify feed drives from Python
 The analysis of axistool as functions of Python with typed results: records
 as NumPy arrays, models, identify, compare, diagnose, add, improve, design,

@@ -1,10 +1,7 @@
 """Identify feed drives, compare models with measurements, find the physical effect that a model lacks.
 
-Each function asks the program `axistool` (of PATH, or the one that the environment variable AXISTOOL names), so that its
-figures are those of the command line, bit for bit, and its errors say the same words. That is why this is not a binding
-of the C++ library: a second way into it would have to parse, check, warn and refuse as the commands do; Ctrl-C and a
-crash would reach into the interpreter; and the package would be built anew for every version of Python. A call costs
-some 20 ms and a pass through files, against work that takes seconds.
+The functions are the C++ library's own, those that the commands of `axistool` call: their figures are the command
+line's, bit for bit, and their errors say the same words. They leave Python's lock while they compute, and end at Ctrl-C.
 """
 
 from .analysis import (
@@ -40,8 +37,8 @@ from .errors import (
     UsageError,
 )
 from .model import Model
-from .program import Progress
 from .record import Record
+from .sources import Progress
 
 __all__ = [
     "Addition",

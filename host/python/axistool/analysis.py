@@ -1,7 +1,9 @@
-"""identify, compare, diagnose, add, improve, design. `json` of every result is the program's whole answer."""
+"""identify, compare, diagnose, add, improve, design. `json` of every result is the whole answer, the
+document that the command prints with --json."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -10,11 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _host
 from .model import Model
-from .program import ModelLike, Progress, RecordLike, Workspace, run
 from .record import Record
-
-Records = RecordLike | Iterable[RecordLike]
+from .sources import ModelLike, Progress, RecordLike, Records, model_source, record_source, record_sources
 
 
 @dataclass(frozen=True)
@@ -112,48 +113,33 @@ class Design:
 
 
 def identify(records: Records, drive: ModelLike | None = None, method: str | None = None) -> Identification:
-    """Inertia (or mass), viscous and Coulomb friction. `drive`: data sheet. Raises Refused where the axis hardly moved."""
-    with Workspace() as space:
-        output = space.path(".toml")
-        arguments = ["identify", *space.records(records), "-o", str(output)]
-        arguments += [] if drive is None else ["--drive", space.model(drive)]
-        arguments += [] if method is None else ["--method", method]
-        answer = run(arguments)
-        parameters = {name: Estimate(one["value"], (one["ci95"][0], one["ci95"][1]))
-                      for name, one in answer["parameters"].items()}
-        return Identification(Model.read(output), parameters, answer["relative_error"], answer["warnings"], answer)
+    """Inertia (or mass), viscous and Coulomb friction. `drive`: data sheet. `method`: "sliding-ls", "unbiased-ls" or
+    "ls". Raises Refused where the axis hardly moved."""
+    sheet = None if drive is None else model_source(drive)
+    text, model = _host.identify(record_sources(records), sheet, method or "")
+    answer = json.loads(text)
+    parameters = {name: Estimate(one["value"], (one["ci95"][0], one["ci95"][1]))
+                  for name, one in answer["parameters"].items()}
+    return Identification(Model.parse(model), parameters, answer["relative_error"], answer["warnings"], answer)
 
 
 def compare(model: ModelLike, records: Records, window_s: float | None = None) -> Comparison:
-    """How well a model predicts records from their recorded command alone."""
-    with Workspace() as space:
-        arguments = ["compare", space.model(model), *space.records(records)]
-        answer = run(arguments + ([] if window_s is None else ["--window", repr(window_s)]))
+    """How well a model predicts records from their recorded command alone, over windows of `window_s`."""
+    window_s = _host.WINDOW_S if window_s is None else window_s
+    answer = json.loads(_host.compare(model_source(model), record_sources(records), window_s))
     channels = {name: ChannelError(one["rms"], one["floor"], one["fit"]) for name, one in answer["channels"].items()}
     return Comparison(answer["combined"], channels, answer["relative_error"], answer)
 
 
 def predict(model: ModelLike, record: RecordLike, window_s: float | None = None) -> Record:
     """The record's rows beside the model's: x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s)."""
-    with Workspace() as space:
-        output = space.path(".csv")
-        arguments = ["compare", space.model(model), space.record(record), "--predictions", str(output)]
-        run(arguments + ([] if window_s is None else ["--window", repr(window_s)]))
-        return Record.read(output)
+    window_s = _host.WINDOW_S if window_s is None else window_s
+    columns, header = _host.predict(model_source(model), record_source(record), window_s)
+    return Record(columns, header)
 
 
-def _each(option: str, values: Iterable[str]) -> list[str]:
-    return [word for value in values for word in (option, value)]
-
-
-def _trained(command: list[str], space: Workspace, train: Records, validate: Records | None) -> list[str]:
-    arguments = [*command, "--train", *space.records(train)]
-    return arguments if validate is None else [*arguments, "--validate", *space.records(validate)]
-
-
-def _known(hold: Iterable[str], prior: Mapping[str, float], absent: Iterable[str]) -> list[str]:
-    beliefs = [f"{name}={deviation!r}" for name, deviation in prior.items()]
-    return [*_each("--hold", hold), *_each("--prior", beliefs), *_each("--absent", absent)]
+def _beliefs(prior: Mapping[str, float]) -> list[str]:
+    return [f"{name}={float(deviation)!r}" for name, deviation in prior.items()]
 
 
 def diagnose(
@@ -169,9 +155,8 @@ def diagnose(
     """Which physical effect the model lacks. Without `validate`, blocks of the training data are kept back to judge.
     `hold`: parameters that stay ("J_kg_m2"); `prior`: standard deviations of what the model says; `absent`: effects that
     this machine is known not to have."""
-    with Workspace() as space:
-        command = ["diagnose", space.model(model)]
-        answer = run(_trained(command, space, train, validate) + _known(hold, prior, absent), progress)
+    answer = json.loads(_host.diagnose(model_source(model), record_sources(train), record_sources(validate),
+                                       list(hold), _beliefs(prior), list(absent), progress))
     verdict = answer["verdict"]
     candidates = [Candidate(one["kinds"], one["before"], one["after"], one["confidence"], one["parameters"])
                   for one in answer["candidates"]]
@@ -184,13 +169,11 @@ def add(
 ) -> Addition:
     """Adds one effect at a word and fits all parameters again. `over`: coordinate of a free_curve. Raises Refused where
     no stretch of the records judges it."""
-    with Workspace() as space:
-        output = space.path(".toml")
-        arguments = _trained(["add", space.model(model), kind], space, train, validate) + ["-o", str(output)]
-        answer = run(arguments + ([] if over is None else ["--over", over]))
-        parameters = {one["name"]: Fitted(one["value"], one["deviation"], one["determined"])
-                      for one in answer["parameters"]}
-        return Addition(Model.read(output), answer["before"], answer["after"], answer["confidence"], parameters, answer)
+    text, new = _host.add(model_source(model), kind, record_sources(train), record_sources(validate), over or "")
+    answer = json.loads(text)
+    parameters = {one["name"]: Fitted(one["value"], one["deviation"], one["determined"])
+                  for one in answer["parameters"]}
+    return Addition(Model.parse(new), answer["before"], answer["after"], answer["confidence"], parameters, answer)
 
 
 def improve(
@@ -204,22 +187,34 @@ def improve(
     progress: Progress | None = None,
 ) -> Improvement:
     """Adds effects while each earns its place on validation data; the arguments are those of diagnose."""
-    with Workspace() as space:
-        output = space.path(".toml")
-        arguments = _trained(["improve", space.model(model)], space, train, validate) + _known(hold, prior, absent)
-        answer = run([*arguments, "-o", str(output)], progress)
-        ladder = [Rung(one["added"], one["train"], one["validate"]) for one in answer["ladder"]]
-        return Improvement(Model.read(output), ladder, answer["stopped_because"], answer)
+    text, better = _host.improve(model_source(model), record_sources(train), record_sources(validate),
+                                 list(hold), _beliefs(prior), list(absent), progress)
+    answer = json.loads(text)
+    ladder = [Rung(one["added"], one["train"], one["validate"]) for one in answer["ladder"]]
+    return Improvement(Model.parse(better), ladder, answer["stopped_because"], answer)
 
 
-def design(model: ModelLike, **options: float) -> Design:
-    """Kalman gain and state feedback; `options` as the command has them: fc=30, zeta=0.7, rw=0.05, …"""
-    with Workspace() as space:
-        output = space.path(".toml")
-        arguments = ["design", space.model(model), "-o", str(output)]
-        for name, value in options.items():
-            arguments += [f"--{name}", repr(value)]
-        answer = run(arguments)
-        poles = np.array([complex(re, im) for re, im in answer["observer_poles"]])
-        return Design(np.array(answer["A"]), np.array(answer["B"]), np.array(answer["Kobs"]), np.array(answer["Kc"]),
-                      poles, output.read_text(encoding="utf-8"), answer)
+def design(
+    model: ModelLike,
+    *,
+    fc: float | None = None,
+    zeta: float | None = None,
+    rw: float | None = None,
+    rwd: float | None = None,
+    ru: float | None = None,
+    rx: float | None = None,
+    notch: float | Sequence[float] = (),
+    low_pass: float | Sequence[float] = (),
+) -> Design:
+    """Kalman gain and state feedback. `fc`, `zeta`: natural frequency (Hz) and damping of the closed loop; `rw`, `rwd`,
+    `ru`, `rx`: variances of tachometer, disturbance, command and position; `notch`, `low_pass`: frequency in Hz, and
+    after it damping and depth."""
+    text, parameters = _host.design(model_source(model), fc, zeta, rw, rwd, ru, rx, _numbers(notch), _numbers(low_pass))
+    answer = json.loads(text)
+    poles = np.array([complex(re, im) for re, im in answer["observer_poles"]])
+    return Design(np.array(answer["A"]), np.array(answer["B"]), np.array(answer["Kobs"]), np.array(answer["Kc"]), poles,
+                  parameters, answer)
+
+
+def _numbers(given: float | Sequence[float]) -> list[float]:
+    return list(given) if isinstance(given, Sequence) else [given]

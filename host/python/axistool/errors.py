@@ -1,10 +1,10 @@
-"""What goes wrong, by the exit code of the program and in its words."""
+"""What goes wrong, by the exit code that the program would end with, and in its words."""
 
 from __future__ import annotations
 
 
 class AxisError(Exception):
-    """The program ended with `code`; the text is what it said."""
+    """`code` is the program's exit code of such a failure; the text is what it would say."""
 
     code = 0
 
@@ -49,7 +49,6 @@ _KINDS: dict[int, type[AxisError]] = {
 }
 
 
-def error_of(code: int, said: str) -> AxisError:
-    """The exception of an exit code, without the program's name before its words."""
-    text = said.strip().removeprefix("axistool: ")
-    return _KINDS.get(code, AxisError)(text or f"axistool ended with exit code {code}")
+def error_of(code: int, text: str) -> AxisError:
+    """The exception of an exit code."""
+    return _KINDS.get(code, AxisError)(text)

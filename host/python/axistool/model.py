@@ -25,9 +25,17 @@ class Model:
         except (OSError, tomllib.TOMLDecodeError) as fault:
             raise BadInput(f"{path}: {fault}") from fault
 
+    @classmethod
+    def parse(cls, text: str) -> Model:
+        return cls(tomllib.loads(text))
+
     def write(self, path: str | os.PathLike[str]) -> None:
         """Every number reads back as the same double."""
-        Path(path).write_text(_toml(self.document), encoding="utf-8")
+        Path(path).write_text(self.text(), encoding="utf-8")
+
+    def text(self) -> str:
+        """The file's."""
+        return _toml(self.document)
 
     @property
     def name(self) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _host
 from .errors import BadInput
 
 
@@ -28,23 +29,22 @@ class Record:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Record:
-        """Numbers as the file has them; the program's checks come when the record is used."""
-        header: dict[str, str] = {}
-        with open(path, encoding="utf-8-sig") as file:
-            line = file.readline()
-            while line.startswith("#"):
-                key, colon, value = line[1:].partition(":")
-                if colon:
-                    header[key.strip()] = value.strip()
-                line = file.readline()
-            names = [name.strip() for name in line.split(",")]
-            try:
-                rows = np.loadtxt(file, delimiter=",", ndmin=2)
-            except ValueError as fault:
-                raise BadInput(f"{path}: {fault}") from fault
-        if rows.size == 0 or rows.shape[1] != len(names):
-            raise BadInput(f"{path}: {rows.shape[1] if rows.size else 0} columns of numbers under {len(names)} names")
-        return cls({name: rows[:, k].copy() for k, name in enumerate(names)}, header)
+        """Numbers as the file has them, of any table (also .npy); the checks come when the record is used."""
+        columns, header = _host.read_columns(os.fspath(path))
+        return cls(columns, header)
+
+    @classmethod
+    def from_log(
+        cls, path: str | os.PathLike[str], map: str = "", resample_s: float | None = None, drive: str = ""
+    ) -> Record:
+        """Of a .mat or .npy file or any table, as `axistool import`: map="t_s=t_ms*0.001,u_V=cmd,x_mm=#3"."""
+        columns, header = _host.import_record(os.fspath(path), map, resample_s, drive)
+        return cls(columns, header)
+
+    def checked(self) -> Record:
+        """As the functions take it, in the drive's own units. Raises BadInput in the words of the program."""
+        columns, header = _host.checked((self.columns, self.header))
+        return Record(columns, header)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Every number reads back as the same double."""

@@ -1,0 +1,176 @@
+// identify, compare, diagnose, add, improve, design: what the commands of the same names call.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "host/compare/comparison_figures.hpp"
+#include "host/diagnose/addition.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/identify/design_json.hpp"
+#include "host/identify/identification_json.hpp"
+#include "host/identify/paper_drives.hpp"
+#include "host/identify/plausibility.hpp"
+#include "host/model/effect_forms.hpp"
+#include "host/model/known_parameters.hpp"
+#include "host/parameters/design_file.hpp"
+#include "host/python/bindings.hpp"
+#include "host/python/listening.hpp"
+#include "host/python/sources.hpp"
+
+namespace axistool_python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Names = std::vector<std::string>;
+/// The document of a result, and the file that goes with it: a model, or parameters.
+using Answer = std::pair<std::string, std::string>;
+
+Answer identify(const py::sequence& given, const py::object& sheet, const std::string& method) {
+  const std::vector<RecordSource> sources = record_sources(given, "record");
+  const auto drive_file = sheet.is_none() ? std::nullopt : std::optional<ModelSource>(sheet);
+  return result_of(py::none(), "identify", [&](const auto&) {
+    Names warnings;
+    const sim::DriveDescription drive =
+        drive_file ? drive_file->read_data_sheet() : host::drive_named_by(sources.at(0).read(), warnings);
+    const host::Measurements measured = host::MeasurementGate(drive).admit(read_all(sources));
+    host::Identification found = host::identify_drive(measured, drive, host::method_named(method, measured.training()));
+    found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    nlohmann::json document = host::identification_json(found);
+    document["log"] = host::log_faults_json(measured.log());
+    return Answer{document.dump(), host::format_model(found.model)};
+  });
+}
+
+host::ComparedModel compared(const ModelSource& model, const std::vector<RecordSource>& sources, double window_s) {
+  const sim::DriveDescription drive = model.read();
+  return host::compare_with(model.name(), drive, read_all(sources), window_s, {});
+}
+
+std::string compare(const py::object& model, const py::sequence& given, double window_s) {
+  const ModelSource source(model);
+  const std::vector<RecordSource> sources = record_sources(given, "record");
+  return result_of(py::none(), "compare", [&](const auto&) {
+    nlohmann::json document = host::comparison_json(compared(source, sources, window_s).comparison);
+    document["model"] = source.name();
+    return document.dump();
+  });
+}
+
+py::tuple predict(const py::object& model, const py::object& given, double window_s) {
+  const ModelSource source(model);
+  const std::vector<RecordSource> sources{{given, "the record"}};
+  return to_python(result_of(py::none(), "predict", [&](const auto&) {
+    const host::ComparedModel one = compared(source, sources, window_s);
+    return host::RecordColumns{host::predicted_columns(one.model, one.set.records.front().prepared), {}};
+  }));
+}
+
+/// What diagnose and improve begin with.
+struct Question {
+  ModelSource model;
+  std::vector<RecordSource> train, validate;
+  Names held, believed, absent;
+
+  Question(const py::object& model_given, const py::sequence& train_given, const py::sequence& validate_given,
+           Names hold, Names prior, Names without)
+      : model(model_given),
+        train(record_sources(train_given, "training record")),
+        validate(record_sources(validate_given, "validation record")),
+        held(std::move(hold)),
+        believed(std::move(prior)),
+        absent(std::move(without)) {}
+
+  sim::DriveDescription drive() const {
+    for (const std::string& kind : absent) host::known_effect(kind);
+    return host::with_knowledge(model.read(), held, believed);
+  }
+  host::Measurements measurements(const sim::DriveDescription& drive) const {
+    return host::MeasurementGate(drive).admit(read_all(train), read_all(validate));
+  }
+};
+
+std::string diagnose(const py::object& model, const py::sequence& train, const py::sequence& validate, Names hold,
+                     Names prior, Names absent, const py::object& progress) {
+  const Question asked(model, train, validate, std::move(hold), std::move(prior), std::move(absent));
+  return result_of(progress, "diagnose", [&](const host::ShareDone& done) {
+    const sim::DriveDescription drive = asked.drive();
+    return host::to_json(host::diagnose(drive, asked.measurements(drive), done, nullptr, asked.absent)).dump();
+  });
+}
+
+Answer improve(const py::object& model, const py::sequence& train, const py::sequence& validate, Names hold,
+               Names prior, Names absent, const py::object& progress) {
+  const Question asked(model, train, validate, std::move(hold), std::move(prior), std::move(absent));
+  return result_of(progress, "improve", [&](const host::ShareDone& done) {
+    const sim::DriveDescription drive = asked.drive();
+    const host::Improvement improvement = host::improve(drive, asked.measurements(drive), done, asked.absent);
+    nlohmann::json document = host::to_json(improvement, "");
+    document["warnings"] = host::messages_of(host::doubts_of(improvement.model));
+    return Answer{document.dump(), host::format_model(improvement.model)};
+  });
+}
+
+Answer add(const py::object& model, const std::string& kind, const py::sequence& train, const py::sequence& validate,
+           const std::string& over) {
+  const Question asked(model, train, validate, {}, {}, {});
+  return result_of(py::none(), "add", [&](const auto&) {
+    host::known_effect(kind);
+    const sim::DriveDescription drive = asked.drive();
+    const host::Measurements measured = asked.measurements(drive);
+    const host::Addition addition = host::add_kind(drive, kind, over, measured);
+    return Answer{host::to_json(addition, kind, measured, "").dump(), host::format_model(addition.judged.model)};
+  });
+}
+
+/// Frequency in Hz, then damping and, of a notch, depth: those that are not given are the usual ones.
+host::ControlFilterChoice filters_of(const std::vector<double>& notch, const std::vector<double>& low_pass) {
+  host::ControlFilterChoice filters;
+  if (!notch.empty()) filters.notch = host::Notch{notch[0]};
+  if (notch.size() > 1) filters.notch->damping = notch[1];
+  if (notch.size() > 2) filters.notch->depth = notch[2];
+  if (!low_pass.empty()) filters.low_pass = host::LowPass{low_pass[0]};
+  if (low_pass.size() > 1) filters.low_pass->damping = low_pass[1];
+  return filters;
+}
+
+Answer design(const py::object& model, std::optional<double> fc, std::optional<double> zeta, std::optional<double> rw,
+              std::optional<double> rwd, std::optional<double> ru, std::optional<double> rx,
+              const std::vector<double>& notch, const std::vector<double>& low_pass) {
+  const ModelSource source(model);
+  host::DesignOptions options;
+  options.tach_variance = rw;
+  options.command_variance = ru;
+  options.position_variance = rx;
+  options.disturbance_variance = rwd.value_or(options.disturbance_variance);
+  options.bandwidth_Hz = fc.value_or(options.bandwidth_Hz);
+  options.damping = zeta.value_or(options.damping);
+  const host::ControlFilterChoice filters = filters_of(notch, low_pass);
+  return result_of(py::none(), "design", [&](const auto&) {
+    const sim::DriveDescription drive = source.read(host::Bounds::examined_later);
+    host::require_plausible(drive, {});
+    const host::AxisDesign found = host::design_axis(drive, options);
+    nlohmann::json document = host::design_json(found);
+    document["filters"] = host::filter_json(filters);
+    return Answer{document.dump(), host::design_toml(drive, found, filters)};
+  });
+}
+
+}  // namespace
+
+void bind_analysis(py::module_& module) {
+  module.attr("WINDOW_S") = host::kWindow_s;
+  module.def("identify", &identify);
+  module.def("compare", &compare);
+  module.def("predict", &predict);
+  module.def("diagnose", &diagnose);
+  module.def("add", &add);
+  module.def("improve", &improve);
+  module.def("design", &design);
+}
+
+}  // namespace axistool_python

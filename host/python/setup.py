@@ -1,0 +1,48 @@
+"""Builds the module axistool._host with the project's CMake, in AXIS_BUILD or where `make` builds."""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+PROJECT = Path(__file__).resolve().parents[2]
+LIST = PROJECT / "cmake" / "packages" / "build.txt"
+
+
+def missing_packages() -> list[str]:
+    """Of Debian; elsewhere CMake says what it lacks."""
+    if shutil.which("dpkg-query") is None:
+        return []
+    wanted = [line.split("#")[0].strip() for line in LIST.read_text().splitlines()]
+    known = subprocess.run(["dpkg-query", "-W", "-f", "${db:Status-Status} ${Package}\n", *filter(None, wanted)],
+                           capture_output=True, text=True).stdout
+    return [name for name in wanted if name and f"installed {name}\n" not in known]
+
+
+class BuildModule(build_ext):
+    def build_extension(self, extension: Extension) -> None:
+        tree = Path(os.environ.get("AXIS_BUILD") or PROJECT / "build")
+        if not (tree / "CMakeCache.txt").exists():
+            if not LIST.exists():
+                sys.exit(f"axistool: {PROJECT} is not the project, whose C++ library this package is built of: install "
+                         "from its own folder host/python, or name a build tree in the variable AXIS_BUILD")
+            if missing := missing_packages():
+                sys.exit("axistool: Debian packages are missing: sudo apt install " + " ".join(missing))
+            subprocess.check_call(["cmake", "-S", PROJECT / "cmake", "-B", tree, "-G", "Ninja", "--log-level=WARNING",
+                                   f"-DPython3_EXECUTABLE={sys.executable}"])
+        subprocess.check_call(["cmake", "--build", tree, "--target", "axis_python"])
+        module = tree / "python" / "axistool" / f"_host{sysconfig.get_config_var('EXT_SUFFIX')}"
+        if not module.exists():
+            sys.exit(f"axistool: {tree} builds for another Python than {sys.executable}: name another build tree in the "
+                     "variable AXIS_BUILD")
+        target = Path(self.get_ext_fullpath(extension.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(module, target)
+
+
+setup(ext_modules=[Extension("axistool._host", [])], cmdclass={"build_ext": BuildModule})

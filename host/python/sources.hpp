@@ -1,0 +1,52 @@
+// Records and models as Python gives them: a path, or what is in memory.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "host/model/model_file.hpp"
+#include "host/record/record_columns.hpp"
+
+namespace axistool_python {
+
+struct Path {
+  std::string text;
+};
+
+/// Read where the work is done, after Python's part of it.
+class RecordSource {
+ public:
+  /// A path (str), or a tuple of columns (dict of NumPy arrays by their names) and header (dict of str). `name` is for
+  /// messages on what is in memory.
+  RecordSource(const pybind11::handle& given, std::string name);
+  host::Record read() const;
+
+ private:
+  std::string name_;
+  std::variant<Path, host::RecordColumns> given_;
+};
+
+/// Of a sequence of such.
+std::vector<RecordSource> record_sources(const pybind11::sequence& given, const std::string& role);
+std::vector<host::Record> read_all(const std::vector<RecordSource>& sources);
+
+/// Columns as NumPy arrays, and the header.
+pybind11::tuple to_python(const host::RecordColumns& record);
+
+class ModelSource {
+ public:
+  /// A path (str), or a tuple with the model's text.
+  explicit ModelSource(const pybind11::handle& given);
+  sim::DriveDescription read(host::Bounds bounds = host::Bounds::enforced) const;
+  sim::DriveDescription read_data_sheet() const;
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_, text_;
+  bool is_file_ = false;
+};
+
+}  // namespace axistool_python
