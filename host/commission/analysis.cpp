@@ -100,7 +100,8 @@ CommissionStepResult diagnose_machine(CommissionSession& session) {
   const Diagnosis& diagnosis = session.found->diagnosis;
   session.folder().write_json("diagnosis.json", to_json(diagnosis));
   write_diagnosis_report(diagnosis, path, session.folder().path("diagnosis.html"));
-  return {{"diagnosis.json", "diagnosis.html"}, named(diagnosis.verdict)};
+  write_model(diagnosis.best, session.folder().path("diagnosed.toml"));
+  return {{"diagnosis.json", "diagnosis.html", "diagnosed.toml"}, named(diagnosis.verdict)};
 }
 
 CommissionStepResult improve_model(CommissionSession& session) {

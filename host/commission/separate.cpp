@@ -81,7 +81,8 @@ class Separation {
           if (!has(groups.front(), effect)) kinds.back().push_back(effect);
       }
     if (kinds.size() < 2) return;
-    rivals_ = fit_rivals(model_, all_, kinds);
+    const Rival known{effects, read_model(session_.folder().require("diagnosed.toml", "diagnose")), 1.0};
+    rivals_ = fit_rivals(model_, all_, kinds, {}, is_ambiguous ? nullptr : &known);
     const double sum = std::accumulate(believed.begin(), believed.end(), 0.0);
     for (std::size_t k = 0; k < rivals_.size() && sum > 0.0; ++k) rivals_[k].probability = believed[k] / sum;
   }

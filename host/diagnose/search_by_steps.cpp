@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/model_fit.hpp"
@@ -29,22 +31,53 @@ bool promises_a_third(const Errors& base, const Errors& pair) {
          explained_share(base.validation, pair.validation) > kMost;
 }
 
+constexpr double kAsGood = 1.1;
+constexpr FitOptions kWithoutOne{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
+
+sim::DriveDescription without(const sim::DriveDescription& model, const std::string& kind, const RecordSet& training) {
+  sim::DriveDescription rest = model;
+  std::erase_if(rest.effects, [&](const sim::EffectEntry& entry) { return entry.kind == kind; });
+  return fit_model(rest, training, kWithoutOne).model;
+}
+
+/// A constant force is nothing but friction by direction while the axis slides, and an offset of the command is one:
+/// friction takes over all of it at once, where a fit by steps would stay in the valley beside. Nothing for other
+/// effects and other friction.
+std::optional<sim::DriveDescription> handed_to_friction(const sim::DriveDescription& model, const std::string& kind) {
+  double force = 0.0;
+  if (kind == "constant_torque") force = model.find(kind)->at("torque");
+  if (kind == "dac_offset") force = model.find(kind)->at("offset") * model.data.effort_per_volt();
+  sim::DriveDescription other = model;
+  if (force == 0.0) return {};
+  for (const auto& [friction, level] : {std::pair("coulomb", ""), std::pair("stribeck", "static_")}) {
+    sim::EffectEntry* entry = other.find(friction);
+    if (entry == nullptr) continue;
+    const std::string positive = std::string(level) + "positive", negative = std::string(level) + "negative";
+    if (!entry->has(positive) || !entry->has(negative) || !entry->held.empty()) return {};
+    entry->parameters[positive] -= force;
+    entry->parameters[negative] -= force;
+    if (entry->at(positive) <= 0.0 || entry->at(negative) >= 0.0) return {};
+  }
+  return other;
+}
+
 /// Several effects without each of them in turn, fitted again from there. The last one may have made an earlier one
 /// needless; and the last one itself may have done no more than carry a fit out of a valley in which it was stuck.
 std::vector<Candidate> without_what_is_needless(const Candidate& whole, const PreparedSets& sets) {
-  constexpr double kAsGood = 1.1;
-  constexpr FitOptions kFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
   std::vector<Candidate> found;
   const Errors with(whole.model, sets);
-  for (std::size_t k = 0; k < whole.kinds.size(); ++k) {
-    sim::DriveDescription model = whole.model;
+  const auto is_as_good = [&](const sim::DriveDescription& model) {
+    const Errors errors(model, sets);
+    return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
+  };
+  for (const std::string& kind : whole.kinds) {
+    sim::DriveDescription model = without(whole.model, kind, sets.training);
+    if (!is_as_good(model))
+      if (const auto other = handed_to_friction(whole.model, kind)) model = without(*other, kind, sets.training);
+    if (!is_as_good(model)) continue;
     std::vector<std::string> kinds = whole.kinds;
-    std::erase_if(model.effects, [&](const sim::EffectEntry& entry) { return entry.kind == whole.kinds[k]; });
-    kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(k));
-    model = fit_model(model, sets.training, kFit).model;
-    const Errors without(model, sets);
-    if (without.training < kAsGood * with.training && without.validation < kAsGood * with.validation)
-      found.push_back(judged(kinds, model, sets.base, sets.training, sets.validation));
+    std::erase(kinds, kind);
+    found.push_back(judged(kinds, model, sets.base, sets.training, sets.validation));
   }
   return found;
 }

@@ -17,6 +17,13 @@ namespace {
 /// Another motion may bring out twice the error that a good model leaves; more is another effect.
 constexpr double kFar = 2.0;
 
+/// chi^2 an observation that even the best rival leaves, at least 1.
+double dispersion_of(const std::vector<Rival>& rivals, const RecordSet& both) {
+  double least = HUGE_VAL;
+  for (const Rival& rival : rivals) least = std::min(least, chi_square_each(rival.model, both));
+  return std::max(1.0, least);
+}
+
 }  // namespace
 
 double stated_odds(double odds) {
@@ -47,6 +54,8 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
     // A fit that the run has freed from a valley explains no more of the run for explaining more of what was before.
     decision.chi_square[k] = chi_square(model, both) - std::min(known, chi_square(model, before));
   });
+  decision.dispersion = dispersion_of(decision.rivals, both);
+  for (double& square : decision.chi_square) square /= decision.dispersion;
   decision.best = static_cast<std::size_t>(std::ranges::min_element(decision.chi_square) - decision.chi_square.begin());
   const double least = decision.chi_square[decision.best];
   const sim::Drive explanation(decision.rivals[decision.best].model);

@@ -1,4 +1,5 @@
-// Which of the rivals a run speaks for: odds from exp(-chi^2/2) with the parameters of each fitted again.
+// Which of the rivals a run speaks for: odds from exp(-chi^2/2) with the parameters of each fitted again, chi^2 over
+// the dispersion of the best of them (quasi-likelihood; McCullagh and Nelder, Generalized Linear Models, ch. 9).
 #pragma once
 
 #include <string>
@@ -21,10 +22,13 @@ std::string odds_text(double odds);
 
 struct Decision {
   std::vector<Rival> rivals;       ///< with their parameters fitted to everything, and their probabilities afterwards
-  std::vector<double> chi_square;  ///< what the run adds to each rival's, re-fitted to training and run together
-  std::size_t best = 0;            ///< index of the most probable
-  double odds = 1.0;               ///< of the best to the next, at most kHighestOdds
-  std::vector<std::size_t> left;   ///< rivals that are not yet ruled out: the best, and all with odds below 19:1 to it
+  std::vector<double> chi_square;  ///< what the run adds to each rival's, re-fitted to both, over the dispersion
+  /// Squared error over squared floor that even the best rival leaves of training and run together, at least 1: where
+  /// no rival is the whole truth, what they make of its rest speaks as much less.
+  double dispersion = 1.0;
+  std::size_t best = 0;           ///< index of the most probable
+  double odds = 1.0;              ///< of the best to the next, at most kHighestOdds
+  std::vector<std::size_t> left;  ///< rivals that are not yet ruled out: the best, and all with odds below 19:1 to it
   double error = 0.0;  ///< of the best rival on the run, over the floor, as a fit weighs it; about 1 for a true one
   /// False where the run leaves even the best rival far above what it leaves of the training records: it shows
   /// something that none of them holds, and decides nothing. The probabilities are then those of before, and all are

@@ -60,7 +60,9 @@ class Planner {
     for (const Rival& rival : rivals) {
       incarnations_.push_back({{rival.model, information_of(rival.model, ground_)}});
       at_first_.push_back(incarnations_.back().front().known.least());
+      dispersion_ = std::min(dispersion_, chi_square_each(rival.model, ground_));
     }
+    dispersion_ = std::max(1.0, dispersion_);
   }
 
   Plan make() {
@@ -140,7 +142,7 @@ class Planner {
       }
       return least - at_first_[rival];
     };
-    return 0.5 * (cost(other) - cost(truth));
+    return 0.5 * (cost(other) - cost(truth)) / dispersion_;
   }
 
   double worst(const std::vector<std::size_t>& pieces, const PairOutlook& pair) const {
@@ -288,6 +290,7 @@ class Planner {
   firmware::ParameterValues board_;
   std::vector<std::vector<Incarnation>> incarnations_;
   std::vector<double> at_first_;  ///< chi^2 of each rival on the training records
+  double dispersion_ = HUGE_VAL;  ///< of the best of them there
   std::vector<TriedPiece> tried_;
   std::vector<std::size_t> chosen_;
   Plan plan_;

@@ -51,6 +51,7 @@ nlohmann::json to_json(const Decision& decision) {
           {"rivals", rivals_json(decision.rivals)},
           {"probabilities", probabilities_json(decision.rivals)},
           {"chi_square", decision.chi_square},
+          {"dispersion", decision.dispersion},
           {"best", decision.rivals[decision.best].kinds},
           {"odds", decision.odds},
           {"left", left},

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
+#include "host/diagnose/parallel.hpp"
 #include "host/exit_codes.hpp"
 #include "sim/catalogue.hpp"
 
@@ -53,12 +55,52 @@ sim::DriveDescription with_effect(const std::string& kind, const sim::DriveDescr
   return found.empty() ? best_start(*info, model, training) : found.front().model;
 }
 
+/// The effect added where everything else stands well already: its own parameters are fitted before the others give
+/// way. Nothing where the model cannot take it.
+std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, const sim::DriveDescription& model,
+                                                       const RecordSet& training) {
+  constexpr FitOptions kAlone{.most_iterations = 8, .least_gain = 1e-3, .freedom = Freedom::last_effect};
+  const sim::EffectInfo& info = *sim::find_effect(kind);
+  if (!is_applicable(info, model, training)) return {};
+  FitResult best;
+  best.robust = HUGE_VAL;
+  for (const sim::DriveDescription& start : starting_models(info, model, training))
+    if (FitResult fit = fit_model(start, training, kAlone); fit.robust < best.robust) best = std::move(fit);
+  if (best.model.effects.empty()) return {};
+  return best.model;
+}
+
+/// Other kinds in place of those of a fitted rival that they do not share, re-fitted; nothing where that cannot be.
+std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vector<std::string>& kinds,
+                                               const RecordSet& training) {
+  const auto has = [](const std::vector<std::string>& list, const std::string& kind) {
+    return std::ranges::find(list, kind) != list.end();
+  };
+  std::optional<sim::DriveDescription> model = from.model;
+  std::erase_if(model->effects, [&](const sim::EffectEntry& effect) {
+    return has(from.kinds, effect.kind) && !has(kinds, effect.kind);
+  });
+  for (const std::string& kind : kinds)
+    if (model && !has(from.kinds, kind)) model = with_effect_alone(kind, *model, training);
+  if (model) model = refitted(*model, training);
+  return model;
+}
+
+/// Takes for every rival what is better: its own fit, or one that starts from `from`.
+void start_again(std::vector<Rival>& rivals, const Rival& from, const RecordSet& ground) {
+  for_each_in_parallel(rivals.size(), [&](std::size_t k) {
+    std::optional<sim::DriveDescription> other = exchanged(from, rivals[k].kinds, ground);
+    if (other && chi_square(*other, ground) < chi_square(rivals[k].model, ground)) rivals[k].model = std::move(*other);
+  });
+}
+
 }  // namespace
 
 std::string rival_name(const std::vector<std::string>& kinds) { return fmt::format("{}", fmt::join(kinds, " + ")); }
 
 std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress) {
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress,
+                              const Rival* known) {
   RecordSet set = compare_on(training, model);
   const sim::DriveDescription base = fit_base(model, set);
   renew_floors(set, base);
@@ -71,6 +113,10 @@ std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vec
   }
   const RecordSet ground = common_ground(training, rivals);
   for (Rival& rival : rivals) rival.model = refitted(rival.model, ground);
+  if (known != nullptr) start_again(rivals, *known, ground);
+  const auto cost = [&](const Rival& rival) { return chi_square(rival.model, ground); };
+  const Rival best = *std::ranges::min_element(rivals, {}, cost);
+  start_again(rivals, best, ground);
   return rivals;
 }
 
@@ -125,6 +171,11 @@ double chi_scale(const RecordSet& set) {
   for (const ComparedRecord& compared : set.records)
     count += static_cast<double>(compared.prepared.windows.size() * channel_count(compared, set.measure));
   return count * kCommonSquare / set.common_square;
+}
+
+double chi_square_each(const sim::DriveDescription& model, const RecordSet& set) {
+  const double robust = error_of(sim::Drive(model), set).robust;
+  return robust * robust * kCommonSquare / set.common_square;
 }
 
 double chi_square(const sim::DriveDescription& model, const RecordSet& set) {

@@ -21,9 +21,11 @@ std::string rival_name(const std::vector<std::string>& kinds);
 
 /// Fits every explanation to the records, whether or not it earns its place. All are equally probable. Throws
 /// Failure(usage) for an effect that is unknown or cannot be added to this model, Failure(bad_input) for records that
-/// cannot be compared.
+/// cannot be compared. `known`: a model of one of them that is fitted already. What they share is fitted from there,
+/// and from the best of them, as well as from nothing: two that look alike must not part because one fit was stuck.
 std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress = {});
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress = {},
+                              const Rival* known = nullptr);
 
 /// What a diagnosis leaves undecided, with its probabilities: the candidates of its group that cannot be told apart.
 /// Fitted to `records`, all that it saw. Empty where its verdict is another.
@@ -44,6 +46,9 @@ double chi_square(const sim::DriveDescription& model, const RecordSet& set);
 
 /// chi_square() over its part of SetError::robust squared.
 double chi_scale(const RecordSet& set);
+
+/// chi_square() of an observation, a window's channel, on the average.
+double chi_square_each(const sim::DriveDescription& model, const RecordSet& set);
 
 /// The rival's parameters fitted to a set from where they stand.
 sim::DriveDescription refitted(const sim::DriveDescription& start, const RecordSet& set);

@@ -1,0 +1,44 @@
+// Odds of a run where no rival is the whole truth.
+#include "host/plan/decision.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/host/plan/plan_trial.hpp"
+
+namespace {
+
+host::RecordSet with_a_quarter_of_the_floors(host::RecordSet set) {
+  for (host::ComparedRecord& compared : set.records)
+    for (std::vector<double>* floor : {&compared.floor.x, &compared.floor.w})
+      for (double& value : *floor) value *= 0.25;
+  return set;
+}
+
+/// Catches odds that take every rival for the whole truth: where even the best leaves twice the floors, four times the
+/// chi^2 is no more evidence than before.
+TEST(Decision, DoesNotTakeForEvidenceWhatNoRivalExplains) {
+  const PlanTrial trial = public_trial(std::filesystem::path(AXIS_TEST_DATA) / "drive-cases/single/case-06");
+  const std::vector<const host::Record*> training{&trial.training.front()};
+  const std::vector<host::Rival> rivals =
+      host::fit_rivals(trial.model, training, {{"input_delay"}, {"current_loop_lag"}});
+  IndependentDrive drive = trial.drive;
+  drive.seed(7);
+  IndependentAxis wires(drive, hal::pc::AxisWiring{}.tachometer_resolution);
+  host::ExcitedAxis axis(wires, host::design_values(trial.model), trial.model,
+                         [&] { drive.advance(trial.model.data.sample_period_s); });
+  const host::RunPlan run{{{"steps", {{3.0, -3.0}, {{"hold", 0.1}}}, "", 1.0, 1}}, kTrialBox, {}, 0.0};
+  const host::RunOutcome made = host::run_on(axis, run, host::scale_of_drive(trial.model.data));
+  ASSERT_TRUE(made.completed) << made.ended;
+  const host::RecordSet ground = host::common_ground(training, rivals),
+                        anew = host::common_ground({&made.record}, rivals);
+  const host::Decision as_it_is = host::decide_on(rivals, ground, anew);
+  const host::Decision unexplained =
+      host::decide_on(rivals, with_a_quarter_of_the_floors(ground), with_a_quarter_of_the_floors(anew));
+  const auto gap = [](const host::Decision& decision) { return decision.chi_square[1] - decision.chi_square[0]; };
+  EXPECT_LT(as_it_is.dispersion, 1.3);
+  EXPECT_GT(unexplained.dispersion, 2.0 * as_it_is.dispersion);
+  EXPECT_GT(gap(as_it_is), 3.0);
+  EXPECT_LT(gap(unexplained), 1.5 * gap(as_it_is));
+}
+
+}  // namespace
