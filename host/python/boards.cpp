@@ -118,7 +118,7 @@ host::CaptureSettings settings_of(const firmware::ParameterValues& values, const
 }
 
 host::Record record_of_axis(const Device& device, const std::string& axis, double seconds,
-                            const std::vector<std::string>& jogs, const host::ShareDone& done) {
+                            const std::vector<std::string>& jogs, const Told& done) {
   host::BoardClient board = device.open();
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
@@ -140,7 +140,7 @@ py::tuple capture(const Device& device, const std::string& axis, double seconds,
                   const py::object& progress) {
   if (!(seconds >= 0.0 && seconds <= 86400.0))
     throw host::Failure(host::ExitCode::usage, "a capture lasts 0 to 86400 s; 0 is as long as its jogs");
-  return to_python(result_of(progress, "capture", [&](const host::ShareDone& done) {
+  return to_python(result_of(progress, "capture", [&](const Told& done) {
     return host::columns_of(record_of_axis(device, axis, seconds, jogs, done));
   }));
 }

@@ -23,7 +23,7 @@ class Listener {
  public:
   Listener(const py::object& progress, const std::string& what) : progress_(progress), what_(what) {}
 
-  void run(const std::function<void(const host::ShareDone&)>& work) {
+  void run(const std::function<void(const Told&)>& work) {
     std::thread worker = quiet_thread([&] { carry_out(work); });
     {
       const py::gil_scoped_release released;
@@ -37,7 +37,7 @@ class Listener {
 
  private:
   /// In the worker's thread.
-  void carry_out(const std::function<void(const host::ShareDone&)>& work) {
+  void carry_out(const std::function<void(const Told&)>& work) {
     const host::CancelledBy scope(&cancelled_);
     try {
       work([this](double share) {
@@ -103,8 +103,7 @@ std::thread quiet_thread(std::function<void()> work) {
   return thread;
 }
 
-void listen_while(const py::object& progress, const std::string& what,
-                  const std::function<void(const host::ShareDone&)>& work) {
+void listen_while(const py::object& progress, const std::string& what, const std::function<void(const Told&)>& work) {
   Listener(progress, what).run(work);
 }
 
