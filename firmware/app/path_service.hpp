@@ -29,8 +29,7 @@ class PathService {
     if (request.mask == 0 || request.mask >> kAxes != 0 || request.relative > 1 || !is_possible(request.units))
       return Status::malformed;
     std::array<CountPosition, kAxes> start{};
-    std::array<Increment, kAxes> acceleration{};
-    float clock_acceleration = 1.0F, clock_jerk = 1.0F;
+    float clock_change = 1.0F, clock_ramp = 1.0F;
     const ShutOut guard;
     if (is_moving()) return Status::wrong_state;
     for (std::size_t i = 0; i < kAxes; ++i) {
@@ -39,16 +38,13 @@ class PathService {
       start[i] = axes_[i].leading();
       const MotionLimits limits = motion_limits(axes_[i].parameters());
       using Traits = ScalarTraits<float>;
-      const float velocity = Traits::from_increment(limits.velocity);
-      acceleration[i] = limits.acceleration;
-      const float per_velocity = 1.0F / velocity;
-      clock_acceleration = std::min(clock_acceleration, PathClock::kAccelerationShare * per_velocity *
-                                                            Traits::from_increment(limits.acceleration));
-      clock_jerk = std::min(clock_jerk, PathClock::kJerkShare * per_velocity * Traits::from_increment(limits.jerk));
+      const float velocity = Traits::from_increment(limits.velocity), jerk = Traits::from_increment(limits.jerk);
+      clock_change =
+          std::min(clock_change, PathClock::change_limit(velocity, Traits::from_increment(limits.acceleration), jerk));
+      clock_ramp = std::min(clock_ramp, PathClock::ramp_limit(velocity, jerk));
     }
-    follower_.open(request.mask, request.units, start, acceleration,
-                   ScalarTraits<float>::to_increment(clock_acceleration),
-                   ScalarTraits<float>::to_increment(clock_jerk));
+    follower_.open(request.mask, request.units, start, ScalarTraits<float>::to_increment(clock_change),
+                   ScalarTraits<float>::to_increment(clock_ramp));
     for (std::size_t i = 0; i < kAxes; ++i)
       opened.axis[i] = {static_cast<std::uint32_t>(start[i].counts), static_cast<std::int32_t>(start[i].counts >> 32),
                         static_cast<std::uint32_t>(start[i].fraction >> (kFractionBits - 32))};
@@ -151,7 +147,7 @@ class PathService {
     };
     Node node;
     is_last = (word(0) & kLastNode) != 0;
-    node.duration = word(0) & ~kLastNode;
+    node.set_time(word(0));
     std::size_t place = 1;
     for (std::size_t i = 0; i < kAxes; ++i) {
       if (!follower_.is_led(i)) continue;

@@ -48,7 +48,7 @@ std::vector<BoardPosition> positions(const firmware::OpenPathPayload& opened, co
 
 /// In the order of the axes' numbers, as the board reads them.
 std::vector<std::byte> bytes_of(const PathWord& node, bool is_last, const PathScale& scale) {
-  std::vector<std::uint32_t> words{node.duration | (is_last ? firmware::kLastNode : 0u)};
+  std::vector<std::uint32_t> words{node.time() | (is_last ? firmware::kLastNode : 0u)};
   std::vector<std::size_t> order(scale.axes.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, {}, [&](std::size_t i) { return scale.axes[i]; });

@@ -192,17 +192,18 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
 
   firmware::PathFollower<2, 32> follower;
   using Node = firmware::PathNode<2>;
-  constexpr firmware::Increment kNoLimit = firmware::kMostMotion;
-  follower.open(3, words.units, {}, {kNoLimit, kNoLimit}, firmware::kOneCount, firmware::kOneCount);
+  follower.open(3, words.units, {}, firmware::kOneCount, firmware::kOneCount);
   std::vector<std::array<firmware::Increment, 2>> increments;
   LedAxes axes;
   std::size_t sent = 0;
   do {
     for (; sent < words.nodes.size() && follower.room() > 0; ++sent) {
       const PathWord& word = words.nodes[sent];
+      Node node;
+      node.set_time(word.time());
+      node.axis = {word.axis[0], word.axis[1]};
       const auto refusal =
-          follower.push(Node{word.duration, {word.axis[0], word.axis[1]}}, sent + 1 == words.nodes.size(),
-                        [](std::size_t, std::int64_t) { return true; });
+          follower.push(node, sent + 1 == words.nodes.size(), [](std::size_t, std::int64_t) { return true; });
       if (refusal != firmware::Refusal::none)
         throw Failure(ExitCode::bad_input, fmt::format("a path of {:g} mm at {:g} mm/s is outside the range of an "
                                                        "encoder with steps of {:g} mm: smaller, or slower",

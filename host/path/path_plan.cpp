@@ -8,7 +8,8 @@
 
 #include "host/exit_codes.hpp"
 #include "host/path/corner_blend.hpp"
-#include "host/path/speed_profile.hpp"
+#include "host/path/path_headroom.hpp"
+#include "host/path/path_span.hpp"
 
 namespace host {
 
@@ -17,185 +18,8 @@ namespace {
 constexpr double kGoesOn_rad = 0.05;  ///< a corner so slight is eased within half a count rather than stopped at
 constexpr double kSharp_rad =
     0.6;  ///< beyond, stopping on the one leg while starting on the other is quicker than a curve
-constexpr double kLongest_s = 0.02;     ///< between knots: a board's look ahead counts them
-constexpr double kLargestTurn = 0.15;   ///< rad between knots: the polynomial is then within 1e-9 of the radius
 constexpr double kMargin = 1.0 + 1e-4;  ///< for what lies between the points that are checked
 constexpr int kCheckedPoints = 16;      ///< of a polynomial
-
-struct SpanCurve {
-  PathCurve curve;
-  double feed_mm_s = 0.0;
-  std::size_t line = 0;
-  double begin = 0.0;  ///< along the span
-};
-
-/// What a curve asks of the axes for one of motion along it: first, second and third derivative by length, amounts.
-struct CurveDemand {
-  PathPoint first, second, third;
-};
-
-std::vector<CurveDemand> demands_of(const PathCurve& curve) {
-  const int points = curve.is_line()    ? 1
-                     : curve.is_blend() ? 48
-                                        : std::clamp(static_cast<int>(curve.turning() * 12.0), 5, 80);
-  std::vector<CurveDemand> demands;
-  const double length = curve.length(), step = length * 1e-3;
-  for (int i = 0; i < points; ++i) {
-    const double here = points == 1 ? length / 2.0 : length * i / (points - 1);
-    const CurveState state = curve.at(here);
-    const double a = std::max(here - step, 0.0), b = std::min(here + step, length);
-    const PathPoint third = (curve.at(b).curvature - curve.at(a).curvature) / (b - a);
-    demands.push_back({state.tangent.cwiseAbs(), state.curvature.cwiseAbs(), third.cwiseAbs()});
-  }
-  return demands;
-}
-
-double least_share(const PathPoint& limit, const PathPoint& demand) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i)
-    if (demand[i] > 1e-15) least = std::min(least, limit[i] / demand[i]);
-  return least;
-}
-
-SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits) {
-  SpeedInterval interval;
-  interval.begin = span.begin;
-  interval.end = span.begin + span.curve.length();
-  interval.speed = span.feed_mm_s;
-  const std::vector<CurveDemand> demands = demands_of(span.curve);
-  for (const CurveDemand& d : demands) {
-    interval.speed =
-        std::min({interval.speed, least_share(limits.velocity, d.first),
-                  std::sqrt(least_share(limits.acceleration, d.second)), std::cbrt(least_share(limits.jerk, d.third))});
-  }
-  interval.limits = [demands, limits](double speed) {
-    TangentialLimits found;
-    found.acceleration = std::numeric_limits<double>::infinity();
-    for (const CurveDemand& d : demands)
-      found.acceleration =
-          std::min(found.acceleration, least_share(limits.acceleration - speed * speed * d.second, d.first));
-    // Tangential acceleration on a curve is jerk across it; less of the one leaves more of the other.
-    const double most = found.acceleration;
-    for (const double share : {1.0, 0.75, 0.5, 0.35, 0.2, 0.1}) {
-      found.acceleration = most * share;
-      found.jerk = std::numeric_limits<double>::infinity();
-      double alone = std::numeric_limits<double>::infinity();
-      for (const CurveDemand& d : demands) {
-        const PathPoint left = limits.jerk - speed * (3.0 * found.acceleration * d.second + speed * speed * d.third);
-        found.jerk = std::min(found.jerk, least_share(left, d.first));
-        alone = std::min(alone, least_share(limits.jerk, d.first));
-      }
-      if (found.jerk > 0.3 * alone) break;
-    }
-    return found;
-  };
-  return interval;
-}
-
-/// A way from rest to rest.
-class Span {
- public:
-  Span(std::vector<SpanCurve> curves, const PathPlanOptions& options) : curves_(std::move(curves)), options_(options) {
-    double length = 0.0;
-    std::vector<SpeedInterval> intervals;
-    for (SpanCurve& one : curves_) {
-      one.begin = length;
-      length += one.curve.length();
-      intervals.push_back(interval_of(one, options_.limits));
-    }
-    phases_ = speed_profile(intervals);
-    states_.push_back({});
-    times_.push_back(0.0);
-    for (const SpeedPhase& phase : phases_) {
-      states_.push_back(after(states_.back(), phase.duration_s, phase.jerk));
-      times_.push_back(times_.back() + phase.duration_s);
-    }
-  }
-
-  double duration_s() const { return times_.back() * factor_; }
-  const std::vector<SpanCurve>& curves() const { return curves_; }
-  const PathCurve& first() const { return curves_.front().curve; }
-  const PathCurve& last() const { return curves_.back().curve; }
-  double first_ends_s() const { return factor_ * (curves_.size() > 1 ? time_at(curves_[1].begin) : times_.back()); }
-  double last_begins_s() const { return factor_ * time_at(curves_.back().begin); }
-  double begins_s(const SpanCurve& one) const { return factor_ * time_at(one.begin); }
-
-  /// Slows the whole way down by a factor.
-  void stretch(double factor) { factor_ *= factor; }
-  double stretched() const { return factor_; }
-
-  /// At rest before and afterwards.
-  PathKnot at(double time_s) const {
-    if (time_s <= 0.0) return {time_s, first().begin(), PathPoint::Zero(), PathPoint::Zero()};
-    if (time_s >= duration_s()) return {time_s, last().end(), PathPoint::Zero(), PathPoint::Zero()};
-    PathKnot knot = knot_at(time_s / factor_);
-    knot.time_s = time_s;
-    knot.velocity /= factor_;
-    knot.acceleration /= factor_ * factor_;
-    return knot;
-  }
-
-  struct Wanted {
-    double time_s;
-    int weight;
-  };
-  /// Where the jerk changes, where curves meet, and in between as often as the curve needs; not at the ends.
-  std::vector<Wanted> knot_times() const {
-    std::vector<Wanted> wanted;
-    for (const double time_s : times_) wanted.push_back({time_s, 2});
-    for (std::size_t i = 1; i < curves_.size(); ++i) wanted.push_back({time_at(curves_[i].begin), 1});
-    std::ranges::sort(wanted, {}, &Wanted::time_s);
-    const std::size_t events = wanted.size();
-    for (std::size_t i = 0; i + 1 < events; ++i) {
-      const double from = wanted[i].time_s, time = wanted[i + 1].time_s - from;
-      const SpeedState middle = state_at(from + time / 2.0);
-      const SpanCurve& span = curve_at(middle.length);
-      const double turning = span.curve.at(middle.length - span.begin).curvature.norm() * middle.speed * time;
-      double parts = std::max(time / kLongest_s, turning / kLargestTurn);
-      if (span.curve.is_blend()) parts = std::max(parts, 8.0 * middle.speed * time / span.curve.length());
-      const auto count = static_cast<int>(std::ceil(std::min(parts, time / options_.shortest_s)));
-      for (int k = 1; k < count; ++k) wanted.push_back({from + time * k / count, 0});
-    }
-    for (Wanted& one : wanted) one.time_s *= factor_;
-    return wanted;
-  }
-
- private:
-  SpeedState state_at(double time_s) const {
-    const auto next = std::upper_bound(times_.begin() + 1, times_.end() - 1, time_s);
-    const auto k = static_cast<std::size_t>(next - times_.begin()) - 1;
-    return after(states_[k], time_s - times_[k], phases_[k].jerk);
-  }
-
-  double time_at(double length) const {
-    double low = 0.0, high = times_.back();
-    for (int k = 0; k < 60; ++k) {
-      const double middle = (low + high) / 2.0;
-      (state_at(middle).length < length ? low : high) = middle;
-    }
-    return high;
-  }
-
-  const SpanCurve& curve_at(double length) const {
-    const auto next = std::partition_point(curves_.begin() + 1, curves_.end(),
-                                           [&](const SpanCurve& one) { return one.begin <= length; });
-    return *(next - 1);
-  }
-
-  PathKnot knot_at(double time_s) const {
-    const SpeedState s = state_at(time_s);
-    const SpanCurve& span = curve_at(s.length);
-    const CurveState q = span.curve.at(std::min(s.length - span.begin, span.curve.length()));
-    return {time_s, q.point, s.speed * q.tangent, s.speed * s.speed * q.curvature + s.acceleration * q.tangent};
-  }
-
-  std::vector<SpanCurve> curves_;
-  const PathPlanOptions& options_;
-  std::vector<SpeedPhase> phases_;
-  std::vector<SpeedState> states_;
-  std::vector<double> times_;
-  double factor_ = 1.0;
-};
 
 /// Spans that begin before the one before them has ended, where the path may be left a little: each slows down and
 /// speeds up as its own limits have it, and while one stops the next one starts.
@@ -206,13 +30,19 @@ class Chain {
   bool is_empty() const { return spans_.empty(); }
 
   /// `tolerance_mm`: of the corner at its begin, against the span before.
-  void add(Span span, double tolerance_mm) {
-    const std::vector<Span> alone{span};
-    span.stretch(excess(alone, {0.0}));
+  void add(PathSpan span, double tolerance_mm) {
+    constexpr int kRounds = 4;
+    for (int k = 0; k < kRounds && span.tighten(knots_of({span}, {0.0})); ++k) continue;
+    span.stretch(excess({span}, {0.0}));
     double begin_s = 0.0;
     if (!spans_.empty()) {
       begin_s = begins_.back() + spans_.back().duration_s();
-      begin_s -= overlap(spans_.back(), span, tolerance_mm);
+      double early_s = overlap(spans_.back(), span, tolerance_mm);
+      // As the knots have it: rather begin a little later here than slow everything down.
+      constexpr int kTrials = 8;
+      for (int k = 0; k < kTrials && early_s > 0.0; ++k, early_s *= 0.96)
+        if (excess({spans_.back(), span}, {0.0, spans_.back().duration_s() - early_s}) < 1.0005) break;
+      begin_s -= early_s;
     }
     spans_.push_back(std::move(span));
     begins_.push_back(begin_s);
@@ -225,10 +55,10 @@ class Chain {
     for (int k = 0; k < kRounds; ++k) {
       const double more = excess(spans_, begins_);
       if (more == 1.0) break;
-      for (Span& span : spans_) span.stretch(more);
+      for (PathSpan& span : spans_) span.stretch(more);
       for (double& begin_s : begins_) begin_s *= more;
     }
-    for (const Span& span : spans_) path.stretched = std::max(path.stretched, span.stretched());
+    for (const PathSpan& span : spans_) path.stretched = std::max(path.stretched, span.stretched());
     const double from_s = path.knots.back().time_s;
     const std::vector<PathKnot> knots = knots_of(spans_, begins_);
     for (std::size_t k = 1; k < knots.size(); ++k) {
@@ -244,7 +74,7 @@ class Chain {
 
  private:
   /// All of them at one time: each from its begin, as far as it has got.
-  static PathKnot at(const std::vector<Span>& spans, const std::vector<double>& begins, double time_s) {
+  static PathKnot at(const std::vector<PathSpan>& spans, const std::vector<double>& begins, double time_s) {
     const auto next = std::ranges::upper_bound(begins, time_s);
     const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - begins.begin() - 1, 0));
     PathKnot knot = spans[k].at(time_s - begins[k]);
@@ -257,13 +87,13 @@ class Chain {
     return knot;
   }
 
-  std::vector<PathKnot> knots_of(const std::vector<Span>& spans, const std::vector<double>& begins) const {
-    std::vector<Span::Wanted> wanted;
+  std::vector<PathKnot> knots_of(const std::vector<PathSpan>& spans, const std::vector<double>& begins) const {
+    std::vector<PathSpan::Wanted> wanted;
     for (std::size_t i = 0; i < spans.size(); ++i)
-      for (const Span::Wanted& one : spans[i].knot_times()) wanted.push_back({begins[i] + one.time_s, one.weight});
-    std::ranges::sort(wanted, {}, &Span::Wanted::time_s);
-    std::vector<Span::Wanted> kept{{0.0, 3}};
-    for (const Span::Wanted& one : wanted) {
+      for (const PathSpan::Wanted& one : spans[i].knot_times()) wanted.push_back({begins[i] + one.time_s, one.weight});
+    std::ranges::sort(wanted, {}, &PathSpan::Wanted::time_s);
+    std::vector<PathSpan::Wanted> kept{{0.0, 3}};
+    for (const PathSpan::Wanted& one : wanted) {
       if (one.time_s - kept.back().time_s >= options_.shortest_s * 0.999)
         kept.push_back(one);
       else if (one.weight > kept.back().weight &&
@@ -274,7 +104,8 @@ class Chain {
     while (kept.size() > 1 && end_s - kept.back().time_s < options_.shortest_s) kept.pop_back();
     std::vector<PathKnot> knots;
     const double unit_s = options_.time_unit_s;
-    for (const Span::Wanted& one : kept) knots.push_back(at(spans, begins, std::round(one.time_s / unit_s) * unit_s));
+    for (const PathSpan::Wanted& one : kept)
+      knots.push_back(at(spans, begins, std::round(one.time_s / unit_s) * unit_s));
     knots.push_back(spans.back().at(end_s));
     knots.back().time_s =
         std::ceil(std::max(end_s, knots[knots.size() - 2].time_s + options_.shortest_s) / unit_s) * unit_s;
@@ -282,7 +113,7 @@ class Chain {
   }
 
   /// By which factor they must be slowed down to hold the limits: 1 where they do.
-  double excess(const std::vector<Span>& spans, const std::vector<double>& begins) const {
+  double excess(const std::vector<PathSpan>& spans, const std::vector<double>& begins) const {
     const std::vector<PathKnot> knots = knots_of(spans, begins);
     const LimitUse use = limit_use(knots.data(), knots.data() + knots.size(), options_.limits);
     const double factor = std::max({1.0, use.velocity, std::sqrt(use.acceleration), std::cbrt(use.jerk)});
@@ -290,7 +121,7 @@ class Chain {
   }
 
   /// The longest time by which the next span may begin early: within the tolerance of the corner, and the limits.
-  double overlap(const Span& before, const Span& next, double tolerance_mm) const {
+  double overlap(const PathSpan& before, const PathSpan& next, double tolerance_mm) const {
     if (!(tolerance_mm > 0.0)) return 0.0;
     double most = std::min({before.duration_s() / 2.0, next.duration_s() / 2.0,
                             before.duration_s() - before.last_begins_s(), next.first_ends_s()});
@@ -303,7 +134,7 @@ class Chain {
     return fits;
   }
 
-  bool may_overlap(const Span& before, const Span& next, double time_s, double tolerance_mm) const {
+  bool may_overlap(const PathSpan& before, const PathSpan& next, double time_s, double tolerance_mm) const {
     constexpr int kPoints = 24;
     constexpr double kRounding = 1.0 + 1e-9;
     const PathPoint corner = before.last().end();
@@ -329,7 +160,7 @@ class Chain {
   }
 
   const PathPlanOptions& options_;
-  std::vector<Span> spans_;
+  std::vector<PathSpan> spans_;
   std::vector<double> begins_;
 };
 
@@ -364,7 +195,7 @@ class Joiner {
   void end_span() {
     if (span_.empty()) return;
     cut_last(0.0);
-    chain_.add(Span(std::move(span_), options_), entry_mm_);
+    chain_.add(PathSpan(std::move(span_), options_), entry_mm_);
     entry_mm_ = tolerance_mm_;
     span_.clear();
   }
@@ -403,7 +234,7 @@ class Joiner {
 
   void dwell(const PathMove& move) {
     if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
-    constexpr double kLongestPiece_s = 0.5;  // within what a node can say at any rate
+    constexpr double kLongestPiece_s = 0.05;  // within what a node can say at any rate
     const auto parts = static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s));
     for (int k = 0; k < parts; ++k) {
       PathKnot knot = path_.knots.back();
@@ -461,14 +292,17 @@ PlannedPath plan_path(const std::vector<PathMove>& moves, const PathPlanOptions&
   for (const PathPoint& limit : {options.limits.velocity, options.limits.acceleration, options.limits.jerk})
     if (!(limit.minCoeff() > 0.0))
       throw Failure(ExitCode::bad_input, "a path needs velocity, acceleration and jerk limits above 0 of every axis");
+  PathPlanOptions reserved = options;
+  reserved.limits = limits_at_rate(options.limits, firmware::kLeastHeadroom);
   PlannedPath path;
-  Joiner joiner(path, options);
+  Joiner joiner(path, reserved);
   for (const PathMove& move : moves) {
     if (move.kind == PathMoveKind::motion && !(move.feed_mm_s > 0.0))
       throw Failure(ExitCode::bad_input, fmt::format("line {}: a feed above 0 is needed", move.line));
     joiner.add(move);
   }
   joiner.stop();
+  find_headroom(path.knots, options);
   return path;
 }
 

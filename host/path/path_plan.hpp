@@ -28,6 +28,10 @@ struct PathMove {
 struct PathKnot {
   double time_s = 0.0;
   PathPoint position, velocity, acceleration;
+  /// The rates at which the limits of acceleration and jerk would be held: by the piece that ends here and what it
+  /// touches; by all that comes until a board's clock, which might change there, could be brought to what the least of
+  /// them allows.
+  double headroom_here = 1.0, headroom_ahead = 1.0;
 };
 
 /// A curve as it is followed.
@@ -51,8 +55,10 @@ struct PathPlanOptions {
   double time_unit_s = 0.001 / 4096.0;  ///< in which a board has the time between them
 };
 
-/// Within the limits of each axis, as quickly as the planner can. Corners are stopped at where their tolerance is 0 and
-/// they are no smooth going on. Throws Failure(bad_input) where a limit or a feed is not above 0.
+/// Within the limits of each axis, as quickly as the planner can; those of acceleration and jerk so that they would be
+/// held at the rate firmware::kLeastHeadroom too, which a clock needs that must change. Corners are stopped at where
+/// their tolerance is 0 and they are no smooth going on. Throws Failure(bad_input) where a limit or a feed is not above
+/// 0.
 PlannedPath plan_path(const std::vector<PathMove>& moves, const PathPlanOptions& options);
 
 /// Of what the knots' polynomials ask of the axes, the largest share of a limit: 1 at the limit.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/core/path/path_headroom.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -62,6 +63,8 @@ PathWords path_words(const PlannedPath& path, const PathScale& scale, const firm
     const std::int64_t there = std::llround(knot.time_s * scale.rate_Hz * kTimeUnits);
     PathWord node;
     node.duration = static_cast<std::uint32_t>(there - time);
+    node.headroom_here = firmware::headroom_number(knot.headroom_here);
+    node.headroom_ahead = firmware::headroom_number(knot.headroom_ahead);
     time = there;
     for (std::size_t i = 0; i < axes; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);

@@ -24,7 +24,14 @@ struct BoardPosition {
 
 struct PathWord {
   std::uint32_t duration = 0;
-  std::vector<firmware::PathAxisNode> axis;  ///< in the order of PathScale::axes
+  std::uint8_t headroom_here = 0, headroom_ahead = 0;  ///< numbers of firmware::kHeadrooms
+  std::vector<firmware::PathAxisNode> axis;            ///< in the order of PathScale::axes
+
+  /// As firmware::PathNode::set_time() takes it.
+  std::uint32_t time() const {
+    return duration | std::uint32_t{headroom_here} << firmware::kHeadroomHereShift |
+           std::uint32_t{headroom_ahead} << firmware::kHeadroomAheadShift;
+  }
 };
 
 struct PathWords {

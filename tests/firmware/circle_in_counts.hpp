@@ -40,7 +40,7 @@ struct Circle {
   firmware::PathNode<2> node(double sample, double piece, const firmware::PathUnits& units, bool last,
                              std::array<std::int64_t, 2>& given) const {
     firmware::PathNode<2> made;
-    made.duration = static_cast<std::uint32_t>(std::lround(piece * (1 << firmware::kPathTimeBits)));
+    made.set_time(static_cast<std::uint32_t>(std::lround(piece * (1 << firmware::kPathTimeBits))));
     const auto word = [](double value, int bits) {
       return static_cast<std::int32_t>(std::llround(std::ldexp(value, bits)));
     };

@@ -1,74 +1,137 @@
-// The time of a path: samples of the path for one sample of the board, changed gently.
+// The time of a path: samples of the path for one sample of the board, changed within the axes' limits.
 #pragma once
 
-#include "firmware/core/motion/jog_profile.hpp"
-#include "firmware/core/motion/stopping_distance.hpp"
+#include <algorithm>
+
+#include "firmware/core/arithmetic/count_position.hpp"
+#include "firmware/core/path/path_headroom.hpp"
+#include "firmware/core/path/path_piece.hpp"
 
 namespace firmware {
 
-/// A path is slowed down by its clock, so that it is never left. A clock that changes by A / V of the axes' limits a
-/// sample slows an axis at its velocity limit down as quickly as that axis may, and a slower one no quicker; likewise
-/// J / V. Rates are increments of one sample a sample, 0 to kOneCount.
+namespace path_clock {
+
+/// 1 / f^2 of a number of headroom, 2^-32.
+inline constexpr std::array<std::uint32_t, kHeadrooms.size()> kInverseSquares = [] {
+  std::array<std::uint32_t, kHeadrooms.size()> all{};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = static_cast<std::uint32_t>(4294967296.0 / (kHeadrooms[i] * kHeadrooms[i]));
+  return all;
+}();
+
+}  // namespace path_clock
+
+/// A path is slowed down by its clock, so that it is never left. Rates are increments of one sample a sample, 0 to
+/// kOneCount.
+///
+/// At rate r an axis on the path q has the acceleration r^2 q'' + r' q' and the jerk r^3 q''' + 3 r r' q'' + r'' q'.
+/// Where the path would hold the limits A and J up to the rate f (its headroom), |q''| <= A / f^2, |q'''| <= J / f^3,
+/// and |q'| <= V. With s = r / f and w = 1 - s^2 both sums stay within A and J, whatever their signs, for
+///   |r'| <= 0.95 A / V w, |r'| <= 0.3 J / A w and |r''| <= 0.6 J / V w:
+/// 1 - s^3 = w (1 + s^2 / (1 + s)), and 3 s 0.3 + 0.6 is less than that bracket for s in 0..1. Along the bound of r'
+/// itself |r''| is 2 r'^2 s / (f w), less than its own bound. Near rate 1 of a fully loaded path w is small: the rate
+/// leaves and reaches it exponentially, and a stop takes some 2.8 V / A or 9 A / J; elsewhere a third of that. It is
+/// slowed down before a part with less headroom begins: PathNode::headroom_ahead.
 class PathClock {
  public:
-  /// Of an axis's limits the path may need most itself. With these shares for the clock both together stay near them:
-  /// in 10,000 programs with holds above by an eighth of the acceleration and a third of the jerk at most
-  /// (tests/host/path/path_slowing_test.cpp). Gentler ones hardly lower that, and a stop takes longer.
-  static constexpr float kAccelerationShare = 0.75F, kJerkShare = 0.25F;
+  static constexpr double kChangeOfAcceleration = 0.95, kChangeOfJerk = 0.3, kRampOfJerk = 0.6;
 
-  /// `acceleration` a sample^2, `jerk` a sample^3, both in 1..kOneCount. Standing.
-  constexpr void configure(Increment acceleration, Increment jerk) {
-    MotionLimits limits{kOneCount, acceleration, jerk};
+  /// Limits of r' and r'' where nothing else is moving, in whatever unit of time: the least over the axes counts.
+  template <typename Real>
+  static constexpr Real change_limit(Real velocity, Real acceleration, Real jerk) {
+    return std::min(static_cast<Real>(kChangeOfAcceleration) * (acceleration / velocity),
+                    static_cast<Real>(kChangeOfJerk) * (jerk / acceleration));
+  }
+  template <typename Real>
+  static constexpr Real ramp_limit(Real velocity, Real jerk) {
+    return static_cast<Real>(kRampOfJerk) * (jerk / velocity);
+  }
+
+  /// `change` a sample, `ramp` a sample^2, both in 1..kOneCount. Standing.
+  constexpr void configure(Increment change, Increment ramp) {
     constexpr Increment kSlowest = kOneCount >> 24;  // at 20 kHz a ramp of half a minute
-    for (Increment* limit : {&limits.acceleration, &limits.jerk}) {
-      if (*limit < kSlowest) *limit = kSlowest;
-      if (*limit > kOneCount) *limit = kOneCount;
-    }
-    if (limits.jerk > limits.acceleration) limits.jerk = limits.acceleration;
-    rate_.configure(limits);
-    stopping_.configure(limits);
-    longest_stop_ = stopping_.counts(kOneCount, static_cast<std::int32_t>(limits.acceleration / limits.jerk) + 1) + 2;
+    change_limit_ = std::clamp(change, kSlowest, kOneCount);
+    ramp_limit_ = std::clamp(ramp, kSlowest >> 8, change_limit_);
+    // The way along the bound of r' with the least headroom is f / (2 r'max) ln(1 / w) at most, 1.99 / r'max; w is
+    // convex over r^2.
+    way_from_full_ = 2 * kOneCount / change_limit_ + 1;
+    ramp_samples_ = change_limit_ / ramp_limit_ + 1;
+    stand();
   }
 
-  constexpr void set_target(Increment rate) {
-    if (rate == target_) return;
-    target_ = rate;
-    rate_.set_target(rate);
-  }
+  constexpr void set_target(Increment rate) { target_ = rate; }
   /// At this rate from the next sample on: where nothing moves, nothing jumps.
   constexpr void begin(Increment rate) {
-    rate_.take_over(rate);
-    target_ = rate;
+    rate_ = target_ = rate;
+    change_ = 0;
   }
-  /// Lets the change run out, at once: the rate stays near what it is. May be asked again in each sample.
-  constexpr void level_out() { set_target(rate_.levelled_velocity()); }
+  constexpr void stand() { begin(0); }
 
-  /// Path time of the next sample.
-  constexpr Increment next() { return rate_.next(); }
+  /// Path time of the next sample, where the path has these numbers of headroom now and until it could be slowed down.
+  constexpr Increment next(std::uint32_t here, std::uint32_t ahead) {
+    if (is_steady()) return rate_;
+    const bool is_downward = target_ < rate_;
+    const Increment missing = is_downward ? rate_ - target_ : target_ - rate_;
+    const Increment speed = is_downward ? -change_ : change_;  // towards the target
+    const Increment ramp = limited(ramp_limit_, rate_, here);
+    // Slowing down, the ramps become steeper; gaining speed, gentler.
+    const Increment last_ramp = limited(ramp_limit_, is_downward ? rate_ : target_, ahead);
+    Increment wanted = std::min(speed + ramp, limited(change_limit_, rate_, ahead));
+    if (speed < 0)
+      wanted = std::min(speed + ramp, Increment{0});
+    else if (missing <= last_ramp && speed - missing <= ramp && missing - speed <= ramp)
+      wanted = missing;
+    else if (!stops_within(missing, wanted, last_ramp))
+      wanted = stops_within(missing, speed, last_ramp) ? std::max(speed, std::min(ramp, last_ramp) >> 1) : speed - ramp;
+    if (speed > 0) wanted = std::max({wanted, speed - ramp, Increment{0}});
+    change_ = is_downward ? -wanted : wanted;
+    rate_ = std::clamp(rate_ + change_, Increment{0}, kOneCount);
+    return rate_;
+  }
 
-  constexpr Increment rate() const { return rate_.velocity(); }
-  constexpr bool stands() const { return rate_.at_rest(); }
-  constexpr bool is_steady() const { return rate_.is_steady(); }
-  constexpr bool is_slowing() const { return rate_.is_falling(); }
+  constexpr Increment rate() const { return rate_; }
+  constexpr bool stands() const { return rate_ == 0 && is_steady(); }
+  constexpr bool is_steady() const { return rate_ == target_ && change_ == 0; }
 
-  /// Samples of the path that a stop from now on takes at most.
+  /// Samples of the path that a stop from now on takes at most, with the least headroom all the way.
   constexpr std::int64_t way_of_stop() const {
-    return stopping_.counts(rate_.run_out_velocity(), rate_.run_out_samples()) + 2;
+    const Increment rise = change_ > 0 ? change_ * ramp_samples_ : 0;
+    return way_from(std::min(rate_ + rise, kOneCount));
   }
-
   /// From any rate.
-  constexpr std::int64_t longest_stop() const { return longest_stop_; }
-
-  constexpr void stand() {
-    rate_.reset();
-    target_ = 0;
-  }
+  constexpr std::int64_t longest_stop() const { return way_from(kOneCount); }
 
  private:
-  JogProfile rate_;
-  StoppingDistance stopping_;
-  Increment target_ = 0;
-  std::int64_t longest_stop_ = 0;
+  /// limit * w.
+  static constexpr Increment limited(Increment limit, Increment rate, std::uint32_t headroom) {
+    const auto r = static_cast<std::uint32_t>(rate >> (kFractionBits - 31));
+    const std::uint64_t square = std::uint64_t{r} * r >> 30;  // 2^-32, up to 1
+    const auto share = static_cast<std::uint32_t>(square * path_clock::kInverseSquares[headroom] >> 32);
+    return path_piece::scaled(limit, ~share, 32);
+  }
+
+  /// Whether `missing` suffices for the next samples of v, v - d, v - 2 d, ... : v (v + d) / (2 d), and an eighth of d
+  /// where v is no multiple.
+  static constexpr bool stops_within(Increment missing, Increment v, Increment d) {
+    constexpr int kShift = kFractionBits - 31;
+    const Increment left = missing - (d >> 2);
+    if (left < 0) return false;
+    const std::uint64_t needed =
+        static_cast<std::uint64_t>((v >> kShift) + 1) * static_cast<std::uint64_t>(((v + d) >> kShift) + 1);
+    return needed <=
+           2 * static_cast<std::uint64_t>(path_piece::scaled(d, static_cast<std::uint32_t>(left >> kShift), kShift));
+  }
+
+  /// Until the clock slows down as quickly as it may pass twice ramp_samples_, and as many at the end.
+  constexpr std::int64_t way_from(Increment rate) const {
+    const auto r = static_cast<std::uint32_t>(rate >> (kFractionBits - 31));
+    const std::int64_t along = path_piece::scaled(way_from_full_, r, 31) + 3 * ramp_samples_;
+    return path_piece::scaled(along, r, 31) + 2;
+  }
+
+  Increment rate_ = 0, change_ = 0, target_ = 0;
+  Increment change_limit_ = 1, ramp_limit_ = 1;
+  std::int64_t way_from_full_ = 0, ramp_samples_ = 0;  ///< samples
 };
 
 }  // namespace firmware

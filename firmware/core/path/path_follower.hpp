@@ -42,11 +42,9 @@ class PathFollower {
 
   // The background, while the control interrupt is shut out.
 
-  /// Axes of the mask stand; `start`: where their references are. The clock: acceleration a sample^2 and jerk a
-  /// sample^3, kOneCount being a sample. The axes' accelerations: increments a sample^2.
+  /// Axes of the mask stand; `start`: where their references are. The clock's limits: PathClock::configure.
   constexpr void open(unsigned mask, const PathUnits& units, const std::array<CountPosition, axes>& start,
-                      const std::array<Increment, axes>& most_acceleration, Increment clock_acceleration,
-                      Increment clock_jerk) {
+                      Increment clock_change, Increment clock_ramp) {
     mask_ = mask;
     units_ = units;
     for (std::size_t i = 0; i < axes; ++i) {
@@ -55,21 +53,19 @@ class PathFollower {
       const Increment offset = start[i].fraction & ((Increment{1} << (kFractionBits - units.travel_bits)) - 1);
       planned_[i].fraction -= offset;
       seen_[i] = static_cast<std::uint64_t>(offset);
-      most_acceleration_[i] = most_acceleration[i] - (most_acceleration[i] >> 4);
       last_increment_[i] = 0;
     }
     start_ = start;
-    clock_.configure(clock_acceleration, clock_jerk);
-    clock_.stand();
+    clock_.configure(clock_change, clock_ramp);
     ring_first_ = ring_count_ = 0;
     made_.store(0);
     used_.store(0);
     newest_ = {};
     accepted_ = passed_time_ = 0;
-    slack_ = -((with_reserve(clock_.longest_stop()) + 1) << kPathTimeBits);
+    slack_ = -((clock_.longest_stop() + 1) << kPathTimeBits);
     time_ = 0;
     ends_at_rest_ = true;
-    is_complete_ = is_held_ = is_settled_ = false;
+    is_complete_ = is_held_ = is_settled_ = is_starved_ = false;
     end_ = PathEnd::none;
     phase_ = PathPhase::open;
   }
@@ -173,7 +169,7 @@ class PathFollower {
     lead(group, piece);
     if (piece == nullptr && is_complete_ && passed_time_ == accepted_)
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::completed);
-    else if (!is_settled_ && clock_.stands() && (phase_ == PathPhase::stopping || is_starved_))
+    else if ((phase_ == PathPhase::stopping || is_starved_) && clock_.stands())
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::starved);
   }
 
@@ -201,29 +197,30 @@ class PathFollower {
     return static_cast<std::int64_t>(accepted_ - passed_time_) - (time_ >> (kFractionBits - kPathTimeBits));
   }
 
-  /// While an axis needs all its acceleration itself, a stop waits.
-  static constexpr std::int64_t with_reserve(std::int64_t way_of_stop) { return way_of_stop + way_of_stop / 2; }
-
   /// The nodes last for a stop, whatever the rate.
   constexpr bool is_ample() const { return ends_at_rest_ || time_ >> (kFractionBits - kPathTimeBits) <= slack_; }
 
   constexpr Increment next_rate() {
     const bool is_enough = is_ample();
     if (is_settled_ && is_enough) return clock_.rate();  // nearly always
-    bool is_urgent = false;
-    is_starved_ = false;
-    if (!is_enough) {
-      const std::int64_t ahead = time_ahead() >> kPathTimeBits, way = clock_.way_of_stop();
-      is_starved_ = ahead <= with_reserve(way);
-      is_urgent = ahead <= way;
-    }
     const Increment wanted = wanted_rate();
-    // What the clock takes from a fast axis comes on top of what the path takes from it.
-    if (!clock_.is_steady() && is_loaded_ && !is_urgent)
-      clock_.level_out();
-    else
-      clock_.set_target(is_starved_ ? 0 : wanted);
-    const Increment rate = clock_.next();
+    // Once it has begun to stop it goes on with that until more nodes have come: no creeping to the last.
+    if (is_enough || wanted == 0) {
+      is_starved_ = false;
+    } else {
+      const std::int64_t ahead = time_ahead() >> kPathTimeBits, way = clock_.way_of_stop();
+      if (!is_starved_ && ahead <= way) {
+        is_starved_ = true;
+        starved_at_ = accepted_;
+      } else if (is_starved_ && accepted_ != starved_at_ && ahead > 2 * way) {
+        is_starved_ = false;
+      }
+    }
+    clock_.set_target(is_starved_ ? 0 : wanted);
+    const std::uint32_t used = used_.load(std::memory_order_relaxed);
+    const bool is_known = used != made_.load(std::memory_order_acquire);
+    const PathPiece<axes>& piece = pieces_[used % kPrepared];
+    const Increment rate = clock_.next(is_known ? piece.headroom_here() : 0, is_known ? piece.headroom_ahead() : 0);
     is_settled_ = clock_.is_steady() && rate == wanted;
     return rate;
   }
@@ -253,8 +250,6 @@ class PathFollower {
   template <typename Group>
   constexpr void lead(Group& group, const PathPiece<axes>* piece) {
     const std::uint32_t share = piece != nullptr ? piece->share(time_) : 0;
-    const bool is_slowing = clock_.is_slowing();
-    is_loaded_ = false;
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < axes; ++i) {
       if (!is_led(i)) continue;
@@ -262,18 +257,9 @@ class PathFollower {
       const std::uint64_t here = static_cast<std::uint64_t>(travel) << kToIncrement;
       const auto increment = static_cast<Increment>(here - seen_[i]);
       seen_[i] = here;
-      if (!is_settled_) note_load(i, increment, is_slowing);
       last_increment_[i] = increment;
       group[i].lead(increment);
     }
-  }
-
-  /// Whether the clock's change adds to an acceleration that is near the axis's limit.
-  constexpr void note_load(std::size_t i, Increment increment, bool is_slowing) {
-    const Increment change = increment - last_increment_[i];
-    const auto most = static_cast<std::uint64_t>(most_acceleration_[i]);
-    if (static_cast<std::uint64_t>(change) + most <= 2 * most) return;
-    if (((change ^ increment) < 0) == is_slowing) is_loaded_ = true;
   }
 
   unsigned mask_ = 0;
@@ -282,8 +268,10 @@ class PathFollower {
   PathEnd end_ = PathEnd::none;
   bool is_complete_ = false;   ///< the last node is there
   bool ends_at_rest_ = false;  ///< the newest node is at rest
-  bool is_held_ = false, is_starved_ = false, is_loaded_ = false;
-  bool is_settled_ = false;  ///< the clock keeps its rate, which is the wanted one
+  bool is_held_ = false;
+  bool is_starved_ = false;       ///< stops because the nodes might not last
+  std::uint64_t starved_at_ = 0;  ///< what had been accepted when that began
+  bool is_settled_ = false;       ///< the clock keeps its rate, which is the wanted one
   Increment override_ = kOneCount;
   PathClock clock_;
   std::uint64_t accepted_ = 0, passed_time_ = 0;  ///< 2^-kPathTimeBits samples
@@ -291,7 +279,6 @@ class PathFollower {
   Increment time_ = 0;      ///< in the piece, kOneCount a sample
   std::array<std::uint64_t, axes> seen_{};  ///< where the axes are in the piece, 2^-48 counts, modulo 2^64
   std::array<Increment, axes> last_increment_{};
-  std::array<Increment, axes> most_acceleration_{};  ///< near the axes' limits
   std::array<CountPosition, axes> start_{}, planned_{};
   Ends newest_{}, prepared_to_{};
   std::size_t ring_first_ = 0, ring_count_ = 0;

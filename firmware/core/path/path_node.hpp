@@ -28,13 +28,24 @@ struct PathAxisNode {
 
 inline constexpr int kPathTimeBits = 12;  ///< of a sample, in durations
 inline constexpr std::uint32_t kShortestPiece = 1u << kPathTimeBits;
-inline constexpr std::uint32_t kLongestPiece = 1u << 26;  ///< 16,384 samples
+inline constexpr std::uint32_t kLongestPiece = 1u << 22;  ///< 1,024 samples
+
+/// The word of duration, as it is sent: also the numbers of headroom.
+inline constexpr int kHeadroomHereShift = 23, kHeadroomAheadShift = 27;
 
 template <std::size_t axes>
 struct PathNode {
-  std::uint32_t duration = 0;  ///< of the piece that ends here, kShortestPiece to kLongestPiece
+  std::uint32_t duration : 23 = 0;  ///< of the piece that ends here, kShortestPiece to kLongestPiece
+  /// Numbers of kHeadrooms: of this piece and what it touches, and of all from its begin until the clock, which might
+  /// be changing there, could be brought to what the least of them allows: PathClock.
+  std::uint32_t headroom_here : 4 = 0, headroom_ahead : 4 = 0;
   std::array<PathAxisNode, axes> axis{};
 
+  constexpr void set_time(std::uint32_t word) {
+    duration = word & ((1u << kHeadroomHereShift) - 1);
+    headroom_here = word >> kHeadroomHereShift & 15u;
+    headroom_ahead = word >> kHeadroomAheadShift & 15u;
+  }
   constexpr bool is_at_rest() const {
     for (const PathAxisNode& one : axis)
       if (one.velocity != 0 || one.acceleration != 0) return false;

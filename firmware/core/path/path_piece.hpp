@@ -67,16 +67,19 @@ class PathPiece {
                                                     const PathNode<axes>& end, const PathUnits& units) {
     using namespace path_piece;
     PathPiece piece;
-    piece.duration_ = static_cast<Increment>(end.duration) << (kFractionBits - kPathTimeBits);
-    const int length = 32 - std::countl_zero(end.duration);
-    piece.shift_ = kFractionBits - kPathTimeBits - 32 + length;
-    piece.reciprocal_ = static_cast<std::uint32_t>(((std::uint64_t{1} << 63) - 1) / (end.duration << (32 - length)));
+    piece.headroom_here_ = static_cast<std::uint8_t>(end.headroom_here);
+    piece.headroom_ahead_ = static_cast<std::uint8_t>(end.headroom_ahead);
+    const std::uint32_t duration = end.duration;
+    piece.duration_ = static_cast<Increment>(duration) << (kFractionBits - kPathTimeBits);
+    const int length = 32 - std::countl_zero(duration);
+    piece.shift_ = static_cast<std::uint8_t>(kFractionBits - kPathTimeBits - 32 + length);
+    piece.reciprocal_ = static_cast<std::uint32_t>(((std::uint64_t{1} << 63) - 1) / (duration << (32 - length)));
     for (std::size_t i = 0; i < axes; ++i) {
       const Ends e{std::int64_t{end.axis[i].travel} << (kBits - units.travel_bits),
-                   way_of_velocity(begin[i].velocity, units.velocity_bits, end.duration),
-                   way_of_velocity(end.axis[i].velocity, units.velocity_bits, end.duration),
-                   way_of_acceleration(begin[i].acceleration, units.acceleration_bits, end.duration),
-                   way_of_acceleration(end.axis[i].acceleration, units.acceleration_bits, end.duration)};
+                   way_of_velocity(begin[i].velocity, units.velocity_bits, duration),
+                   way_of_velocity(end.axis[i].velocity, units.velocity_bits, duration),
+                   way_of_acceleration(begin[i].acceleration, units.acceleration_bits, duration),
+                   way_of_acceleration(end.axis[i].acceleration, units.acceleration_bits, duration)};
       for (const std::int64_t way :
            {e.travel, e.begin_velocity, e.end_velocity, e.begin_acceleration, e.end_acceleration})
         if (!fits(way)) return {};
@@ -94,6 +97,10 @@ class PathPiece {
     }
     return piece;
   }
+
+  /// Numbers of kHeadrooms.
+  constexpr std::uint32_t headroom_here() const { return headroom_here_; }
+  constexpr std::uint32_t headroom_ahead() const { return headroom_ahead_; }
 
   /// Samples, as kOneCount a sample.
   constexpr Increment duration() const { return duration_; }
@@ -122,7 +129,8 @@ class PathPiece {
     std::int64_t travel = 0;
   };
   Increment duration_ = 0;
-  int shift_ = 0;                 ///< makes a time of 32 bits, whose highest is set where it is the duration
+  std::uint8_t headroom_here_ = 0, headroom_ahead_ = 0;
+  std::uint8_t shift_ = 0;        ///< makes a time of 32 bits, whose highest is set where it is the duration
   std::uint32_t reciprocal_ = 0;  ///< 2^63 / that duration
   std::array<Polynomial, axes> axis_{};
 };

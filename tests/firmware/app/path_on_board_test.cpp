@@ -53,11 +53,15 @@ class PathOnBoard : public testing::Test {
     const auto node = circle.node(kPiece * (sent + 1), kPiece, kUnits, last, then);
     firmware::Message request;
     request.type = MessageType::path_nodes;
-    const std::array<std::uint32_t, 7> words{
-        node.duration | (last ? firmware::kLastNode : 0u),    static_cast<std::uint32_t>(node.axis[0].travel),
-        static_cast<std::uint32_t>(node.axis[0].velocity),    static_cast<std::uint32_t>(node.axis[0].acceleration),
-        static_cast<std::uint32_t>(node.axis[1].travel),      static_cast<std::uint32_t>(node.axis[1].velocity),
-        static_cast<std::uint32_t>(node.axis[1].acceleration)};
+    const std::uint32_t headrooms = headroom << firmware::kHeadroomHereShift | headroom
+                                                                                   << firmware::kHeadroomAheadShift;
+    const std::array<std::uint32_t, 7> words{node.duration | headrooms | (last ? firmware::kLastNode : 0u),
+                                             static_cast<std::uint32_t>(node.axis[0].travel),
+                                             static_cast<std::uint32_t>(node.axis[0].velocity),
+                                             static_cast<std::uint32_t>(node.axis[0].acceleration),
+                                             static_cast<std::uint32_t>(node.axis[1].travel),
+                                             static_cast<std::uint32_t>(node.axis[1].velocity),
+                                             static_cast<std::uint32_t>(node.axis[1].acceleration)};
     request.put(words);
     const Status status = bench.ask(request).status;
     if (status != Status::ok) return status;
@@ -101,7 +105,8 @@ class PathOnBoard : public testing::Test {
   Status ask(MessageType type) { return bench.ask(type).status; }
 
   Bench bench;
-  firmware_test::Circle circle{4096.0, 1500.0};  // 10 mm, at 78 mm/s
+  firmware_test::Circle circle{4096.0, 1500.0};             // 10 mm, at 78 mm/s
+  std::uint32_t headroom = firmware::headroom_number(1.7);  ///< its acceleration is 610 mm/s^2 at most, of 2000
   firmware::OpenPathPayload opened;
   std::array<double, 2> begin{}, seen{};
   std::array<std::int64_t, 2> given{};
@@ -134,7 +139,7 @@ TYPED_TEST(PathOnBoard, StandsOnThePathWhenTheHostDiesAndThenSaysSo) {
   this->keep_alive(500);
   int silent = 0;
   for (; silent < 2000 && this->fault(0) == AxisFault::none; ++silent) this->run(1);
-  EXPECT_LT(silent, 200 + 300) << "host.timeout and the clock's ramp, 4/3 V / A + 3 A / J";
+  EXPECT_LT(silent, 200 + 300) << "host.timeout and the clock's ramp";
   EXPECT_EQ(this->fault(0), AxisFault::host_heartbeat_lost);
   EXPECT_EQ(this->fault(1), AxisFault::host_heartbeat_lost);
   EXPECT_LT(this->off, 1e-3);

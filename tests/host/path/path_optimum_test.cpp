@@ -11,7 +11,8 @@ using namespace path_test;  // NOLINT(google-build-using-namespace)
 
 /// Times by another way than the planner's: the motion along the curve in 150 times of constant jerk, improved by
 /// successive linear programs (position, speed, acceleration and jerk of each axis linearised about the last motion)
-/// until it is no quicker any more. For a line of 40 mm at the limits that gives the seven phases' 0.3257 s.
+/// until it is no quicker any more. For a line of 40 mm at the limits that gives the seven phases' 0.3257 s. Short
+/// blends at speed are finer than its times: there a planner may be quicker (slot of 2 at 100).
 struct Known {
   const char* name;
   double feed_mm_s, optimum_s;
@@ -28,8 +29,7 @@ std::vector<PathMove> slot(double radius, double feed, double tolerance) {
           move(PathCurve::line({20, 2 * radius, 0}, {0, 2 * radius, 0}), feed, tolerance)};
 }
 
-/// Feeds that leave the axes acceleration for the curve and along it. Where the curve takes most of it, and the feed
-/// none, the planner is slower: see MEASURED.md.
+/// With the limits whole for the optimum, and the clock's reserve taken from the planner's.
 TEST(PlannedPath, TakesLittleMoreThanTheOptimum) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const Known known[] = {{"the paper's circle", 170, 1.4190, arc(35, kTurn, 170)},
@@ -42,9 +42,10 @@ TEST(PlannedPath, TakesLittleMoreThanTheOptimum) {
                          {"slot of 2, blended", 100, 0.6666, slot(2, 100, 0.05)},
                          {"slot of 10, blended", 100, 0.8041, slot(10, 100, 0.05)}};
   for (const Known& one : known) {
-    const double taken_s = plan_path(one.moves, options()).duration_s();
-    EXPECT_LE(taken_s, 1.03 * one.optimum_s) << one.name << " at " << one.feed_mm_s << " mm/s";
-    EXPECT_GE(taken_s, 0.997 * one.optimum_s) << one.name << " at " << one.feed_mm_s << " mm/s: beyond the limits?";
+    const host::PlannedPath path = plan_path(one.moves, options());
+    EXPECT_LE(path.duration_s(), 1.03 * one.optimum_s) << one.name << " at " << one.feed_mm_s << " mm/s";
+    const host::LimitUse use = limit_use(path.knots.data(), path.knots.data() + path.knots.size(), options().limits);
+    EXPECT_LE(std::max({use.velocity, use.acceleration, use.jerk}), 1.0) << one.name;
   }
 }
 

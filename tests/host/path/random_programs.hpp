@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "firmware/core/path/path_follower.hpp"
-#include "host/path/path_plan.hpp"
+#include "host/path/path_words.hpp"
 
 namespace path_test {
 
@@ -47,6 +47,13 @@ struct LedAxes {
   std::array<Axis, 2> axis;
   Axis& operator[](std::size_t i) { return axis[i]; }
 };
+
+inline firmware::PathNode<2> node_of(const host::PathWord& word) {
+  firmware::PathNode<2> node;
+  node.set_time(word.time());
+  node.axis = {word.axis[0], word.axis[1]};
+  return node;
+}
 
 /// Shares of the limits, from differences of positions, and the way off the program in counts.
 struct Seen {

@@ -239,9 +239,8 @@ void end_motion() {
 template <typename Step>
 void count_path(const char* name, unsigned mask, Step step) {
   constexpr firmware::PathUnits kUnits{16, 24, 32};
-  const firmware::Increment acceleration = firmware::motion_limits(kParameters[0]).acceleration;
-  path.open(mask, kUnits, {axes[0].leading(), axes[1].leading()}, {acceleration, acceleration},
-            firmware::kOneCount / 125, firmware::kOneCount / 5000);
+  path.open(mask, kUnits, {axes[0].leading(), axes[1].leading()}, firmware::kOneCount / 125,
+            firmware::kOneCount / 5000);
   path.hold(false);
   constexpr std::int32_t kPeriod = 64, kSpeed = 40;  // pieces, counts a sample
   Cost cost;

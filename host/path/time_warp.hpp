@@ -1,0 +1,55 @@
+// A motion along a path made quicker within the same limits, by another course of time along it.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "host/path/path_plan.hpp"
+
+namespace host {
+
+/// What a motion asks of the axes at a time of it, and how fast it may be there.
+struct WarpDemand {
+  PathPoint velocity, acceleration, jerk;
+  double fastest = 0.0;  ///< the rate at which the feed is reached
+  double share = 1.0;    ///< of the limits of acceleration and jerk that it may take
+};
+
+/// Time t for each time tau of a motion, with the rate r = dtau / dt, r^2 piecewise quadratic over tau and smooth: the
+/// accelerations r^2 q'' + (r^2)' q' / 2 and, but for a factor r, the jerks are linear in it (Verscheure et al.,
+/// Time-optimal path tracking for robots, 2009; the jerk after Debrouwere et al., 2013).
+class TimeWarp {
+ public:
+  /// None: t = tau.
+  TimeWarp() = default;
+  /// The quickest of those over cells that begin and end at these times, within a thousandth or two, by an
+  /// interior-point method that begins at an even rate. The motion begins at rest at 0 and ends at rest; `demand`: of a
+  /// part of it between two times.
+  TimeWarp(std::vector<double> cells, const std::function<WarpDemand(double, double)>& demand,
+           const AxisLimits& limits);
+
+  bool is_none() const { return square_.empty(); }
+  struct State {
+    double time_s = 0.0;                   ///< tau
+    double rate = 1.0, rate_change = 0.0;  ///< dtau / dt, and its derivative by t, 1/s
+  };
+  State at(double warped_s) const;
+  /// t of a tau.
+  double warped(double time_s) const;
+  /// t where cells meet between which the change of the rate changes by more than next to nothing.
+  const std::vector<double>& bends() const { return bends_; }
+
+ private:
+  struct Square {
+    double value, slope;
+  };
+  Square square_at(std::size_t cell, double share) const;
+  double passed(std::size_t cell, double share) const;
+
+  std::vector<double> cells_;
+  std::vector<double> square_;  ///< coefficients of B-splines of second degree: of r^2
+  std::vector<double> times_;   ///< t where the cells begin and end
+  std::vector<double> bends_;
+};
+
+}  // namespace host
