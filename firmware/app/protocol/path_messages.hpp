@@ -26,7 +26,8 @@ struct OpenPathPayload {
 };
 static_assert(sizeof(OpenPathPayload) == kPayloadSize);
 
-/// Nodes, as many as are sent: a word of duration and headroom (PathNode::set_time), then travel, velocity and acceleration of each axis of the mask.
+/// Nodes, as many as are sent: a word of duration and headroom (PathNode::set_time), then travel, velocity and
+/// acceleration of each axis of the mask.
 inline constexpr std::uint32_t kLastNode = 1u << 31;  ///< in the word of duration: nothing comes after it
 constexpr std::size_t path_node_size(std::size_t axes) { return 4 + 12 * axes; }
 static_assert(path_node_size(hal::kMostAxes) <= kPayloadSize);
