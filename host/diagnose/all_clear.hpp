@@ -13,12 +13,15 @@ namespace host {
 /// An error over floor up to which a model may be complete: made cases without any effect leave 0.8 to 1.05.
 inline constexpr double kSmall = 1.2;
 
-/// Why there is no all-clear.
+/// Why there is no all-clear, or no claim.
 struct Objection {
   Status status;            ///< unexplained, or insufficient_data where the records could not have shown an effect
   std::string explanation;  ///< sentences
   std::string next_experiment;
 };
+
+/// The objection to claiming an effect: a base fitted to both sets needs none. Empty where there is none.
+std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis);
 
 /// The objection to calling the re-fitted base complete; empty where there is none.
 std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests);

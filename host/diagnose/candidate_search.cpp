@@ -268,16 +268,21 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   return fitted(set, kSeriousFit).front().model;
 }
 
+bool is_confused_with(const sim::EffectInfo& one, const sim::EffectInfo& other) {
+  return std::ranges::find(one.confused_with, other.kind) != one.confused_with.end();
+}
+
 /// An effect that is no more complicated than the leader's, on the leader's base, as its own fit has left it and as it
-/// was before: that fit may have bent the base into a valley from which it did not come back.
+/// was before, its size first: that fit may have bent the base into a valley from which it did not come back.
 void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescription& base, const RecordSet& set,
                     const FitOptions& options) {
   if (rival.effect.parameters.size() > leader.effect.parameters.size()) return;
   double least = error_of(sim::Drive(rival.model), set).robust;
-  for (const sim::EffectEntry& effect : {rival.model.effects.back(), rival.effect}) {
+  for (const bool fitted : {true, false}) {
     Start again = rival;
     again.model = leader.model;
-    again.model.effects.back() = effect;
+    again.model.effects.back() = fitted ? rival.model.effects.back() : rival.effect;
+    if (!fitted) again.model = fit_model(again.model, set, kOwnSize).model;
     fit_start(again, base, set, 1.0, options);
     const double error = error_of(sim::Drive(again.model), set).robust;
     if (error >= least) continue;
@@ -380,18 +385,27 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
   for (const Start& start : race)
     if (std::ranges::find(finalists, start.info, &Start::info) == finalists.end()) finalists.push_back(start);
 
-  std::vector<Candidate> candidates(finalists.size());
   std::optional<Start> leader;
   if (!finalists.empty()) {
     const sim::DriveDescription& first = finalists.front().model;
     const RecordSet own = suited_to(first, affordable(medium, first, kSeriousFit));
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
     leader = finalists.front();
+    // What it is often taken for may have fallen behind only because the base was bent.
+    for (const Start& start : starts)
+      if (is_confused_with(*leader->info, *start.info) && !needs_own_floors(start.model) &&
+          std::ranges::find(finalists, start.info, &Start::info) == finalists.end())
+        finalists.push_back(start);
   }
   const double within = leader ? kClose * leader->error : 0.0;
+  const double leading = leader ? error_of(sim::Drive(leader->model), medium).robust : 0.0;
+  std::vector<Candidate> candidates(finalists.size());
   for_each_in_parallel(finalists.size(), [&](std::size_t k) {
-    const bool is_close = k < effort.finalists && finalists[k].error < within;
-    if (k > 0 && is_close) try_on_base_of(*leader, finalists[k], model, medium, budgeted(kSeriousFit));
+    bool is_close = k < effort.finalists && finalists[k].error < within;
+    if (k > 0 && (is_close || is_confused_with(*leader->info, *finalists[k].info))) {
+      try_on_base_of(*leader, finalists[k], model, medium, budgeted(kSeriousFit));
+      is_close = is_close || error_of(sim::Drive(finalists[k].model), medium).robust < kClose * leading;
+    }
     std::vector<std::string> all = kinds;
     all.emplace_back(finalists[k].info->kind);
     if (is_close) fit_start(finalists[k], model, last, 1.0, budgeted(kLastWord));

@@ -176,8 +176,10 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   for (std::size_t step = 0; step < screen->steps.size(); ++step)
     for (const ScreenedModel& tried : screen->steps[step]) {
       diagnosis.candidates.push_back(judged_by_effort(*screen, tried));
-      // What was not worth its place on top of the verdict is no evidence for the whole.
-      if (step >= screen->chosen.size() && step > 0) diagnosis.candidates.back().luck = 1.0;
+      // What was not worth its place on top of the verdict is no evidence for the whole, and what a further effect has
+      // overtaken is no rival of it.
+      if ((step >= screen->chosen.size() && step > 0) || step + 1 < screen->chosen.size())
+        diagnosis.candidates.back().luck = 1.0;
     }
   std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
   diagnosis.given_train = diagnosis.before_train = over_noise(*screen, screen->base, false);

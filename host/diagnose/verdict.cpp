@@ -196,6 +196,12 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const double before = diagnosis.before_validate;
 
   if (chosen != nullptr && earns_its_place(*chosen, diagnosis)) {
+    if (const std::optional<Objection> objection = objection_to_claim(diagnosis)) {
+      verdict.status = objection->status;
+      verdict.explanation = objection->explanation + ".";
+      verdict.next_experiment = objection->next_experiment;
+      return verdict;
+    }
     verdict.effects = chosen->kinds;
     verdict.status = Status::missing;
     const sim::EffectInfo& first = *sim::find_effect(chosen->kinds.front());

@@ -19,6 +19,8 @@ constexpr double kLoad = 0.05;
 constexpr double kStillRigid = 0.15;
 constexpr double kScale = 0.03;
 constexpr double kAlike = 0.02;
+/// Part of an inertia's doubt, which supposes the worst, below which its likeness to another factor may be an accident.
+constexpr double kLeastKnown = 0.5;
 /// Records that agree badly with one another cannot convict one of them.
 constexpr double kStandsOut = 3.0;
 /// Tachometers agree with the encoder within 0.5 % from record to record.
@@ -134,10 +136,11 @@ std::optional<Disagreement> rigid_disagreement(const std::vector<const Record*>&
     const double scale = own->scale_of(there);
     const auto alike = [&](Eigen::Index k) { return std::abs(here(k) / there(k) / inertia - 1.0) < kAlike; };
     const bool friction_too = alike(2) && alike(3);
-    const bool another_load = left < kRigid && off > std::max(kLoad, own->doubt(here) + rest.doubt(there));
-    // All of the effort grew by the factor by which the inertia did.
+    const double doubt = own->doubt(here) + rest.doubt(there);
+    const bool another_load = left < kRigid && off > std::max(kLoad, doubt);
+    // All of the effort grew by the factor by which the inertia did, which is no accident.
     const bool all_of_it = left < kRigid && std::abs(scale - 1.0) > std::max(kScale, 2.0 * left) &&
-                           std::abs(inertia / scale - 1.0) < kAlike;
+                           std::abs(inertia / scale - 1.0) < kAlike && off > kLeastKnown * doubt;
     const bool another_scale = all_of_it || (left < kStillRigid && off > kScale && friction_too);
     if ((!another_load && !another_scale) || off < kStandsOut * spread(judged[r])) continue;
     if (worst && std::abs(worst->factor - 1.0) >= off) continue;

@@ -73,6 +73,16 @@ TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   EXPECT_THAT(diagnosis.verdict.explanation, testing::HasSubstr("viscous"));
 }
 
+/// Half of what is left goes with the acceleration there: the smoother's own, and nothing that is missing.
+TEST(Diagnosis, WhatTheSmootherRoundsOffIsNoEffect) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const host::SimulatedNull null = host::simulated_null(3);
+  const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
+  const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
+  EXPECT_LT(diagnosis.before_validate, 1.0);
+  EXPECT_NE(diagnosis.verdict.status, host::Status::unexplained) << diagnosis.verdict.explanation;
+}
+
 TEST(Diagnosis, WhatACompleteModelLeavesDependsOnNothing) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const DriveCase complete("none/case-00");

@@ -13,6 +13,7 @@
 
 #include "host/model/model_file.hpp"
 #include "host/record/read_record.hpp"
+#include "host/scoreboard/simulated_null.hpp"
 
 namespace {
 
@@ -196,6 +197,13 @@ TEST_F(Gate, RefusesToAcceptAFaultThatDoesNotExist) {
 TEST_F(Gate, NamesARecordWhoseCommandWasScaledBetweenTheRecords) {
   scale(sound.validate.front().u_V, 1.05);
   EXPECT_THAT(named(sound, true), testing::ElementsAre("records_disagree"));
+}
+
+/// Slow enough, a record tells friction alone, and that its poorly known inertia is off by as much is an accident.
+TEST(SoundRecords, OneThatTellsLittleOfTheInertiaConvictsNobody) {
+  const host::SimulatedNull null = host::simulated_null(15);
+  ASSERT_EQ(null.train.size(), 3U);
+  EXPECT_NO_THROW(host::MeasurementGate(null.model).admit(null.train, null.validate));
 }
 
 TEST_F(Gate, NamesATachometerWhoseGainChangedBetweenTheRecords) {
