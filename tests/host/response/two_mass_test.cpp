@@ -1,6 +1,9 @@
 // The estimate against a machine whose response is known exactly.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "host/response/frequency_response.hpp"
@@ -29,11 +32,16 @@ TEST_F(TwoMasses, AreMeasuredToHalfADecibelAndThreeDegreesUpToFiveTimesTheCrosso
   const auto margins = host::margins_of(response, fit, host::AxisController(controller_));
   ASSERT_TRUE(margins.crossover_Hz);
   EXPECT_GE(response.lines.back().f_Hz, 5.0 * margins.crossover_Hz->value);
+  double most_dB = 0.0, most_degrees = 0.0;
   for (const host::ResponseLine& line : response.lines) {
     const std::complex<double> off = line.plant(0) / machine_.response(line.f_Hz)(0);
+    most_dB = std::max(most_dB, std::abs(decibels(std::abs(off))));
+    most_degrees = std::max(most_degrees, std::abs(std::arg(off)) * kDegrees);
     EXPECT_NEAR(decibels(std::abs(off)), 0.0, 0.5) << line.f_Hz;
     EXPECT_NEAR(std::arg(off) * kDegrees, 0.0, 3.0) << line.f_Hz;
   }
+  std::printf("%zu lines up to %.1f times the crossover: off by %.2f dB and %.2f degrees at most\n",
+              response.lines.size(), response.lines.back().f_Hz / margins.crossover_Hz->value, most_dB, most_degrees);
 }
 
 /// As cogging does that recurs with a line's own frequency while the axis rides, and its neighbours with it.
@@ -84,6 +92,10 @@ TEST_F(TwoMasses, HaveTheirResonanceAndMarginsFound) {
   EXPECT_NEAR(margins.phase_deg->value, phase, 2.0);
   EXPECT_NEAR(decibels(margins.modulus->value / modulus), 0.0, 0.5);
   EXPECT_NEAR(margins.crossover_Hz->value / crossover, 1.0, 0.02);
+  std::printf("off by: resonance %.2f %%, gain margin %.2f dB, phase margin %.2f degrees, modulus margin %.2f dB\n",
+              100.0 * std::abs(fit.resonances[0].f_Hz.value / machine_.resonance_Hz - 1.0),
+              std::abs(margins.gain_dB->value - decibels(exact.gain_margin())),
+              std::abs(margins.phase_deg->value - phase), std::abs(decibels(margins.modulus->value / modulus)));
 }
 
 /// The same drive with more gain than its margin allows.
