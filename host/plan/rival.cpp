@@ -70,12 +70,18 @@ std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, 
   return best.model;
 }
 
-/// Other kinds in place of those of a fitted rival that they do not share, re-fitted; nothing where that cannot be.
+/// Other kinds in place of those of a fitted rival that they do not share, re-fitted; nothing where that cannot be, or
+/// where both are about the same part of the drive: a gap of nothing is a spring, and would be no other explanation.
 std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vector<std::string>& kinds,
                                                const RecordSet& training) {
   const auto has = [](const std::vector<std::string>& list, const std::string& kind) {
     return std::ranges::find(list, kind) != list.end();
   };
+  for (const std::string& old : from.kinds)
+    for (const std::string& kind : kinds)
+      if (!has(kinds, old) && !has(from.kinds, kind) &&
+          exclude_each_other(*sim::find_effect(old), *sim::find_effect(kind)))
+        return {};
   std::optional<sim::DriveDescription> model = from.model;
   std::erase_if(model->effects, [&](const sim::EffectEntry& effect) {
     return has(from.kinds, effect.kind) && !has(kinds, effect.kind);
