@@ -64,6 +64,11 @@ void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataShee
         w_variance += 0.5 * mean_square_difference(disturbed->w, nominal.w);
       }
     }
+    if (!std::isfinite(x_variance +
+                       w_variance)) {  // a model that runs away: its error is as bad as can be on any floor
+      x_variance = motion.x_variance[window.begin];
+      w_variance = motion.w_variance[window.begin];
+    }
     if (prepared.record->has_position()) floor.x[index] = std::sqrt(x_noise + x_variance);
     if (prepared.record->has_speed()) floor.w[index] = std::sqrt(w_noise + w_variance);
   }

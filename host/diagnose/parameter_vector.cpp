@@ -82,6 +82,11 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
         free.lower = std::max(free.lower, -most);
         free.upper = std::min(free.upper, most);
       }
+      if (id.starts_with("static")) {  // an axis that has ever moved was broken away by its drive
+        const double most = std::max(magnitude, description.data.dac_limit_V * description.data.effort_per_volt());
+        free.lower = std::max(free.lower, -most);
+        free.upper = std::min(free.upper, most);
+      }
       if (id.starts_with("omega") && magnitude > 0.0) {
         const double slowest = std::min(magnitude, slowest_fading(description));
         (value > 0.0 ? free.lower : free.upper) = value > 0.0 ? slowest : -slowest;

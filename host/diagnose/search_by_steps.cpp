@@ -61,20 +61,40 @@ std::optional<sim::DriveDescription> handed_to_friction(const sim::DriveDescript
   return other;
 }
 
+/// The model without one of its effects, from where that effect has carried the fit.
+sim::DriveDescription without_or_handed(const Candidate& whole, const std::string& kind, const PreparedSets& sets) {
+  sim::DriveDescription model = without(whole.model, kind, sets.training);
+  const std::optional<sim::DriveDescription> other = handed_to_friction(whole.model, kind);
+  if (!other) return model;
+  sim::DriveDescription handed = without(*other, kind, sets.training);
+  const auto left = [&](const sim::DriveDescription& of) { return error_of(sim::Drive(of), sets.training).robust; };
+  return left(handed) < left(model) ? handed : model;
+}
+
+bool is_as_good(const sim::DriveDescription& model, const Errors& with, const PreparedSets& sets) {
+  const Errors errors(model, sets);
+  return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
+}
+
+/// Whether the base was stuck in a valley: from where the best effect has carried its fit it is as good as that effect,
+/// and nothing is missing. It stays there then.
+bool base_was_stuck(PreparedSets& sets, const Candidate& best) {
+  constexpr double kBetter = 0.98;
+  const sim::DriveDescription base = without_or_handed(best, best.kinds.back(), sets);
+  const Errors here(base, sets), before(sets.base, sets);
+  if (here.training > kBetter * before.training || !is_as_good(base, Errors(best.model, sets), sets)) return false;
+  sets.base = base;
+  return true;
+}
+
 /// Several effects without each of them in turn, fitted again from there. The last one may have made an earlier one
 /// needless; and the last one itself may have done no more than carry a fit out of a valley in which it was stuck.
 std::vector<Candidate> without_what_is_needless(const Candidate& whole, const PreparedSets& sets) {
   std::vector<Candidate> found;
   const Errors with(whole.model, sets);
-  const auto is_as_good = [&](const sim::DriveDescription& model) {
-    const Errors errors(model, sets);
-    return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
-  };
   for (const std::string& kind : whole.kinds) {
-    sim::DriveDescription model = without(whole.model, kind, sets.training);
-    if (!is_as_good(model))
-      if (const auto other = handed_to_friction(whole.model, kind)) model = without(*other, kind, sets.training);
-    if (!is_as_good(model)) continue;
+    const sim::DriveDescription model = without_or_handed(whole, kind, sets);
+    if (!is_as_good(model, with, sets)) continue;
     std::vector<std::string> kinds = whole.kinds;
     std::erase(kinds, kind);
     found.push_back(judged(kinds, model, sets.base, sets.training, sets.validation));
@@ -96,9 +116,14 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     renew_floors(sets.training, model);
     renew_floors(sets.validation, model);
   };
-  found.singles = search_candidates(sets.base, {}, sets.training, sets.validation, part_of(progress, 0.0, 0.5), effort);
+  const auto search_singles = [&](double from, double to) {
+    found.singles =
+        search_candidates(sets.base, {}, sets.training, sets.validation, part_of(progress, from, to), effort);
+    if (!found.singles.empty()) renew(found.singles.front().model);
+  };
+  search_singles(0.0, 0.4);
+  if (!found.singles.empty() && base_was_stuck(sets, found.singles.front())) search_singles(0.4, 0.5);
   if (found.singles.empty()) return found;
-  renew(found.singles.front().model);
   for (const Candidate& candidate : found.singles)
     if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
   const auto single = std::ranges::find_if(found.singles, is_physical);

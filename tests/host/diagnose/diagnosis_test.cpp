@@ -73,6 +73,16 @@ TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   EXPECT_THAT(diagnosis.verdict.explanation, testing::HasSubstr("viscous"));
 }
 
+/// The base ends in a valley, from which an offset that is not there would carry it; a candidate on it runs away.
+TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const host::SimulatedNull null = host::simulated_null(55);
+  const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
+  const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
+  EXPECT_LT(diagnosis.before_train, 1.0) << "of the base, re-fitted";
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::parameters) << diagnosis.verdict.explanation;
+}
+
 /// Half of what is left goes with the acceleration there: the smoother's own, and nothing that is missing.
 TEST(Diagnosis, WhatTheSmootherRoundsOffIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
