@@ -1,6 +1,5 @@
 // The board's application, protocol and store on the emulated processor, its reports over files to_board and
-// from_board: the other end of this cable has a USB controller. The axes stand still; their encoders and converters are
-// plain memory.
+// from_board: the other end of this cable has a USB controller. Each axis has a drive, which is computed here too.
 #include <atomic>
 
 #include "firmware/app/protocol/server.hpp"
@@ -13,6 +12,7 @@
 #include "firmware/boards/pil/value_axis.hpp"
 #include "firmware/boards/qemu-usb/memory_flash.hpp"
 #include "firmware/boards/qemu-usb/report_cable.hpp"
+#include "firmware/boards/qemu-usb/rigid_drive.hpp"
 #include "hal/board.hpp"
 #include "hal/cortex_m/control_shut_out.hpp"
 #include "hal/cortex_m/registers.hpp"
@@ -69,8 +69,19 @@ class EmulatedBoard {
 
   std::uint32_t period_us() const { return period_us_; }
 
+  /// The drives' motion in the period that has passed, and what is read of it.
+  void advance_drives() {
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      ValueAxis& axis = axes_[i];
+      drives_[i].advance(static_cast<float>(period_us_) * 1e-6F, axis.dac().code, axis.drive_enable().on);
+      axis.encoder().reading = {drives_[i].counts(), true};
+      axis.tachometer().reading = {drives_[i].tachometer_code(), true};
+    }
+  }
+
  private:
   std::array<ValueAxis, kAxes> axes_;
+  std::array<RigidDrive, kAxes> drives_;
   Stop stop_;
   Supply supply_;
   Clock clock_;
@@ -95,7 +106,7 @@ void make_outputs_safe() noexcept {}
 extern "C" void control_interrupt() {
   using namespace firmware::boards;
   control_time_us = control_time_us + board.period_us();
-  for (std::size_t i = 0; i < Application::kAxes; ++i) board.axis(i).encoder().reading.valid = true;
+  board.advance_drives();
   application.control_period();
 }
 
