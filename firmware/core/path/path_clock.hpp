@@ -59,11 +59,16 @@ class PathClock {
     stand();
   }
 
-  constexpr void set_target(Increment rate) { target_ = rate; }
+  constexpr void set_target(Increment rate) {
+    if (rate == target_) return;
+    target_ = rate;
+    target_ahead_ = kUnknown;
+  }
   /// At this rate from the next sample on: where nothing moves, nothing jumps.
   constexpr void begin(Increment rate) {
     rate_ = target_ = rate;
     change_ = 0;
+    target_ahead_ = kUnknown;
   }
   constexpr void stand() { begin(0); }
 
@@ -73,17 +78,27 @@ class PathClock {
     const bool is_downward = target_ < rate_;
     const Increment missing = is_downward ? rate_ - target_ : target_ - rate_;
     const Increment speed = is_downward ? -change_ : change_;  // towards the target
-    const Increment ramp = limited(ramp_limit_, rate_, here);
+    const std::uint64_t square = square_of(rate_);
+    const Increment ramp = limited(ramp_limit_, square, here);
     // Slowing down, the ramps become steeper; gaining speed, gentler.
-    const Increment last_ramp = limited(ramp_limit_, is_downward ? rate_ : target_, ahead);
-    Increment wanted = std::min(speed + ramp, limited(change_limit_, rate_, ahead));
+    Increment last_ramp = ramp;
+    if (!is_downward) {
+      if (ahead != target_ahead_) note_target_ramp(ahead);
+      last_ramp = target_ramp_;
+    } else if (ahead != here) {
+      last_ramp = limited(ramp_limit_, square, ahead);
+    }
+    Increment wanted = std::min(speed + ramp, limited(change_limit_, square, ahead));
     if (speed < 0)
       wanted = std::min(speed + ramp, Increment{0});
     else if (missing <= last_ramp && speed - missing <= ramp && missing - speed <= ramp)
       wanted = missing;
     else if (!stops_within(missing, wanted, last_ramp))
       wanted = stops_within(missing, speed, last_ramp) ? std::max(speed, std::min(ramp, last_ramp) >> 1) : speed - ramp;
-    if (speed > 0) wanted = std::max({wanted, speed - ramp, Increment{0}});
+    if (speed > 0) {
+      if (wanted < speed - ramp) wanted = speed - ramp;
+      if (wanted < 0) wanted = 0;
+    }
     change_ = is_downward ? -wanted : wanted;
     rate_ = std::clamp(rate_ + change_, Increment{0}, kOneCount);
     return rate_;
@@ -102,12 +117,21 @@ class PathClock {
   constexpr std::int64_t longest_stop() const { return way_from(kOneCount); }
 
  private:
-  /// limit * w.
-  static constexpr Increment limited(Increment limit, Increment rate, std::uint32_t headroom) {
+  static constexpr std::uint32_t kUnknown = kHeadrooms.size();
+
+  /// 2^-32, up to 1.
+  static constexpr std::uint64_t square_of(Increment rate) {
     const auto r = static_cast<std::uint32_t>(rate >> (kFractionBits - 31));
-    const std::uint64_t square = std::uint64_t{r} * r >> 30;  // 2^-32, up to 1
+    return std::uint64_t{r} * r >> 30;
+  }
+  /// limit * w.
+  static constexpr Increment limited(Increment limit, std::uint64_t square, std::uint32_t headroom) {
     const auto share = static_cast<std::uint32_t>(square * path_clock::kInverseSquares[headroom] >> 32);
     return path_piece::scaled(limit, ~share, 32);
+  }
+  [[gnu::noinline]] constexpr void note_target_ramp(std::uint32_t ahead) {
+    target_ahead_ = ahead;
+    target_ramp_ = limited(ramp_limit_, square_of(target_), ahead);
   }
 
   /// Whether `missing` suffices for the next samples of v, v - d, v - 2 d, ... : v (v + d) / (2 d), and an eighth of d
@@ -116,8 +140,9 @@ class PathClock {
     constexpr int kShift = kFractionBits - 31;
     const Increment left = missing - (d >> 2);
     if (left < 0) return false;
-    const std::uint64_t needed =
-        static_cast<std::uint64_t>((v >> kShift) + 1) * static_cast<std::uint64_t>(((v + d) >> kShift) + 1);
+    const auto first = static_cast<std::uint32_t>(v >> kShift) + 1,
+               last = static_cast<std::uint32_t>((v + d) >> kShift) + 1;
+    const std::uint64_t needed = std::uint64_t{first} * last;
     return needed <=
            2 * static_cast<std::uint64_t>(path_piece::scaled(d, static_cast<std::uint32_t>(left >> kShift), kShift));
   }
@@ -131,6 +156,8 @@ class PathClock {
 
   Increment rate_ = 0, change_ = 0, target_ = 0;
   Increment change_limit_ = 1, ramp_limit_ = 1;
+  Increment target_ramp_ = 0;  ///< at the target, with this headroom
+  std::uint32_t target_ahead_ = kUnknown;
   std::int64_t way_from_full_ = 0, ramp_samples_ = 0;  ///< samples
 };
 

@@ -169,7 +169,7 @@ class PathFollower {
     lead(group, piece);
     if (piece == nullptr && is_complete_ && passed_time_ == accepted_)
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::completed);
-    else if ((phase_ == PathPhase::stopping || is_starved_) && clock_.stands())
+    else if (!is_settled_ && clock_.stands() && (phase_ == PathPhase::stopping || is_starved_))
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::starved);
   }
 
@@ -203,8 +203,12 @@ class PathFollower {
   constexpr Increment next_rate() {
     const bool is_enough = is_ample();
     if (is_settled_ && is_enough) return clock_.rate();  // nearly always
+    return changing_rate(is_enough);
+  }
+  [[gnu::noinline]] constexpr Increment changing_rate(bool is_enough) {
     const Increment wanted = wanted_rate();
-    // Once it has begun to stop it goes on with that until more nodes have come: no creeping to the last.
+    // Once it has begun to stop it goes on with that until more nodes have come: no creeping to the last. A ring that
+    // is full, and still too short for a stop from the highest rate, is no reason to end.
     if (is_enough || wanted == 0) {
       is_starved_ = false;
     } else {
@@ -212,7 +216,7 @@ class PathFollower {
       if (!is_starved_ && ahead <= way) {
         is_starved_ = true;
         starved_at_ = accepted_;
-      } else if (is_starved_ && accepted_ != starved_at_ && ahead > 2 * way) {
+      } else if (is_starved_ && (accepted_ != starved_at_ || ring_count_ == nodes) && ahead > 2 * way) {
         is_starved_ = false;
       }
     }
@@ -221,7 +225,7 @@ class PathFollower {
     const bool is_known = used != made_.load(std::memory_order_acquire);
     const PathPiece<axes>& piece = pieces_[used % kPrepared];
     const Increment rate = clock_.next(is_known ? piece.headroom_here() : 0, is_known ? piece.headroom_ahead() : 0);
-    is_settled_ = clock_.is_steady() && rate == wanted;
+    is_settled_ = clock_.is_steady() && rate == wanted && !(rate == 0 && phase_ == PathPhase::stopping);
     return rate;
   }
 

@@ -210,7 +210,7 @@ void count_experiments() {
   report("captured_row", captured);
 }
 
-firmware::PathFollower<Axes::kAxes, 32> path;
+firmware::PathFollower<Axes::kAxes, 64> path;  // as on a board, more than a stop from full speed takes
 
 [[gnu::noinline]] void step_both_on_path() {
   path.before_step(axes);
@@ -229,6 +229,7 @@ void end_motion() {
   for (int period = 0; period < 2000; ++period) {
     for (std::size_t i = 0; i < Axes::kAxes; ++i) drives[i].bring_readings(io[i]);
     if (excitation.is_active()) excitation.before_step(axes[0]);
+    path.prepare();
     if (path.is_moving()) path.before_step(axes);
     step_both();
   }
@@ -253,6 +254,7 @@ void count_path(const char* name, unsigned mask, Step step) {
           (phase < kPeriod / 2 ? phase - kPeriod / 4 : 3 * kPeriod / 4 - phase) * kSpeed * 4 / kPeriod;
       firmware::PathNode<Axes::kAxes> node;
       node.duration = 10 * firmware::kShortestPiece;
+      node.headroom_here = node.headroom_ahead = firmware::headroom_number(2.0);
       for (auto& axis : node.axis) axis = {(speed + next) * 5 << 16, next << 24, 0};
       if (path.push(node, false, [](std::size_t, std::int64_t) { return true; }) != firmware::Refusal::none) break;
       speed = next;
