@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 
 #include "firmware/core/path/path_clock.hpp"
 #include "firmware/core/path/path_piece.hpp"
@@ -65,6 +66,7 @@ class PathFollower {
     slack_ = -((clock_.longest_stop() + 1) << kPathTimeBits);
     time_ = 0;
     ends_at_rest_ = true;
+    note_slack();
     is_complete_ = is_held_ = is_settled_ = is_starved_ = false;
     end_ = PathEnd::none;
     phase_ = PathPhase::open;
@@ -120,6 +122,7 @@ class PathFollower {
     accepted_ += node.duration;
     slack_ += node.duration;
     ends_at_rest_ = node.is_at_rest();
+    note_slack();
     is_complete_ = last;
     return Refusal::none;
   }
@@ -198,7 +201,13 @@ class PathFollower {
   }
 
   /// The nodes last for a stop, whatever the rate.
-  constexpr bool is_ample() const { return ends_at_rest_ || time_ >> (kFractionBits - kPathTimeBits) <= slack_; }
+  constexpr bool is_ample() const { return time_ < ample_until_; }
+  constexpr void note_slack() {
+    constexpr int kToTime = kFractionBits - kPathTimeBits;
+    constexpr std::int64_t kMost = std::numeric_limits<Increment>::max() >> kToTime;
+    const std::int64_t slack = slack_ < 0 ? 0 : slack_ + 1;
+    ample_until_ = ends_at_rest_ || slack > kMost ? std::numeric_limits<Increment>::max() : slack << kToTime;
+  }
 
   constexpr Increment next_rate() {
     const bool is_enough = is_ample();
@@ -243,6 +252,7 @@ class PathFollower {
       const auto passed = piece.duration() >> (kFractionBits - kPathTimeBits);
       passed_time_ += static_cast<std::uint64_t>(passed);
       slack_ -= passed;
+      note_slack();
       for (std::size_t i = 0; i < axes; ++i)
         seen_[i] -= static_cast<std::uint64_t>(piece.whole_travel(i)) << kToIncrement;
       used_.store(++used, std::memory_order_release);
@@ -279,6 +289,7 @@ class PathFollower {
   Increment override_ = kOneCount;
   PathClock clock_;
   std::uint64_t accepted_ = 0, passed_time_ = 0;  ///< 2^-kPathTimeBits samples
+  Increment ample_until_ = 0;                     ///< time_ from which a stop might have to begin
   std::int64_t slack_ = 0;  ///< time in the piece until a stop might have to begin, 2^-kPathTimeBits samples
   Increment time_ = 0;      ///< in the piece, kOneCount a sample
   std::array<std::uint64_t, axes> seen_{};  ///< where the axes are in the piece, 2^-48 counts, modulo 2^64
