@@ -8,7 +8,7 @@ jobs=$(nproc)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-flags="-std=c++20 -O0 -w -DAXIS_REGISTERS_ANSWERED"
+flags="-std=c++20 -O0 -w -DAXIS_REGISTERS_ANSWERED -DAXIS_TEST_DATA=\"$root/tests/data\""
 printf '#include <gtest/gtest.h>\n' >"$work/common.hpp"
 # shellcheck disable=SC2086
 "$cxx" $flags -x c++-header "$work/common.hpp" -o "$work/common.hpp.gch"
