@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "host/exit_codes.hpp"
 #include "host/record/read_record.hpp"
@@ -12,6 +13,8 @@
 namespace host {
 
 namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using testing::HasSubstr;
 
@@ -22,7 +25,7 @@ RecordColumns moving() {
                       {{"drive", "stage"}, {"sample_period_s", "0.00033333"}}};
   for (int k = 0; k < 60; ++k) {
     const double t = k / 3000.0;
-    const double row[] = {std::round(t * 1e5) / 1e5, std::sin(9.0 * t), t * t / 3.0, 2e3 * t / 3.0, NAN};
+    const double row[] = {std::round(t * 1e5) / 1e5, std::sin(9.0 * t), t * t / 3.0, 2e3 * t / 3.0, kNaN};
     for (std::size_t c = 0; c < 5; ++c) given.columns[c].second.push_back(row[c]);
   }
   return given;
@@ -52,7 +55,7 @@ TEST(RecordColumns, AreTheRecordThatTheirFileHolds) {
 
 TEST(RecordColumns, AreRefusedByRowColumnAndRemedy) {
   RecordColumns given = moving();
-  given.columns[2].second[7] = NAN;
+  given.columns[2].second[7] = kNaN;
   EXPECT_THAT(refusal_of(given), HasSubstr("mine: row 7, column x_m: nan is not a measured value; correct it"));
   given = moving();
   given.columns[1].second.pop_back();
