@@ -124,8 +124,7 @@ TEST(PlannedPath, ProgramsKeepToTheirPathAndTheirLimits) {
 
 /// More of them: AXIS_PATH_PROGRAMS=10000, of `make soak`.
 TEST(PlannedPath, RandomProgramsNeverExceedTheirLimits) {
-  const char* wanted = std::getenv("AXIS_PATH_PROGRAMS");
-  const int programs = wanted != nullptr ? std::atoi(wanted) : 40;
+  const int programs = path_test::programs_to_try();
   double slowest = 1.0;
   Seen worst;
   for (int seed = 1; seed <= programs && !HasFailure(); ++seed) {

@@ -75,8 +75,7 @@ class ThePathClock : public testing::TestWithParam<Disturbance> {};
 /// stop in time: along the bound of its change with the least headroom, and three of its ramps. More of them:
 /// AXIS_PATH_PROGRAMS=10000, of `make soak`.
 TEST_P(ThePathClock, HoldsTheAxesLimitsAndLeavesNoPath) {
-  const char* wanted = std::getenv("AXIS_PATH_PROGRAMS");
-  const int programs = wanted != nullptr ? std::atoi(wanted) : 40;
+  const int programs = path_test::programs_to_try();
   Seen worst;
   int longest_stop = 0;
   for (int seed = 1; seed <= programs && !HasFailure(); ++seed) {

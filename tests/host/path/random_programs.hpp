@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -9,12 +10,23 @@
 
 #include "firmware/core/path/path_follower.hpp"
 #include "host/path/path_words.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 
 namespace path_test {
 
 using host::PathCurve;
 using host::PathMove;
 using host::PathPoint;
+
+/// AXIS_PATH_PROGRAMS, or 40; a tenth of them where instrumentation makes each a hundred times slower.
+inline int programs_to_try() {
+  if (const char* wanted = std::getenv("AXIS_PATH_PROGRAMS")) return std::atoi(wanted);
+#ifdef AXIS_INSTRUMENTED
+  return 4;
+#else
+  return 40;
+#endif
+}
 
 inline constexpr double kCount_mm = 0.00244140625, kRate_Hz = 1000.0;
 inline constexpr double kVelocity = 250.0, kAcceleration = 2000.0, kJerk = 50'000.0;  // the paper's axes
