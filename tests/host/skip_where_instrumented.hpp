@@ -12,7 +12,7 @@
 #endif
 
 #ifdef AXIS_INSTRUMENTED
-#define AXIS_SKIP_WHERE_INSTRUMENTED() GTEST_SKIP() << "a diagnosis takes too long with sanitizers"
+#define AXIS_SKIP_WHERE_INSTRUMENTED() GTEST_SKIP() << "takes too long with sanitizers"
 #else
 #define AXIS_SKIP_WHERE_INSTRUMENTED() static_cast<void>(0)
 #endif
