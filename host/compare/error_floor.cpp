@@ -64,8 +64,8 @@ void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataShee
         w_variance += 0.5 * mean_square_difference(disturbed->w, nominal.w);
       }
     }
-    if (!std::isfinite(x_variance +
-                       w_variance)) {  // a model that runs away: its error is as bad as can be on any floor
+    // A model that runs away: its error is as bad as can be on any floor.
+    if (!std::isfinite(x_variance + w_variance)) {
       x_variance = motion.x_variance[window.begin];
       w_variance = motion.w_variance[window.begin];
     }
