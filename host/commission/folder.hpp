@@ -51,7 +51,7 @@ class CommissionFolder {
 
   bool is_done(std::size_t step) const;
   std::optional<std::size_t> first_undone() const;
-  void begin_at(std::size_t step);  ///< this one and all after it are to be done
+  void begin_at(std::size_t step);  ///< this one and all after it are to be done, the page too
   /// `said`: a sentence for the page.
   void finish(std::size_t step, const std::vector<std::string>& files, const std::string& said);
 
