@@ -44,7 +44,9 @@ CommissionStepResult climb_ladder(CommissionSession& session) {
   session.record(
       {"ladder-fast.csv", "ladder", {{middle, all.end()}, {{"hold", kFast_s}}}, "", 2.5 * kSpeeds * kFast_s});
   session.disable();
-  return {{"ladder-slow.csv", "ladder-fast.csv"}, fmt::format("From {:.3g} to {:.3g} a second.", lowest, highest)};
+  return {
+      {"ladder-slow.csv", "ladder-fast.csv"},
+      fmt::format("From {:.3g} to {:.3g} {}/s.", lowest, highest, units_of(session.options().sheet.data.kind).travel)};
 }
 
 CommissionStepResult find_friction(CommissionSession& session) {

@@ -135,7 +135,7 @@ BarChart errors_chart(const Page& page) {
       "The same jogs each time, made twice with each set. Before: the controller that identification of the base "
       "(inertia, friction) gives, with friction feed-forward and its disturbance estimate cancelled, or what the board "
       "ran. Floor: what the last set does not repeat; no parameter mends that. A contour needs two axes: once both are "
-      "commissioned, `axistool run` drives a circle and tells its contour error.";
+      "commissioned, axistool run drives a circle and tells its contour error.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())

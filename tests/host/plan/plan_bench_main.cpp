@@ -39,16 +39,20 @@ double likeness(const PlanTrial& trial) {
   return std::sqrt(square / static_cast<double>(own.size()) / (2.0 * trial.drive.tach_variance));
 }
 
-/// A line a pair that holds the truth; false where a separable pair came out wrong, or odds beyond a factor of three.
+constexpr double kMostOfJogs = 1.0 / 3.0;  // that a planned run may record
+
+/// A line a pair that holds the truth; false where a separable pair came out wrong, with odds beyond a factor of three,
+/// or by more recording than a third of the fixed jogs.
 bool print(const PlanTrial& trial, const TrialOutcome& outcome) {
-  bool good = !outcome.plan.separable || outcome.completed;
+  const double share = outcome.recorded_s / trial.jogs_s;
+  bool good = (!outcome.plan.separable || outcome.completed) && share <= kMostOfJogs;
   for (const PairOutcome& pair : outcome.pairs) {
     const bool within = pair.came <= 3.0 * pair.expected && pair.expected <= 3.0 * pair.came;
     const bool right = pair.separable ? pair.right && within : pair.by_hand;
     good = good && right;
-    fmt::print("{:<18} {:<18} {:<24} {:>8.4g} {:>8.4g}  {:<8} {:5.1f} {:5.2f} {:5.2f} {:6.1f}{}\n", trial.name, pair.a,
-               pair.b, pair.expected, pair.came, pair.separable ? (pair.right ? "right" : "WRONG") : "by hand",
-               outcome.recorded_s, outcome.error, likeness(trial), outcome.computed_s, right ? "" : "  <-");
+    fmt::print("{:<18} {:<18} {:<24} {:>8.4g} {:>8.4g}  {:<8} {:5.1f} {:5.2f} {:5.2f} {:5.2f} {:6.1f}{}\n", trial.name,
+               pair.a, pair.b, pair.expected, pair.came, pair.separable ? (pair.right ? "right" : "WRONG") : "by hand",
+               outcome.recorded_s, share, outcome.error, likeness(trial), outcome.computed_s, right ? "" : "  <-");
   }
   for (const host::RunPiece& piece : outcome.plan.run.pieces) fmt::print("    {}\n", host::piece_text(piece));
   std::fflush(stdout);
@@ -62,8 +66,8 @@ int main(int count, char** words) {
     fmt::print(stderr, "usage: {} FOLDER [CASE …]   (FOLDER: of the cases, with single/)\n", words[0]);
     return 2;
   }
-  fmt::print("{:<18} {:<18} {:<24} {:>8} {:>8}  {:<8} {:>5} {:>5} {:>5} {:>6}\n", "machine", "true", "rival",
-             "expected", "came", "answer", "run s", "error", "alike", "CPU s");
+  fmt::print("{:<18} {:<18} {:<24} {:>8} {:>8}  {:<8} {:>5} {:>5} {:>5} {:>5} {:>6}\n", "machine", "true", "rival",
+             "expected", "came", "answer", "run s", "jogs", "error", "alike", "CPU s");
   bool good = true;
   for (const PlanTrial& trial : trials_of(words[1], {words + 2, words + count}))
     good = print(trial, carried_out(trial)) && good;

@@ -15,6 +15,7 @@
 #include "host/model/model_file.hpp"
 #include "host/plan/experiment_plan.hpp"
 #include "host/plan/simulated_run.hpp"
+#include "host/record/read_record.hpp"
 #include "tests/host/plan/drive_cases.hpp"
 
 struct PlanTrial {
@@ -23,6 +24,7 @@ struct PlanTrial {
   sim::DriveDescription model;
   std::vector<host::Record> training;
   IndependentDrive drive;
+  double jogs_s = 0.0;  ///< what the case's fixed jogs take
 };
 
 /// How one pair of the group came out.
@@ -56,6 +58,8 @@ inline PlanTrial public_trial(const std::filesystem::path& folder) {
   trial.training = host::MeasurementGate(trial.model)
                        .read({folder / (has_steps ? "train-steps.csv" : "train-sweep.csv")})
                        .training();
+  const host::Record jogs = host::read_record(folder / "train-jog.csv");
+  trial.jogs_s = jogs.t_s.back() - jogs.t_s.front();
   trial.drive = drive_of_truth(truth);
   put_data_sheet(trial.drive, trial.model.data);
   return trial;
