@@ -56,13 +56,16 @@ CommissionStepResult find_friction(CommissionSession& session) {
     jogs.push_back(read_record(session.folder().require(file, "ladder")));
   const Measurements measured = MeasurementGate(rigid).admit(std::move(jogs));
   try {
-    const FrictionIdentification found = identify_friction(measured, rigid, FrictionMethod::joint);
+    FrictionIdentification found = identify_friction(measured, rigid, FrictionMethod::joint);
+    const nlohmann::json broke = session.folder().read_json("look.json").at("pulse").at("breakaway_V");
+    const bool is_levelled = level_static_friction(found.model, broke.at("positive"), broke.at("negative"));
     require_plausible(found.model, {});
     write_model(found.model, session.folder().path("model.toml"));
     session.folder().write_json("friction.json", friction_json(found));
     return {{"model.toml", "friction.json"},
-            fmt::format("{} constant speeds decide the curve, to {:.2g} {}.", found.points.size(), found.fit.rms,
-                        units_of(found.model.data.kind).effort)};
+            fmt::format("{} constant speeds decide the curve, to {:.2g} {}{}.", found.points.size(), found.fit.rms,
+                        units_of(found.model.data.kind).effort,
+                        is_levelled ? "; static friction is what it took to break away" : "")};
   } catch (const Failure& failure) {
     if (failure.code != ExitCode::refused) throw;
     write_model(rigid, session.folder().path("model.toml"));

@@ -33,6 +33,11 @@ CommissionStepResult climb_ladder(CommissionSession& session);
 /// Makes model.toml, of which the jogs decide the friction where they can.
 CommissionStepResult find_friction(CommissionSession& session);
 
+/// Static friction that the jogs leave undetermined (its interval is wider than its value), as where magnets bend the
+/// slowest of them, may come out at thirty times what slides, and no fit finds back from there: instead what broke the
+/// axis away, in volts each way, falling to what slides over the one speed that is known. Whether that was needed.
+bool level_static_friction(sim::DriveDescription& model, double forward_V, double backward_V);
+
 /// Makes response.json, response.html, raised-params.toml, response-after.json, and leaves a livelier controller to
 /// the later steps where the measured response allows one and the machine agrees.
 CommissionStepResult measure_response(CommissionSession& session);
