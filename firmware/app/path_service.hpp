@@ -26,6 +26,7 @@ class PathService {
 
   /// The axes of the mask are enabled and stand.
   Status open(const OpenPathRequest& request, OpenPathPayload& opened) {
+    if (request.node_format != kPathNodeFormat) return Status::wrong_version;
     if (request.mask == 0 || request.mask >> kAxes != 0 || request.relative > 1 || !is_possible(request.units))
       return Status::malformed;
     std::array<CountPosition, kAxes> start{};

@@ -371,7 +371,12 @@ firmware::ExcitationStatePayload BoardClient::excitation_state() {
 }
 
 firmware::OpenPathPayload BoardClient::open_path(const firmware::OpenPathRequest& wanted) {
-  return payload_of<firmware::OpenPathPayload>(request(MessageType::open_path, wanted));
+  const auto opened = payload_of<firmware::OpenPathPayload>(request(MessageType::open_path, wanted));
+  if (opened.node_format != wanted.node_format)
+    fail(ExitCode::protocol, fmt::format("the board reads a path's nodes in format {}, this axistool writes format {}: "
+                                         "flash the firmware of this axistool",
+                                         opened.node_format, wanted.node_format));
+  return opened;
 }
 
 bool BoardClient::path_nodes(std::span<const std::byte> nodes, firmware::PathStatePayload& state) {

@@ -6,11 +6,16 @@
 
 namespace firmware {
 
+/// What a node's first word holds has changed: 0 duration alone, 1 duration and headroom. Each end tells the other
+/// which nodes it means, so that neither reads the other's wrongly.
+inline constexpr std::uint8_t kPathNodeFormat = 1;
+
 struct OpenPathRequest {
   std::uint8_t mask = 0;      ///< axes, bit 0 is x
   std::uint8_t relative = 0;  ///< 1: axes need not be homed
   PathUnits units{};
-  std::array<std::uint8_t, 3> reserved{};
+  std::uint8_t node_format = kPathNodeFormat;  ///< another is refused: Status::wrong_version
+  std::array<std::uint8_t, 2> reserved{};
 };
 static_assert(sizeof(OpenPathRequest) == 8);
 
@@ -22,7 +27,9 @@ struct OpenPathPayload {
     std::uint32_t fraction = 0;  ///< 2^-32 counts
   };
   std::array<Position, hal::kMostAxes> axis{};
-  std::uint32_t room = 0;  ///< nodes that the board holds
+  std::uint16_t room = 0;  ///< nodes that the board holds
+  std::uint8_t node_format = kPathNodeFormat;
+  std::uint8_t reserved = 0;
 };
 static_assert(sizeof(OpenPathPayload) == kPayloadSize);
 

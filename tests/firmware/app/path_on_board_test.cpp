@@ -34,7 +34,7 @@ class PathOnBoard : public testing::Test {
   }
 
   Status open(bool relative = false) {
-    const firmware::OpenPathRequest request{3, static_cast<std::uint8_t>(relative ? 1 : 0), kUnits, {}};
+    const firmware::OpenPathRequest request{3, static_cast<std::uint8_t>(relative ? 1 : 0), kUnits};
     const firmware::Message reply = bench.ask(MessageType::open_path, request);
     if (reply.status != Status::ok) return reply.status;
     EXPECT_TRUE(reply.get(opened));
@@ -116,6 +116,16 @@ class PathOnBoard : public testing::Test {
 
 using Scalars = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(PathOnBoard, Scalars);
+
+/// What an older host's node says is not what this board would read.
+TYPED_TEST(PathOnBoard, RefusesAHostThatWritesNodesAnotherWay) {
+  firmware::OpenPathRequest request{3, 1, {}};
+  EXPECT_EQ(this->bench.ask(MessageType::open_path, request).status, Status::ok);
+  for (const int format : {0, firmware::kPathNodeFormat + 1}) {
+    request.node_format = static_cast<std::uint8_t>(format);
+    EXPECT_EQ(this->bench.ask(MessageType::open_path, request).status, Status::wrong_version) << format;
+  }
+}
 
 TYPED_TEST(PathOnBoard, EndsExactlyWhereItLeads) {
   ASSERT_EQ(this->open(), Status::ok);
