@@ -129,15 +129,6 @@ soak: ## A day of motion with sparks, jitter and drift, 10000 random paths, 50 c
 	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
 	AXIS_PATH_PROGRAMS=10000 $(BUILD)/bin/test_host_path --gtest_filter='*RandomPrograms*:*ThePathClock*'
 
-.PHONY: cortex-circle
-cortex-circle: firmware ## The circle on the emulated Cortex-M board over USB/IP, on a computer quick enough for two emulators to keep pace
-	$(NEED) build test
-	$(call configure,$(BUILD))
-	ninja -C $(BUILD) -j $(JOBS) axistool cortex_bridge guest_cortex_m
-	GUEST_FILES=$(BUILD)/bin/axistool:$(BUILD)/bin/cortex_bridge:tests/data/drive-cases/none/case-00 \
-	  tests/guest/with_cortex_m.sh $(BUILD)/firmware/images/qemu-usb.elf $(BUILD)/packages/guest \
-	  $(BUILD)/bin/guest_cortex_m --gtest_also_run_disabled_tests '--gtest_filter=*Circle*'
-
 .PHONY: response
 response: ## How often measured frequency responses lie within their own bands, over 200 seeds (SEEDS=n)
 	$(NEED) build test

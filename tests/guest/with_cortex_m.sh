@@ -2,7 +2,8 @@
 # with_cortex_m.sh IMAGE.elf CACHE PROGRAM [ARGUMENT...]: run.sh, and beside it the emulated Cortex-M board, whose reports
 # the guest sees at /dev/vport*. Beside it, because an emulator inside an emulator is too slow for 1 kHz. Its time goes by
 # its instructions, 250 million a second, and by the clock while it rests: on a loaded computer it runs slowly, but misses
-# no control period.
+# no control period. The bridge in the guest tells it how the guest's time goes on, and it goes no further: whichever of
+# the two emulators is the slower, the other waits.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 image=$(readlink -f "$1")

@@ -1,5 +1,6 @@
 // The board's application, protocol and store on the emulated processor, its reports over files to_board and
 // from_board: the other end of this cable has a USB controller. Each axis has a drive, which is computed here too.
+#include <algorithm>
 #include <atomic>
 
 #include "firmware/app/protocol/server.hpp"
@@ -28,6 +29,11 @@ constexpr std::uint32_t kClock_Hz = 168'000'000;  // QEMU gives the chip its 168
 [[gnu::section(".noinit")]] MemoryFlash::Cells flash_cells;
 hal::qemu::HostStream stream;
 std::atomic<std::uint32_t> control_time_us = 0;  // at the control interrupt's last start
+
+// Two emulators have two times, and either may pass the slower: the board's goes on only as far as the computer's has,
+// and as long as a computer that is the quicker may have to wait for it.
+std::atomic<std::uint32_t> computer_time_us = 0;
+constexpr std::uint32_t kMostBehind_us = 20'000;
 
 class EmulatedBoard {
  public:
@@ -68,6 +74,12 @@ class EmulatedBoard {
   void restart() { reset_processor(); }
 
   std::uint32_t period_us() const { return period_us_; }
+  /// Whether the computer's time has gone on by another period.
+  bool has_time() const { return computer_time_us - control_time_us >= period_us_; }
+  void take_computer_time() {
+    const std::uint32_t now_us = control_time_us;
+    computer_time_us = now_us + std::min(computer_time_us - now_us + usb_.take_passed_us(), kMostBehind_us);
+  }
 
   /// The drives' motion in the period that has passed, and what is read of it.
   void advance_drives() {
@@ -105,6 +117,7 @@ void make_outputs_safe() noexcept {}
 
 extern "C" void control_interrupt() {
   using namespace firmware::boards;
+  if (!board.has_time()) return;
   control_time_us = control_time_us + board.period_us();
   board.advance_drives();
   application.control_period();
@@ -129,6 +142,7 @@ extern "C" [[noreturn]] void run_board() {
     constexpr int kRounds = 4;
     for (int rounds = kRounds; rounds > 0; --rounds) {
       if (board.usb().poll()) rounds = kRounds;
+      board.take_computer_time();
       server.poll(board.usb(), use);
       stream.flush();
     }

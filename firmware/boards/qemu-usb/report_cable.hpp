@@ -2,6 +2,9 @@
 // end; the other belongs to a program that has the controller, and tells the board what the bus does.
 #pragma once
 
+#include <cstring>
+#include <utility>
+
 #include "firmware/boards/pil/frame.hpp"
 #include "hal/serial_port.hpp"
 #include "hal/tinyusb/report_queue.hpp"
@@ -16,10 +19,11 @@ enum class CableMessage : std::uint8_t {
   unconfigured = 'U',  ///< to the board
   report = 'R',
   taken = 'T',  ///< the receiver's program has taken a report: there is room for another
+  time = 'M',   ///< to the board: microseconds that have passed for the computer since the last, u32
 };
 
-/// Reports for which each end has room. The computer has many more: two emulators have two times, and its own may stand
-/// still while the board's runs on; these are 65 s of a report each control period at 1 kHz.
+/// Reports for which each end has room. The computer has many more: its own programs may rest while the board's time
+/// runs on; these are 65 s of a report each control period at 1 kHz.
 inline constexpr std::size_t kBoardRoom = 4, kComputerRoom = 65536;
 
 /// One end. It sends as many reports as the other has room for, so none is lost and no end ever waits.
@@ -35,6 +39,14 @@ class ReportCable {
     begin_anew(configured);
     tell(configured ? CableMessage::configured : CableMessage::unconfigured);
   }
+  /// For the computer: what its clock has gone on by.
+  void pass_time(std::uint32_t passed_us) {
+    std::array<std::byte, 1 + sizeof passed_us> payload{static_cast<std::byte>(CableMessage::time)};
+    std::memcpy(payload.data() + 1, &passed_us, sizeof passed_us);
+    tell(payload);
+  }
+  /// For the board: that time, since it was last asked for.
+  std::uint32_t take_passed_us() { return std::exchange(passed_us_, 0u); }
   /// For the computer: true once after each start of the board.
   bool heard_hello() {
     const bool heard = heard_hello_;
@@ -92,6 +104,9 @@ class ReportCable {
       case CableMessage::taken:
         if (room_ < other_room) ++room_;
         break;
+      case CableMessage::time:
+        take_time(payload.subspan(1));
+        break;
     }
   }
 
@@ -100,6 +115,13 @@ class ReportCable {
     if (!configured_ || bytes.size() != report.size()) return;
     std::copy(bytes.begin(), bytes.end(), report.begin());
     arrived_.put(report);
+  }
+
+  void take_time(std::span<const std::byte> bytes) {
+    std::uint32_t passed_us = 0;
+    if (bytes.size() != sizeof passed_us) return;
+    std::memcpy(&passed_us, bytes.data(), sizeof passed_us);
+    passed_us_ += passed_us;
   }
 
   void begin_anew(bool configured) {
@@ -112,6 +134,7 @@ class ReportCable {
   FrameReceiver<1 + hal::kHidReportSize> receiver_;
   hal::tinyusb::ReportQueue<own_room> arrived_;
   std::size_t room_ = other_room;
+  std::uint32_t passed_us_ = 0;
   bool configured_ = false;
   bool heard_hello_ = false;
 };

@@ -84,7 +84,13 @@ void run(const char* path, const char* serial_number) {
   if (!usb.start(serial_number)) throw std::runtime_error("no USB stack");
   std::unique_ptr<hal::usbip::UsbipController> controller;
   Lane to_board, to_host;
+  auto told = std::chrono::steady_clock::now();
   for (;;) {
+    const auto passed = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - told);
+    if (passed >= 1ms) {
+      cable.pass_time(static_cast<std::uint32_t>(passed.count()));
+      told += passed;
+    }
     while (cable.poll()) continue;
     if (cable.heard_hello()) {  // the board has started: as on a real one, its controller is plugged in anew
       controller.reset();
@@ -93,6 +99,7 @@ void run(const char* path, const char* serial_number) {
       controller = std::make_unique<hal::usbip::UsbipController>(hal::usbip::plug_into_vhci(), usb);
     }
     if (!controller) {
+      stream.flush();
       std::this_thread::sleep_for(1ms);
       continue;
     }

@@ -4,20 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "firmware/app/store/parameter_store.hpp"
 #include "host/device/board_client.hpp"
 #include "host/exit_codes.hpp"
-#include "host/model/model_file.hpp"
 #include "host/record/read_record.hpp"
 #include "tests/firmware/app/paper_values.hpp"
 #include "tests/guest/support/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
-#include "tests/guest/support/path_in_process.hpp"
+#include "tests/guest/support/path_bench.hpp"
 #include "tests/host/temporary_folder.hpp"
 #include "tests/run_program.hpp"
 
@@ -32,12 +29,11 @@ using testing::HasSubstr;
 class CortexM : public testing::TestWithParam<host::HidBackend> {
  protected:
   static void SetUpTestSuite() {
-    if (!guest_test::in_guest()) return;
+    if (!guest_test::in_guest() || bridge) return;
     for (const auto& entry : std::filesystem::directory_iterator("/dev"))
       if (entry.path().filename().string().rfind("vport", 0) == 0)
         bridge.emplace(std::vector<std::string>{CORTEX_BRIDGE, entry.path(), "CORTEX"});
   }
-  static void TearDownTestSuite() { bridge.reset(); }
 
   void SetUp() override {
     if (!guest_test::in_guest()) GTEST_SKIP() << "runs in the guest: tests/guest/with_cortex_m.sh";
@@ -78,7 +74,7 @@ class CortexM : public testing::TestWithParam<host::HidBackend> {
   }
 
   TemporaryFolder folder_;
-  static std::optional<Child> bridge;
+  static std::optional<Child> bridge;  ///< for all tests: the board stays where it is
 };
 std::optional<Child> CortexM::bridge;
 
@@ -124,32 +120,24 @@ TEST_P(CortexM, ServesTheCommands) {
   EXPECT_EQ(host::read_record(record).size(), 10000u) << "at 1 kHz";
 }
 
-/// Four turns of the paper's circle with the drives that the image computes, against the host's simulation of the same
-/// drives in one process. Run by `make cortex-circle` alone: the two emulators have two times, and where the guest's
-/// passes more slowly its stream starves the board, which then stops on the path as it must.
-TEST_P(CortexM, DISABLED_FollowsTheCircleAsNearAsInOneProcess) {
-  const std::string model = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml";
-  const std::string x = folder_.path("x.toml"), y = folder_.path("y.toml"), program = folder_.path("circle.ngc");
-  ASSERT_EQ(run("design " + model + " -o " + x).exit_code, 0);
-  std::ifstream in(x);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  for (std::size_t at = 0; (at = text.find("[x.", at)) != std::string::npos;) text[at + 1] = 'y';
-  std::ofstream(y) << text;
-  const std::string turn = "G3 X0 Y0 I35 J0\n", circle = "F10200 " + turn + turn + turn + turn + "M2\n";
-  std::ofstream(program) << circle;
-  ASSERT_EQ(run("set-params " + x + " host.timeout=10").exit_code, 0);
-  ASSERT_EQ(run("set-params " + y).exit_code, 0);
-  for (const char* axis : {"x", "y"}) ASSERT_EQ(run(std::string("home ") + axis + " --here").exit_code, 0);
-  const ProgramRun done = run("run " + program + " --yes --json -", "2>/dev/null");
-  ASSERT_EQ(done.exit_code, 0) << done.output;
-  const auto by_usb = nlohmann::json::parse(done.output);
-  EXPECT_EQ(by_usb["stopped_because"], "completed");
-  EXPECT_EQ(by_usb["lost_rows"], 0);
-  const double rms_um = by_usb["contour_rms_um"];
-  const double alone_um = guest_test::contour_rms_in_process(host::read_model(model), {x, y}, circle);
-  std::cout << "contour error of the emulated board " << rms_um << " um rms; in one process " << alone_um << "\n";
-  EXPECT_NEAR(rms_um, alone_um, 0.05 * alone_um);
-}
+/// A board that has other parameters from the tests before, with drives that its image computes: the float arithmetic
+/// and the interrupt are the target's. Against the host's simulation of the same drives.
+class CortexMPath : public CortexM {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(CortexM::SetUp());
+    if (!IsSkipped()) restart();  // without the faults of the test before
+  }
+
+  guest_test::PathBench bench_{"CORTEX", GetParam(), AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml"};
+};
+
+TEST_P(CortexMPath, FollowsTheCircleAsNearAsInOneProcess) { bench_.follow_circle(); }
+TEST_P(CortexMPath, AKilledHostLeavesAxesThatStandOnThePath) { bench_.kill_host(); }
+TEST_P(CortexMPath, AStarvedPathEndsOnThePath) { bench_.starve(); }
+
+INSTANTIATE_TEST_SUITE_P(Hidapi, CortexMPath, testing::Values(host::HidBackend::hidraw),
+                         [](const auto& chosen) { return std::string(host::name_of(chosen.param)); });
 
 INSTANTIATE_TEST_SUITE_P(Hidapi, CortexM, testing::Values(host::HidBackend::hidraw, host::HidBackend::libusb),
                          [](const auto& chosen) { return std::string(host::name_of(chosen.param)); });
