@@ -11,6 +11,13 @@
 #endif
 #endif
 
+/// Whether this is compiled with sanitizers: tests that repeat one thing repeat it less often then.
+#ifdef AXIS_INSTRUMENTED
+inline constexpr bool kInstrumented = true;
+#else
+inline constexpr bool kInstrumented = false;
+#endif
+
 #ifdef AXIS_INSTRUMENTED
 #define AXIS_SKIP_WHERE_INSTRUMENTED() GTEST_SKIP() << "takes too long with sanitizers"
 #else

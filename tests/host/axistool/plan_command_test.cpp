@@ -8,6 +8,7 @@
 
 #include "host/record/read_record.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -44,6 +45,7 @@ const char* const kBox = " --box travel=80,speed=200,volts=4,time=8 ";
 /// Catches a run that excite cannot carry out, a record that diagnose does not know again, odds that are not taken
 /// over.
 TEST_F(Plan, SeparatesMakesAndDecides) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   ASSERT_EQ(excite(std::string("steps") + " --box travel=80,speed=200,volts=4,time=3", "steps.csv").exit_code, 0);
   const ProgramRun planned = run_axistool("plan " + file("model.toml") + " --train " + file("steps.csv") +
                                           " --rivals current_loop_lag,input_delay" + kBox + "-o " + file("run.toml") +

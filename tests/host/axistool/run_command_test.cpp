@@ -10,6 +10,7 @@
 #include "host/record/read_record.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
 #include "tests/host/axistool/simulated_board.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -99,6 +100,7 @@ int signalled_on_the_circle(const SimulatedBoardProcess& board, const std::strin
 }
 
 TEST_F(RunCommand, AnInterruptStopsOnThePath) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();
   const std::string circle = written("circle.ngc", "F300 G3 X0 Y0 I35 J0\nM2\n");
   EXPECT_EQ(signalled_on_the_circle(board_, circle, " --yes --json " + file("run.json"), SIGINT), 1);
@@ -111,6 +113,7 @@ TEST_F(RunCommand, AnInterruptStopsOnThePath) {
 
 /// Whoever kills the program leaves a board that stops by itself, and says why.
 TEST_F(RunCommand, AKilledHostIsNamed) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   fit();
   ASSERT_EQ(run("set-params host.timeout=1").exit_code, 0);
   const std::string circle = written("circle.ngc", "F300 G3 X0 Y0 I35 J0\nM2\n");

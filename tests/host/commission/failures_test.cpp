@@ -10,6 +10,7 @@
 #include <random>
 
 #include "tests/host/commission/own_machine.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -96,7 +97,7 @@ int trials(int usual) {
 /// The program dies, or its cable is pulled: nobody tells the board to stop, and it does.
 TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
   std::mt19937 random(11);
-  for (int trial = 0; trial < trials(20); ++trial) {
+  for (int trial = 0; trial < trials(kInstrumented ? 2 : 20); ++trial) {
     const TemporaryFolder folder;
     OwnBoard board;
     board.reports_left = std::uniform_int_distribution<long>(1, 14000)(random);
@@ -122,7 +123,7 @@ TEST(CommissioningGoesWrong, WhereTheHostGoesAtAnyMoment) {
 /// whole. A commissioning that was killed goes on, on a board that somebody switched on again.
 TEST(CommissioningGoesWrong, WhereTheProgramIsKilledAtAnyMoment) {
   std::mt19937 random(17);
-  for (int trial = 0; trial < trials(10); ++trial) {
+  for (int trial = 0; trial < trials(kInstrumented ? 2 : 10); ++trial) {
     const TemporaryFolder folder;
     const long reports = std::uniform_int_distribution<long>(1, 14000)(random);
     const pid_t child = ::fork();

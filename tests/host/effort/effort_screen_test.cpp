@@ -11,6 +11,7 @@
 
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "sim/harmonic.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
 
@@ -81,6 +82,7 @@ std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record
 
 // A screen that stops at one order, counts orders over a wrong period or mistakes the sign leaves more.
 TEST(EffortScreen, FindsFiveOrdersOfCoggingInASlowRecord) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::Record train = record_of(slow_turning, five_orders, 0.0, 20.0, 1);
   const host::Record validate = record_of(slow_turning, five_orders, 23.0, 36.0, 2);
   std::shared_ptr<const host::EffortScreen> seen;
@@ -125,6 +127,7 @@ TEST(EffortScreen, SeesAWeightInPartOfATurn) {
 
 // What a model has already, in a form that is not linear, must not be looked for again.
 TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto dragging = [](const Point& point) {
     return std::copysign(0.02, point.w) * std::exp(-std::abs(point.w) / 2.0);
   };
@@ -143,6 +146,7 @@ TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
 
 // A machine that has warmed up between the records lacks no effect, and its state is told.
 TEST(EffortScreen, TellsFrictionThatDiffersBetweenTheRecords) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto cold = [](const Point&) { return 0.0; };
   const auto warm = [](const Point& point) { return -std::copysign(0.3 * kCoulomb, point.w); };
   const host::Record train = record_of(slow_turning, cold, 0.0, 12.0, 12);

@@ -11,6 +11,7 @@
 #include "host/response/loop_design.hpp"
 #include "host/response/response_measurement.hpp"
 #include "host/simulated_board/simulated_link.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
 
@@ -45,6 +46,7 @@ host::LoopAim aim(bool seek_notch) {
 double worst_contour_um(const host::ScenarioRun& run) { return *std::ranges::max_element(run.contour_um); }
 
 TEST(Notch, LetsTheBandwidthRiseByAThirdAtTheSameMarginAndTheCircleGainsByIt) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const std::string folder = AXIS_TEST_DATA "/../../host/hil/scenarios/";
   host::Scenario plain = host::read_scenario(folder + "compliance.toml");
   host::Scenario notched = plain;

@@ -4,6 +4,7 @@
 
 #include "host/exit_codes.hpp"
 #include "tests/host/plan/plan_trial.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
 
@@ -29,6 +30,7 @@ void expect_decided(const PlanTrial& trial) {
 }
 
 TEST(ExperimentPlan, TellsADeadZoneFromFrictionThatGrowsWithTheLoad) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const PlanTrial dead_zone = public_trial(shipped("case-09"));
   expect_decided(dead_zone);
   expect_decided(with_load_dependent_friction(dead_zone));
@@ -37,6 +39,7 @@ TEST(ExperimentPlan, TellsADeadZoneFromFrictionThatGrowsWithTheLoad) {
 TEST(ExperimentPlan, TellsADelayFromALag) { expect_decided(public_trial(shipped("case-06"))); }
 
 TEST(ExperimentPlan, LeavesToHandsWhatNoMotionSeparates) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   // Without static friction a constant torque, friction by direction and an offset are one and the same.
   const TrialOutcome outcome = carried_out(with_level(public_trial(shipped("case-06")), "constant_torque", 0.15));
   EXPECT_FALSE(outcome.plan.separable);
