@@ -200,7 +200,7 @@ class Errors(unittest.TestCase):
     def test_ctrl_c_ends_a_diagnosis(self) -> None:
         """From another thread of Python, which runs because the library does not keep the interpreter's lock. What ends
         where it is has computed a tenth of the whole; what only says so at its end, all."""
-        case = CASES / "none" / "case-01"
+        case = CASES / "pairs" / "case-00"
         begun = threading.Event()
 
         def press() -> None:
