@@ -29,12 +29,17 @@ double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) 
          scale.bound * static_cast<double>(candidate.on_bound.size());
 }
 
-/// That a base with these errors lacks nothing.
+/// That a base with these errors, and with what the verdict objects to it, lacks nothing.
 double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& scale) {
   const double windows = static_cast<double>(
       std::max<std::size_t>(1, std::min(diagnosis.training.used_windows(), diagnosis.validation.used_windows())));
   const double error = std::max({diagnosis.before_train, diagnosis.before_validate, 0.5 * kComplete});
-  return logistic((std::log(scale.complete) - std::log(error)) / (scale.complete_by + 0.25 / std::sqrt(windows)));
+  const Status status = diagnosis.verdict.status;
+  const double objected = status == Status::insufficient_data ? scale.unshown
+                          : status == Status::unexplained     ? scale.traced
+                                                              : 0.0;
+  return logistic((std::log(scale.complete) - std::log(error)) / (scale.complete_by + 0.25 / std::sqrt(windows)) -
+                  objected);
 }
 
 }  // namespace

@@ -14,12 +14,15 @@ struct ProbabilityScale {
   double bound = 0.15;        ///< the same for a parameter at the end of its range
   double complete = 1.25;     ///< error over floor at which a base is as probably complete as not
   double complete_by = 0.05;  ///< width of that step in log error, with many windows
+  double unshown = 1.8;       ///< log odds off "nothing" where the records would not have shown all that may be missing
+  double traced = 3.0;        ///< the same where what is left is small but no noise
   double other_at = 0.12;     ///< unexplained part at which something else is as probable as the best candidate
   double other_slope = 2.4;   ///< of the log odds over the log of that part
   double rough = 3.5;  ///< log odds that a rough machine, which lacks many small things, takes off "something else"
 };
 
-/// Fills `probability` of all candidates and both probabilities of the verdict; together they are 1.
+/// Fills `probability` of all candidates and both probabilities of the verdict, whose status is known; together they
+/// are 1.
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale = {});
 
 }  // namespace host

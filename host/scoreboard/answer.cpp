@@ -80,6 +80,9 @@ Answer answer_of(const std::string& name, const std::string& group, const Truth&
                 seconds,
                 outcome_of(truth, diagnosis.verdict),
                 {}};
+  if (diagnosis.verdict.probability_nothing + diagnosis.verdict.probability_other <= 0.0 &&
+      diagnosis.candidates.empty())
+    return answer;  // too short to be searched: nothing was forecast
   bool among = false;
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
     const bool is_it = !truth.alien && std::ranges::is_permutation(candidate.kinds, truth.effects);

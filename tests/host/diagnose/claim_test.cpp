@@ -135,4 +135,19 @@ TEST(Probability, ASmallErrorIsProbablyNothing) {
   EXPECT_NEAR(sum_of(complete), 1.0, 1e-12);
 }
 
+/// Whoever is told that the records do not suffice, or that what is left is no noise, is not told that all is well.
+TEST(Probability, AnObjectionToTheAllClearIsOneToNothing) {
+  host::Diagnosis complete = diagnosis(0.85, 0.95);
+  host::assign_probabilities(complete);
+  const double clear = complete.verdict.probability_nothing;
+  complete.verdict.status = host::Status::insufficient_data;
+  host::assign_probabilities(complete);
+  const double unshown = complete.verdict.probability_nothing;
+  complete.verdict.status = host::Status::unexplained;
+  host::assign_probabilities(complete);
+  EXPECT_LT(unshown, clear);
+  EXPECT_LT(complete.verdict.probability_nothing, unshown);
+  EXPECT_NEAR(sum_of(complete), 1.0, 1e-12);
+}
+
 }  // namespace
