@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kMostSamples = 30;
 constexpr double kWhole = 0.1;         ///< a shift this near to a whole number of samples was made by a logger
+constexpr double kPlain = 0.05;        ///< as was one that leaves no more than this part of the squares
 constexpr double kLogLikelihood = 20;  ///< difference that decides between two explanations
 
 /// Smallest of values over shifts -kMostSamples..kMostSamples, between samples by a parabola; empty at the ends.
@@ -89,10 +90,12 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
     squares.push_back(squares_left(regressors, measured));
   }
   const std::optional<double> shift = lowest_shift(squares);
-  if (!shift || std::abs(*shift) < 0.5 || std::abs(*shift - std::round(*shift)) > kWhole) return {};
+  if (!shift || std::abs(*shift) < 0.5) return {};
   // Below the cut-off white noise has so many independent samples.
   const double independent = static_cast<double>(inner) * 2.0 * cutoff_Hz / rate_Hz;
   const auto index = static_cast<std::size_t>(std::lround(*shift) + kMostSamples);
+  const bool whole = std::abs(*shift - std::round(*shift)) <= kWhole;
+  if (!whole && squares[index] > kPlain * squares[kMostSamples]) return {};
   const auto better = [&](double other) { return 0.5 * independent * std::log(other / squares[index]); };
   if (better(squares[kMostSamples]) < kLogLikelihood) return {};
   if (*shift > 0.0) {
@@ -108,7 +111,7 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
       if (better(squares_left(regressors, measured)) < kLogLikelihood) return {};
     }
   }
-  return std::round(*shift);
+  return whole ? std::round(*shift) : *shift;
 }
 
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {

@@ -52,6 +52,14 @@ void report_jumps(const Record& record, const PositionJumps& jumps, FaultList& f
         fmt::format("jumps by {:.6g} {} at t = {:.4g} s{}, far more than the drive can move in one sample: a new "
                     "zero (homing) or a disturbed encoder; split the record there",
                     jumps.first_new_zero.size, unit, jumps.first_new_zero.t_s, times(jumps.new_zeros)));
+  if (jumps.late > 0)
+    faults.add(
+        LogFaultKind::uneven_clock, &Record::x, jumps.first_late.t_s, static_cast<double>(jumps.late),
+        fmt::format("comes late and catches up in one sample at t = {:.4g} s{}: the time stamps jitter, or stand in "
+                    "for samples that are missing; trust no acceleration from it there, and log the sampler's own "
+                    "counter",
+                    jumps.first_late.t_s, times(jumps.late)),
+        false);
   if (jumps.dropped > 0)
     faults.add(LogFaultKind::dropped_samples, &Record::x, jumps.first_drop.t_s, static_cast<double>(jumps.dropped),
                fmt::format("{} samples are missing or repeated though the time stamps go on, first at t = {:.4g} s: "
@@ -191,7 +199,7 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
   if (const std::optional<double> samples = tachometer_shift(record, model.data)) {
     const double shift_s = *samples * record.sample_period_s;
     faults.add(LogFaultKind::time_shift, &Record::w, record.t_s.front(), shift_s,
-               fmt::format("runs {:g} ms ({} samples) {} the position: shift it back before comparing",
+               fmt::format("runs {:.3g} ms ({:.3g} samples) {} the position: shift it back before comparing",
                            1e3 * std::abs(shift_s), std::abs(*samples), shift_s > 0.0 ? "behind" : "ahead of"),
                false);
   }

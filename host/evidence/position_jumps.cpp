@@ -34,6 +34,25 @@ double usual_change(const std::vector<double>& x) {
   return *rank;
 }
 
+/// Whether the step to row `k` makes up for slower ones before it, so that over all of them the axis keeps its speed:
+/// the rows between were late, or were filled in.
+bool catches_up(const std::vector<double>& x, std::size_t k) {
+  constexpr std::size_t kMostRows = 50, kAround = 20;
+  constexpr double kSlow = 0.6, kKept = 0.5;  // of the speed; a new zero has no stalled rows before it
+  std::vector<double> steps;
+  for (std::size_t row = k < kAround ? 1 : k - kAround + 1; row < std::min(k + kAround, x.size()); ++row)
+    steps.push_back(x[row] - x[row - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  const double speed = *middle;
+  for (std::size_t rows = 2; rows <= kMostRows && rows < k; ++rows) {
+    if (std::abs(x[k - rows + 1] - x[k - rows]) > kSlow * std::abs(speed)) return false;
+    const double travel = x[k] - x[k - rows], expected = static_cast<double>(rows) * speed;
+    if (std::abs(travel - expected) < kKept * std::abs(expected)) return true;
+  }
+  return false;
+}
+
 void note(std::size_t& count, PositionJump& first, std::size_t more, double t_s, double size) {
   if (count == 0) first = {t_s, size};
   count += more;
@@ -79,6 +98,8 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
       jumps.wrap_bits = bits;
     } else if (whole) {
       note(jumps.dropped, jumps.first_drop, static_cast<std::size_t>(std::lround(samples)), record.t_s[k], jump);
+    } else if (catches_up(record.x, k)) {
+      note(jumps.late, jumps.first_late, 1, record.t_s[k], jump);
     } else if (std::abs(jump) > kJitter * std::max(std::abs(before), std::abs(after))) {
       note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
     }

@@ -21,7 +21,10 @@ struct PositionJumps {
   PositionJump first_new_zero;
   std::size_t dropped = 0;  ///< samples that are missing or repeated, all together
   PositionJump first_drop;
+  std::size_t late = 0;  ///< steps that catch up with a motion that the rows before had fallen behind
+  PositionJump first_late;
 
+  /// None that changes where the axis is: late rows do not.
   bool none() const { return wraps == 0 && new_zeros == 0 && dropped == 0; }
 };
 

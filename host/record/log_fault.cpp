@@ -14,6 +14,7 @@ constexpr Row kRows[] = {
     {"new_zero", "jump", "cut the record there with axistool cut"},
     {"dropped_samples", "gap",
      "record again, cut the record there with axistool cut, or fill it knowingly with axistool import --resample"},
+    {"uneven_clock", "jitter", "import the sampler's own time stamps with axistool import --resample"},
     {"derived_channel", "duplicate", "log the tachometer, or leave the column out"},
     {"command_sign", "sign", "turn the sign of the command, or of position and speed, with axistool import --map"},
     {"command_scale", "unit", "scale the column with axistool import --map, or mend the gains of the data sheet"},

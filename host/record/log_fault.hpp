@@ -13,6 +13,7 @@ enum class LogFaultKind {
   integer_wrap,      ///< a counter of n bits ran over
   new_zero,          ///< the position jumps by what no axis can move
   dropped_samples,   ///< samples are missing, by their time stamps or by a jump of whole samples' travel
+  uneven_clock,      ///< samples come late under steady time stamps, and the next one catches up
   derived_channel,   ///< the speed is the difference of the position, not a measurement
   command_sign,      ///< the axis accelerates against its command
   command_scale,     ///< the command is not in volts, by far

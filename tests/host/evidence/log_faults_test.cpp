@@ -96,6 +96,26 @@ TEST_F(LogFaults, TachometerLateByWholeSamples) {
   expect_only(LogFaultKind::time_shift, "w_rad_s", 0.004, 1e-9);
 }
 
+/// As of a logger that puts channels of two clocks on one.
+TEST_F(LogFaults, TachometerLateByPartsOfASample) {
+  for (std::size_t k = record.size() - 1; k >= 9; --k) record.w[k] = 0.4 * record.w[k - 8] + 0.6 * record.w[k - 9];
+  const auto faults = host::log_faults(record, model);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].kind, LogFaultKind::time_shift);
+  EXPECT_NEAR(faults[0].size, 0.0086, 0.0001);
+  EXPECT_FALSE(faults[0].fatal);
+}
+
+/// As of a host that was busy, whose log was interpolated: the axis itself went on.
+TEST_F(LogFaults, RowsThatComeLateAreNoNewZero) {
+  for (std::size_t k = 1001; k < 1007; ++k) record.x[k] = record.x[1000] + 0.01 * static_cast<double>(k - 1000);
+  const auto faults = host::log_faults(record, model);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].kind, LogFaultKind::uneven_clock) << faults[0].message;
+  EXPECT_NEAR(faults[0].t_s, 1.007, 1e-9);
+  EXPECT_FALSE(faults[0].fatal);
+}
+
 TEST_F(LogFaults, TachometerFilterIsPhysics) {
   const double keep = std::exp(-1.0 / 3.0);  // 3 ms
   double held = 0.0;
