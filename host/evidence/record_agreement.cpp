@@ -163,7 +163,9 @@ std::optional<Disagreement> record_disagreement(const std::vector<const Record*>
     if (!here || !there) continue;
     const double factor = here->gain.value / there->gain.value, off = std::abs(factor - 1.0);
     const double doubt = here->gain.half_width() + there->gain.half_width();
-    if (off < kTachometer || off < kStandsOut * doubt) continue;
+    // Where the speed hardly changes, a gain beside an offset is that of the clock's jitter; a scale turns the whole.
+    const double whole = std::abs(here->proportion / there->proportion - 1.0);
+    if (off < kTachometer || off < kStandsOut * doubt || whole < 0.5 * off) continue;
     if (!worst || off > std::abs(worst->factor - 1.0)) worst = Disagreement{r, &Record::w, factor, false};
   }
   return worst ? worst : rigid_disagreement(by, judged, data);

@@ -82,7 +82,7 @@ void warn_of_tachometer(Identification& result, bool corrected) {
   if (!result.tachometer) return;
   constexpr double kGainOff = 0.002;   // moves B by several per cent
   constexpr double kOffsetOff = 0.05;  // rad/s: a tenth of the paper's dead band
-  const auto [gain, offset] = *result.tachometer;
+  const Estimate &gain = result.tachometer->gain, &offset = result.tachometer->offset;
   const bool gain_off = std::abs(gain.value - 1.0) > std::max(kGainOff, gain.half_width());
   const bool offset_off = result.model.data.kind == sim::DriveKind::rotary &&
                           std::abs(offset.value) > std::max(kOffsetOff, offset.half_width());

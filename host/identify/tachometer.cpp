@@ -31,6 +31,7 @@ std::optional<TachometerCalibration> calibrate_tachometer(const std::vector<Reco
   if (!(travelled > 0.0) || travelled < kLeastSteps * step) return std::nullopt;
 
   BlockedRegression<2> regression(rows_per_block(windows, kWindow_s));
+  double product = 0.0, square = 0.0;
   for (const Record& record : records) {
     const auto length = static_cast<std::size_t>(std::max(1.0, std::round(kWindow_s / record.sample_period_s)));
     for (std::size_t start = 0; start + length < record.size(); start += length) {
@@ -38,6 +39,8 @@ std::optional<TachometerCalibration> calibrate_tachometer(const std::vector<Reco
       for (std::size_t k = start + 1; k < start + length; ++k) integral += record.w[k];
       const double angle = (record.x[start + length] - record.x[start]) / data.lead;
       regression.add({angle, record.sample_period_s * static_cast<double>(length)}, integral * record.sample_period_s);
+      product += angle * integral * record.sample_period_s;
+      square += angle * angle;
     }
     regression.end_block();
   }
@@ -47,7 +50,7 @@ std::optional<TachometerCalibration> calibrate_tachometer(const std::vector<Reco
     const double half = found.t_quantile * std::sqrt(found.covariance(k, k));
     return Estimate{found.parameters(k), {found.parameters(k) - half, found.parameters(k) + half}};
   };
-  return TachometerCalibration{estimate(0), estimate(1)};
+  return TachometerCalibration{estimate(0), estimate(1), product / square};
 }
 
 void apply_calibration(const TachometerCalibration& calibration, std::vector<Record>& records) {

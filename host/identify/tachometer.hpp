@@ -11,8 +11,9 @@ namespace host {
 
 /// w_measured = gain * w + offset + noise.
 struct TachometerCalibration {
-  Estimate gain;    ///< 1 is right
-  Estimate offset;  ///< rad/s or m/s
+  Estimate gain;            ///< 1 is right
+  Estimate offset;          ///< rad/s or m/s
+  double proportion = 1.0;  ///< gain of a tachometer without offset: known from a single speed, too
 };
 
 /// Compares the tachometer's integral with the encoder's travel over windows of 0.1 s, all records together.
