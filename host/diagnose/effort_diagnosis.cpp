@@ -60,7 +60,8 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
     if (!screen.steps.empty() && !screen.steps.front().empty()) {
       const ScreenedModel& closest = screen.steps.front().front();
       verdict.explanation +=
-          fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest, 0), 100.0 * closest.validate);
+          fmt::format(" The closest, {}, leaves {:.1f} %{}.", described(closest, 0), 100.0 * closest.validate,
+                      screen.contradicted ? ", but with it the motion's prediction gets worse" : "");
     }
     verdict.next_experiment =
         "Repeat one motion ten times: what repeats a model can explain. Then jogs at several speeds over the whole "
@@ -94,9 +95,11 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
   return verdict;
 }
 
+/// Errors of the forward prediction that are so near to each other say nothing.
+constexpr double kHardly = 0.98;
+
 /// What the forward prediction says to the effects that the regression chose.
 std::string confirmed(const SetError& before, const SetError& after) {
-  constexpr double kHardly = 0.98;
   const char* said = after.combined < kHardly * before.combined ? "falls, which confirms it"
                      : after.combined > before.combined / kHardly
                          ? "rises: it does not confirm that, so record more of the motion in which it shows"
@@ -105,15 +108,36 @@ std::string confirmed(const SetError& before, const SetError& after) {
                      before.combined, after.combined);
 }
 
-/// Channels predicted forward over windows so short that the position shows a force before it adds up to a drift; a
-/// second mass, whose state no sensor shows at a restart, needs the usual ones.
+/// Over windows so short that the position shows a force before it adds up to a drift; a second mass, whose state no
+/// sensor shows at a restart, needs the usual ones.
+PreparedSets predicted_forward(const sim::DriveDescription& best, const std::vector<const Record*>& training,
+                               const std::vector<const Record*>& validation) {
+  const double window_s =
+      sim::Drive(best).has_second_mass() ? kWindow_s : std::min(kWindow_s, rough_window_s(training));
+  PreparedSets sets = split_sets(best, training, validation, window_s);
+  renew_floors(sets.training, best);
+  renew_floors(sets.validation, best);
+  return sets;
+}
+
+/// Whether effects that take hardly more than half of the squared effort make the motion's prediction worse: then they
+/// only stand for what is missing. What takes more is right whatever a late channel makes of the prediction.
+bool is_contradicted(const EffortScreen& screen, const std::vector<const Record*>& training,
+                     const std::vector<const Record*>& validation) {
+  constexpr double kSure = 0.5;  // of the error remains: three quarters of its square are gone
+  if (screen.chosen.empty() || screen.rows.steady || screen.best().validate < kSure * screen.base.validate)
+    return false;
+  const PreparedSets sets = predicted_forward(screen.best().model, training, validation);
+  const auto error = [&](const ScreenedModel& model) {
+    return error_of(sim::Drive(model.model), sets.validation).combined;
+  };
+  return error(screen.best()) > error(screen.base) / kHardly;
+}
+
+/// Channels predicted forward.
 void append_channels(const EffortScreen& screen, const std::vector<const Record*>& training,
                      const std::vector<const Record*>& validation, Diagnosis& diagnosis) {
-  const bool hidden = sim::Drive(diagnosis.best).has_second_mass();
-  const double window_s = hidden ? kWindow_s : std::min(kWindow_s, rough_window_s(training));
-  PreparedSets sets = split_sets(diagnosis.best, training, validation, window_s);
-  renew_floors(sets.training, diagnosis.best);
-  renew_floors(sets.validation, diagnosis.best);
+  const PreparedSets sets = predicted_forward(diagnosis.best, training, validation);
   const sim::Drive base(diagnosis.base), best(diagnosis.best);
   const SetError before_train = error_of(base, sets.training), after_train = error_of(best, sets.training);
   const SetError before = error_of(base, sets.validation), after = error_of(best, sets.validation);
@@ -153,8 +177,9 @@ JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel
 
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   if (screen.empty()) return false;
-  if (screen.rows.steady) return true;
   const double left = over_noise(screen, screen.best(), true), before = over_noise(screen, screen.base, true);
+  // At steady speeds nothing adds up to a motion; but an effort within its noise tells that nothing shows, no more.
+  if (screen.rows.steady && (!screen.chosen.empty() || left > kSmall)) return true;
   if (before > kFarAboveNoise && left < kExplainedPart * before) return true;
   if (left < kFarAboveNoise) return false;
   return !screen.chosen.empty() || is_rough(error_of(sim::Drive(screen.base.model), validation));
@@ -166,6 +191,11 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
                                             std::shared_ptr<const EffortScreen>& seen, bool rough) {
   if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
   auto screen = std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation, 3, sets.absent));
+  if (is_contradicted(*screen, training, validation)) {
+    screen->contradicted = true;
+    screen->chosen.clear();
+    screen->tied.clear();
+  }
   if (!screen->empty()) seen = screen;
   if (!effort_decides(*screen, sets.validation)) return {};
   Diagnosis diagnosis(sets);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "host/compare/period_search.hpp"
 
@@ -119,6 +120,14 @@ OrderChoice as_orders_of_a_turn(OrderChoice choice, double turn, double travel) 
 }
 
 }  // namespace
+
+bool comes_back(const OrderChoice& choice, const sim::DataSheet& data, const EffortRows& rows) {
+  constexpr double kTimes = 2.0;
+  if (data.kind == sim::DriveKind::rotary && choice.period == 2.0 * std::numbers::pi * data.lead) return true;
+  long common = 0;
+  for (const double order : choice.orders) common = std::gcd(common, std::lround(order));
+  return kTimes * choice.period <= static_cast<double>(common) * (rows.x.maxCoeff() - rows.x.minCoeff());
+}
 
 MatrixXd order_columns(const EffortRows& rows, const VectorXd& weight, double period,
                        const std::vector<double>& orders) {

@@ -15,6 +15,10 @@ struct OrderChoice {
   double left_train = 1.0, left_validate = 1.0;  ///< of the base's squared error
 };
 
+/// Whether the travel shows that these orders are of a period: it comes back within it. What does not is a series for
+/// anything that goes with the position. A turn of the shaft is known to come back.
+bool comes_back(const OrderChoice& choice, const sim::DataSheet& data, const EffortRows& rows);
+
 /// cos and sin of each order, times `weight`: two columns an order.
 Eigen::MatrixXd order_columns(const EffortRows& rows, const Eigen::VectorXd& weight, double period,
                               const std::vector<double>& orders);

@@ -286,7 +286,9 @@ std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& scree
   }
   // What differs in the last digits alone keeps the catalogue's order.
   std::ranges::stable_sort(found, {}, [](const Tried& tried) { return std::round(1e6 * product(tried.model)); });
-  for (Tried& tried : found) tried.model.confidence = regressor.confidence(now, tried.model);
+  for (Tried& tried : found)
+    tried.model.confidence =
+        std::ranges::all_of(tried.terms, &EffortTerm::can_be_claimed) ? regressor.confidence(now, tried.model) : 0.0;
   return found;
 }
 

@@ -31,6 +31,7 @@ struct EffortScreen {
   std::vector<std::vector<ScreenedModel>> steps;  ///< every kind tried on top of what was chosen so far, best first
   std::vector<ScreenedModel> chosen;              ///< one a step that earned its place
   std::vector<std::vector<std::string>> tied;     ///< of each chosen: kinds that these rows do not tell from it
+  bool contradicted = false;                      ///< what had been chosen, by the motion predicted forward
   std::optional<Repeatability> repeatable;        ///< of the best model's residual, where a motion was repeated
   std::optional<ScreenedModel> judge_alone;       ///< the base fitted to the judging rows, its `train` of these
   std::vector<std::string> held;                  ///< base parameters that stayed as given, and why, in words

@@ -113,6 +113,7 @@ void append_periodic(const sim::DriveDescription& model, const EffortRows& rows,
   term.words = fmt::format("{} {:g} of {:.5g} {}", choice.orders.size() == 1 ? "order" : "orders",
                            fmt::join(choice.orders, ", "), choice.period,
                            model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
+  term.can_be_claimed = comes_back(choice, model.data, rows);
   terms.push_back(std::move(term));
 }
 

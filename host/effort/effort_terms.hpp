@@ -17,7 +17,8 @@ struct EffortTerm {
   /// Turns a model with a fitted base into one that has the effect, by the columns' factors. False where these are out
   /// of the catalogue's bounds.
   std::function<bool(const Eigen::VectorXd& factors, sim::DriveDescription& model)> write;
-  std::string words;  ///< "orders 72, 18 of 6.283 mm"; may be empty
+  std::string words;           ///< "orders 72, 18 of 6.283 mm"; may be empty
+  bool can_be_claimed = true;  ///< false: tells that something goes with the position, and no more
 };
 
 /// Adds an effect to a model; false where a parameter is out of the catalogue's bounds.
