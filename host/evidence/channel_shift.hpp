@@ -13,9 +13,9 @@ namespace host {
 std::optional<Motion> motion_if_long_enough(const Record& record, const sim::DataSheet& data,
                                             const MotionOptions& options);
 
-/// Samples by which the tachometer runs behind (> 0) or ahead of (< 0) the encoder. Empty where there is no shift, where
-/// a first-order lag fits as well (that is physics), or where it is not a whole number of samples and leaves more than
-/// such a logger does.
+/// Samples by which the tachometer runs behind (> 0) or ahead of (< 0) the encoder. Empty where there is no shift,
+/// where a first-order lag fits as well (that is physics), or where it is not a whole number of samples and leaves more
+/// than such a logger does.
 std::optional<double> tachometer_shift(const Record& record, const sim::DataSheet& data);
 
 /// Whole samples by which the axis answers before (> 0) or after (< 0) its command, beyond what a drive can: an answer
