@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -68,6 +69,16 @@ std::vector<std::string> ties_of(const JudgedCandidate& best, const Diagnosis& d
     tied.push_back(candidate.kinds.front());
   }
   return tied;
+}
+
+/// The other shape of the friction curve over the speed, where `kind` is one: constant speeds tell them apart, no more.
+std::optional<std::string> other_shape(const std::string& kind, const Diagnosis& diagnosis) {
+  constexpr std::array kShapes = {"stribeck", "nonlinear_viscous"};
+  if (std::ranges::find(kShapes, kind) == kShapes.end()) return {};
+  const std::string other = kind == kShapes[0] ? kShapes[1] : kShapes[0];
+  const bool known =
+      diagnosis.base.find(other) != nullptr || std::ranges::find(diagnosis.absent, other) != diagnosis.absent.end();
+  return known ? std::nullopt : std::optional(other);
 }
 
 /// The simplest of the singles that are as good as the best one.
@@ -205,8 +216,12 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     verdict.effects = chosen->kinds;
     verdict.status = Status::missing;
     const sim::EffectInfo& first = *sim::find_effect(chosen->kinds.front());
+    const auto gap = widest_speed_gap(prepared_records(diagnosis.training), given.data);
     if (chosen->kinds.size() == 1) {
-      const std::vector<std::string> tied = ties_of(*chosen, diagnosis);
+      std::vector<std::string> tied = ties_of(*chosen, diagnosis);
+      if (const auto other = other_shape(chosen->kinds.front(), diagnosis);
+          gap && other && std::ranges::find(tied, *other) == tied.end())
+        tied.push_back(*other);
       if (!tied.empty()) {
         verdict.status = Status::ambiguous;
         std::vector<std::string> group = chosen->kinds;
@@ -218,7 +233,6 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     std::vector<std::string> titles;
     for (const std::string& kind : chosen->kinds) titles.push_back(title_of(kind));
     verdict.next_experiment = std::string(first.separate_by) + ".";
-    const auto gap = widest_speed_gap(prepared_records(diagnosis.training), given.data);
     const bool shapes_friction = std::ranges::any_of(
         chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });
     if (shapes_friction && gap) verdict.next_experiment += " " + speeds_to_record(*gap);
