@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/eigenvalues.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -52,7 +53,7 @@ DesignOptions complete(const DesignOptions& options, const sim::DataSheet& data)
 
 void describe_observer(AxisDesign& design, double sample_period_s) {
   const Eigen::Matrix3d loop = (Eigen::Matrix3d::Identity() - design.Kobs * design.model.C) * design.model.A;
-  const Eigen::Vector3cd poles = loop.eigenvalues();
+  const Eigen::VectorXcd poles = eigenvalues(loop);
   design.observer_poles.assign(poles.begin(), poles.end());
   std::ranges::sort(design.observer_poles, [](const auto& a, const auto& b) {
     const double fa = std::abs(std::log(a)), fb = std::abs(std::log(b));

@@ -4,7 +4,9 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <complex>
 
+#include "host/eigenvalues.hpp"
 #include "host/parameters/monitor_relations.hpp"
 #include "host/parameters/parameter_names.hpp"
 
@@ -16,10 +18,10 @@ using firmware::PoleProblem;
 using firmware::Refusal;
 namespace ceilings = firmware::monitor_ceilings;
 
-template <typename Matrix>
-std::string eigenvalues_text(const Matrix& matrix) {
+std::string eigenvalues_text(const Eigen::MatrixXd& matrix) {
+  const Eigen::VectorXcd values = eigenvalues(matrix);
   std::string text;
-  for (const auto& z : matrix.eigenvalues()) {
+  for (const std::complex<double>& z : values) {
     if (z.imag() < 0.0) continue;  // its conjugate stands for both
     text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", z.real());
     if (z.imag() > 0.0) text += fmt::format(" +- {:.4g}i", z.imag());
@@ -71,7 +73,7 @@ std::string loop_poles_text(const firmware::AxisParameters<float>& p) {
   Eigen::Matrix2f closed;
   closed << 1 - p.drive.Bd1 * p.Kc[0], p.drive.Ad12 - p.drive.Bd1 * p.Kc[1], -p.drive.Bd2 * p.Kc[0],
       p.drive.Ad22 - p.drive.Bd2 * p.Kc[1];
-  return eigenvalues_text(Eigen::Matrix2d(closed.cast<double>()));
+  return eigenvalues_text(closed.cast<double>());
 }
 
 std::string why_refused(const firmware::ParameterValues& values, const firmware::SetRefusal& refused) {
