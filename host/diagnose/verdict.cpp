@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -71,14 +70,11 @@ std::vector<std::string> ties_of(const JudgedCandidate& best, const Diagnosis& d
   return tied;
 }
 
-/// The other shape of the friction curve over the speed, where `kind` is one: constant speeds tell them apart, no more.
-std::optional<std::string> other_shape(const std::string& kind, const Diagnosis& diagnosis) {
-  constexpr std::array kShapes = {"stribeck", "nonlinear_viscous"};
-  if (std::ranges::find(kShapes, kind) == kShapes.end()) return {};
-  const std::string other = kind == kShapes[0] ? kShapes[1] : kShapes[0];
-  const bool known =
-      diagnosis.base.find(other) != nullptr || std::ranges::find(diagnosis.absent, other) != diagnosis.absent.end();
-  return known ? std::nullopt : std::optional(other);
+/// Friction that falls with a power of the speed is Stribeck friction too where no constant speeds tell: a fit that has
+/// found the one shape does not lead to the other.
+bool may_be_stribeck(const JudgedCandidate& chosen, const Diagnosis& diagnosis) {
+  return chosen.kinds == std::vector<std::string>{"nonlinear_viscous"} && diagnosis.base.find("stribeck") == nullptr &&
+         std::ranges::find(diagnosis.absent, "stribeck") == diagnosis.absent.end();
 }
 
 /// The simplest of the singles that are as good as the best one.
@@ -219,9 +215,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     const auto gap = widest_speed_gap(prepared_records(diagnosis.training), given.data);
     if (chosen->kinds.size() == 1) {
       std::vector<std::string> tied = ties_of(*chosen, diagnosis);
-      if (const auto other = other_shape(chosen->kinds.front(), diagnosis);
-          gap && other && std::ranges::find(tied, *other) == tied.end())
-        tied.push_back(*other);
+      if (gap && may_be_stribeck(*chosen, diagnosis) && std::ranges::find(tied, "stribeck") == tied.end())
+        tied.emplace_back("stribeck");
       if (!tied.empty()) {
         verdict.status = Status::ambiguous;
         std::vector<std::string> group = chosen->kinds;
