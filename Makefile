@@ -188,6 +188,15 @@ commission-bench: ## axistool commission on twenty machines whose hidden effects
 	python3 tests/commission/bench.py $(BUILD)/bin/axistool tests/commission/machines.json $(if $(ONLY),--only $(ONLY))
 	$(if $(ONLY),,python3 tests/commission/contour.py $(BUILD)/bin/axistool tests/commission/machines.json)
 
+.PHONY: commission-usb
+commission-usb: ## axistool commission over Linux' own USB stack, in an emulated PC: minutes of computing
+	$(NEED) build test
+	$(NEED) guest
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool guest_commission
+	GUEST_LIMIT=7200 GUEST_FILES=$(abspath $(BUILD))/bin/axistool:$(abspath tests/guest/commission/belt.toml) \
+	  tests/guest/run.sh $(abspath $(BUILD))/packages/guest $(BUILD)/bin/guest_commission
+
 .PHONY: mutants
 mutants: ## Seed every mistake of tests/hal/mutants.txt into the drivers: each must make its test fail (a few minutes)
 	$(NEED) build test
