@@ -13,7 +13,10 @@ using namespace path_test;  // NOLINT(google-build-using-namespace)
 /// successive linear programs (position, speed, acceleration and jerk of each axis linearised about the last motion)
 /// until it is no quicker any more (HiGHS; 250 times give 0.1 % less where the curve takes the acceleration). For a
 /// line of 40 mm at the limits that gives the seven phases' 0.3257 s. Short blends at speed are finer than its times:
-/// there a planner may be quicker (slot of 2 at 100).
+/// there a planner may be quicker (slot of 2 at 100), and without a feed it would cut through them. There the programs
+/// are over the square of the rate at which a motion along the curve is passed, a quadratic spline over cells of 1 ms,
+/// all limits at three points of each. From the planner's motion and from the 150 times' one, which differ much, that
+/// ends within 0.02, 0.2 and 0.7 % of each other (the less is taken), and within 0.02 % of the above at 150 mm/s.
 struct Known {
   const char* name;
   double feed_mm_s, optimum_s;
@@ -53,7 +56,10 @@ TEST(PlannedPath, TakesLittleMoreThanTheOptimum) {
                          {"circle", kFree, 1.0009, arc(35, kTurn, kFree)},
                          {"slot of 2, nearly exact", 100, 0.6385, slot(2, 100, 0.01)},
                          {"slot of 10, nearly exact", 150, 0.6230, slot(10, 150, 0.01)},
-                         {"slot of 10, blended", 150, 0.5974, slot(10, 150, 0.05)}};
+                         {"slot of 10, blended", 150, 0.5974, slot(10, 150, 0.05)},
+                         {"slot of 10, blended", kFree, 0.5803, slot(10, kFree, 0.05)},
+                         {"slot of 5, blended", kFree, 0.5604, slot(5, kFree, 0.05)},
+                         {"slot of 2, blended", kFree, 0.5539, slot(2, kFree, 0.05)}};
   for (const Known& one : known) {
     const host::PlannedPath path = plan_path(one.moves, options());
     EXPECT_LE(path.duration_s(), 1.03 * one.optimum_s) << one.name << " at " << one.feed_mm_s << " mm/s";
