@@ -23,4 +23,18 @@ inline double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// Of at least one value, the one that `part` (0 to 1) of the others do not exceed.
+inline double quantile(std::vector<double> values, double part) {
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, rank);
+  return *rank;
+}
+
+/// Of at least one value; of an even number, the greater of the two in the middle.
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace host

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/statistics.hpp"
+
 namespace host {
 
 std::size_t RecordSet::used_windows() const {
@@ -118,9 +120,7 @@ void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
     for (const double square : {score.x, score.w, score.effort})
       if (square > 0.0) squares.push_back(square);
   if (squares.empty()) return;
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
-  set.common_square = kCommonSquare * std::max(1.0, *middle);
+  set.common_square = kCommonSquare * std::max(1.0, median(std::move(squares)));
 }
 
 double WindowScore::weighed(double common_square) const {

@@ -11,6 +11,7 @@
 
 #include "host/compare/period_search.hpp"
 #include "host/report/text_format.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -27,9 +28,8 @@ constexpr double kMostMedians = 6.0;
 Values clipped(Values values) {
   Values sizes(values.size());
   std::ranges::transform(values, sizes.begin(), [](double value) { return std::abs(value); });
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  for (double& value : values) value = std::clamp(value, -kMostMedians * *middle, kMostMedians * *middle);
+  const double most = kMostMedians * median(std::move(sizes));
+  for (double& value : values) value = std::clamp(value, -most, most);
   return values;
 }
 
@@ -212,9 +212,7 @@ struct Spectrum {
     Values round;
     for (std::size_t k = line - std::min(line, kRound); k < std::min(power.size(), line + kRound + 1); ++k)
       if (k + 1 < line || k > line + 1) round.push_back(power[k]);
-    const auto middle = round.begin() + static_cast<std::ptrdiff_t>(round.size() / 2);
-    std::ranges::nth_element(round, middle);
-    return power[line - 1] + power[line] + power[line + 1] - 3.0 * *middle;
+    return power[line - 1] + power[line] + power[line + 1] - 3.0 * median(std::move(round));
   }
 
   std::size_t strongest() const {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "host/compare/period_search.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -145,8 +146,7 @@ OrderChoice choose_orders(const sim::DataSheet& data, const EffortRows& rows, co
   const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
   std::vector<double> speeds(rows.w.data(), rows.w.data() + rows.w.size());
   for (double& w : speeds) w = std::abs(w);
-  std::ranges::nth_element(speeds, speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2));
-  const double usual = speeds[speeds.size() / 2] * data.lead;
+  const double usual = median(std::move(speeds)) * data.lead;
   // What passes faster than the filter lets through cannot be seen, nor what the encoder's steps make themselves.
   constexpr double kPassed = 0.8, kStepsAPeriod = 8.0;
   const double shortest =

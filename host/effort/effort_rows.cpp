@@ -49,12 +49,6 @@ bool is_steady(const std::vector<double>& speed, double slow, double inertia, co
   return spread <= kSteadyShare * kSteadyShare * squares && inertial <= kIdleShare * kIdleShare * efforts;
 }
 
-double quantile(std::vector<double> values, double part) {
-  const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
-
 /// Deviation of the acceleration that the channel's noise leaves below a cut-off.
 double acceleration_deviation(const Record& record, const sim::DataSheet& data, bool by_speed, double cutoff_Hz) {
   if (!by_speed) return std::sqrt(acceleration_noise(record, data, cutoff_Hz));

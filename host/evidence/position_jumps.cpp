@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/identify/encoder_step.hpp"
+#include "host/statistics.hpp"
 #include "sim/drive.hpp"
 
 namespace host {
@@ -29,9 +30,7 @@ double usual_change(const std::vector<double>& x) {
   constexpr double kUsual = 0.99;
   std::vector<double> changes;
   for (std::size_t k = 2; k < x.size(); ++k) changes.push_back(std::abs(x[k] - 2.0 * x[k - 1] + x[k - 2]));
-  const auto rank = changes.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(changes.size() - 1));
-  std::ranges::nth_element(changes, rank);
-  return *rank;
+  return quantile(std::move(changes), kUsual);
 }
 
 /// Whether the step to row `k` makes up for slower ones before it, so that over all of them the axis keeps its speed:
@@ -42,9 +41,7 @@ bool catches_up(const std::vector<double>& x, std::size_t k) {
   std::vector<double> steps;
   for (std::size_t row = k < kAround ? 1 : k - kAround + 1; row < std::min(k + kAround, x.size()); ++row)
     steps.push_back(x[row] - x[row - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  const double speed = *middle;
+  const double speed = median(std::move(steps));
   for (std::size_t rows = 2; rows <= kMostRows && rows < k; ++rows) {
     if (std::abs(x[k - rows + 1] - x[k - rows]) > kSlow * std::abs(speed)) return false;
     const double travel = x[k] - x[k - rows], expected = static_cast<double>(rows) * speed;

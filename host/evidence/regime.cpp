@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/statistics.hpp"
+
 namespace host {
 
 namespace {
@@ -20,12 +22,6 @@ constexpr double kBelievedSteps = 2.0;
 
 /// Acceleration is taken over so many samples to each side.
 constexpr std::size_t kReach = 3;
-
-double quantile(std::vector<double> values, double part) {
-  const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 std::vector<double> acceleration_of(const std::vector<double>& w, double period_s) {
   std::vector<double> acceleration(w.size());

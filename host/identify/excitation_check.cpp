@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/exit_codes.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -18,9 +19,7 @@ const char* speed_unit(const sim::DataSheet& data) { return data.kind == sim::Dr
 double percentile_of_magnitude(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   for (double& value : values) value = std::abs(value);
-  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, rank);
-  return *rank;
+  return quantile(std::move(values), share);
 }
 
 /// The largest of what was recorded to drive the axis.

@@ -9,6 +9,7 @@
 #include "host/exit_codes.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/log_fault.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -96,10 +97,7 @@ constexpr std::size_t kBlockRows = 10;
 
 /// Travel by the tachometer about its own median (an offset is not motion), rad or m: largest minus smallest.
 double travel_by_speed(const Record& record) {
-  std::vector<double> sorted = record.w;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double rest = *middle;
+  const double rest = median(record.w);
   double travel = 0.0, low = 0.0, high = 0.0;
   for (const double w : record.w) {
     travel += (w - rest) * record.sample_period_s;

@@ -7,6 +7,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/record/log_fault.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -20,9 +21,7 @@ std::string where(const TimeAxis& axis, std::size_t row) {
 double median_step(const std::vector<double>& t_s) {
   std::vector<double> steps(t_s.size() - 1);
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = t_s[k + 1] - t_s[k];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median(std::move(steps));
 }
 
 /// What rounding of the stamps alone may add to a step: nothing where the period is a whole number of last digits.

@@ -5,17 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "host/statistics.hpp"
+
 namespace host {
 
 namespace {
 
 using Sample = std::pair<double, double>;  // coordinate, value
-
-double quantile(std::vector<double>& values, double fraction) {
-  const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 void append_bin(BinnedCurve& curve, std::span<const Sample> bin) {
   const auto samples = static_cast<double>(bin.size());
