@@ -46,6 +46,13 @@ double explained_share(double before, double after) {
   return there_is > 0.0 ? std::clamp((before * before - after * after) / there_is, 0.0, 1.0) : 0.0;
 }
 
+std::size_t parameters_of(const JudgedCandidate& candidate) {
+  std::size_t count = 0;
+  for (const std::string& kind : candidate.kinds)
+    if (const sim::EffectEntry* entry = candidate.model.find(kind)) count += entry->parameters.size();
+  return count;
+}
+
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
                                              const std::vector<std::string>& kinds) {
   constexpr double kNear = 1e-3;

@@ -21,6 +21,9 @@ inline constexpr double kLeastGain = 0.05;
 /// Part of what there is to explain, before^2 - kComplete^2, that is gone, 0..1. 0 where there was nothing.
 double explained_share(double before, double after);
 
+/// That a candidate adds to the base.
+std::size_t parameters_of(const JudgedCandidate& candidate);
+
 /// Why a candidate is not claimed.
 enum class Doubt {
   none,

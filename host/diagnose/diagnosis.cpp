@@ -17,6 +17,7 @@
 #include "host/effort/effort_screen.hpp"
 #include "host/evidence/measured_sensors.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -31,9 +32,7 @@ bool is_rough(const SetError& error) {
   std::vector<double> squares;
   for (const WindowScore& score : error.windows) squares.push_back(std::max(score.x, score.w));
   if (squares.empty()) return false;
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
-  return *middle > kRoughError * kRoughError;
+  return median(std::move(squares)) > kRoughError * kRoughError;
 }
 
 double rough_window_s(const std::vector<const Record*>& records) {
@@ -88,6 +87,18 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   return std::ranges::none_of(verdict.effects, seen);
 }
 
+/// Whether the motion may tell what the effects that the effort shows leave: it is left with more than noise, but no
+/// rough machine.
+bool may_be_completed(const Diagnosis& by_effort, const RecordSet& validation) {
+  return by_effort.after_validate > kExplained && !is_rough(error_of(sim::Drive(by_effort.best), validation));
+}
+
+/// Down to the noise.
+bool completes(const Diagnosis& by_motion) {
+  return !by_motion.rough && !by_motion.verdict.effects.empty() &&
+         std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
+}
+
 Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before, const std::vector<std::string>& absent) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
@@ -111,11 +122,14 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
   std::optional<Diagnosis> over_long_windows;
   if (before == nullptr) {
     std::optional<Diagnosis> diagnosis = by_effort(false);
-    if (diagnosis && (!screen->chosen.empty() || screen->rows.steady)) return *std::move(diagnosis);
     if (diagnosis) {
-      // Nothing that shows in the effort while the axis slides: a current limit, say, shows in the motion.
+      const bool tells = !screen->chosen.empty();
+      if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
+        return *std::move(diagnosis);
+      // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
       over_long_windows = search(with_base_fitted(split));
-      return *std::move(goes_beyond(*over_long_windows, *screen) ? over_long_windows : diagnosis);
+      const bool is_better = tells ? completes(*over_long_windows) : goes_beyond(*over_long_windows, *screen);
+      return *std::move(is_better ? over_long_windows : diagnosis);
     }
   }
   if (!by_short_windows) {

@@ -12,13 +12,6 @@ namespace {
 
 double logistic(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
-std::size_t parameters_of(const JudgedCandidate& candidate) {
-  std::size_t count = 0;
-  for (const std::string& kind : candidate.kinds)
-    if (const sim::EffectEntry* entry = candidate.model.find(kind)) count += entry->parameters.size();
-  return count;
-}
-
 /// Log of the error, over both sets alike, with what a candidate's complexity costs. Errors below the floor are the
 /// floor's own uncertainty.
 double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) {

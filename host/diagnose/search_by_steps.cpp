@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "sim/catalogue.hpp"
 
 namespace host {
 
@@ -102,6 +104,26 @@ std::vector<Candidate> without_what_is_needless(const Candidate& whole, const Pr
   return found;
 }
 
+/// The pair with its first effect exchanged for what that is confused with, where this explains something alone: the
+/// second was searched on top of the first only.
+std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::vector<Candidate>& singles,
+                                            const PreparedSets& sets) {
+  std::vector<Candidate> found;
+  const std::string &first = pair.kinds.front(), &second = pair.kinds.back();
+  const std::vector<std::string_view>& relatives = sim::find_effect(first)->confused_with;
+  for (const Candidate& single : singles) {
+    const std::string& other = single.kinds.back();
+    if (other == first || other == second || !is_physical(single) ||
+        std::ranges::find(relatives, other) == relatives.end())
+      continue;
+    sim::DriveDescription model = single.model;
+    model.effects.push_back(*pair.model.find(second));
+    found.push_back(judged({other, second}, fit_model(model, sets.training, kWithoutOne).model, sets.base,
+                           sets.training, sets.validation));
+  }
+  return found;
+}
+
 }  // namespace
 
 Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEffort effort) {
@@ -137,7 +159,9 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto pair = std::ranges::min_element(found.pairs, {}, cost);
   if (pair == found.pairs.end() || !is_physical(*pair)) return found;
   renew(pair->model);
-  if (std::vector<Candidate> shorter = without_what_is_needless(*pair, sets); !shorter.empty()) {
+  const Candidate best_pair = *pair;
+  std::ranges::move(with_first_exchanged(best_pair, found.singles, sets), std::back_inserter(found.pairs));
+  if (std::vector<Candidate> shorter = without_what_is_needless(best_pair, sets); !shorter.empty()) {
     for (Candidate& better : shorter) {
       std::erase_if(found.singles, [&](const Candidate& stuck) { return stuck.kinds == better.kinds; });
       found.singles.push_back(std::move(better));
@@ -148,8 +172,8 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
       return found;
     }
   }
-  if (!promises_a_third(Errors(sets.base, sets), Errors(pair->model, sets))) return found;
-  found.triples = on_top_of(*pair, 0.8, 1.0);
+  if (!promises_a_third(Errors(sets.base, sets), Errors(best_pair.model, sets))) return found;
+  found.triples = on_top_of(best_pair, 0.8, 1.0);
   const auto triple = std::ranges::find_if(found.triples, is_physical);
   if (triple == found.triples.end()) return found;
   for (Candidate& shorter : without_what_is_needless(*triple, sets)) found.triples.push_back(std::move(shorter));

@@ -54,18 +54,28 @@ bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
          explained_share(diagnosis.before_validate, pair.after) > alone_validate;
 }
 
-std::size_t parameters_added(const JudgedCandidate& candidate) {
-  return candidate.model.effects.back().parameters.size();
+/// The effect that a candidate has in place of `kind`, all others alike; empty where it differs otherwise.
+std::string exchanged_for(const std::string& kind, const JudgedCandidate& best, const JudgedCandidate& candidate) {
+  if (candidate.kinds.size() != best.kinds.size()) return {};
+  std::string other;
+  for (const std::string& one : candidate.kinds) {
+    if (one == kind) return {};
+    if (std::ranges::find(best.kinds, one) != best.kinds.end()) continue;
+    if (!other.empty()) return {};
+    other = one;
+  }
+  return other;
 }
 
-/// Single effects that explain as well as the best and are no more complicated.
-std::vector<std::string> ties_of(const JudgedCandidate& best, const Diagnosis& diagnosis) {
+/// Effects that in place of `kind` explain as well as the best candidate does and are no more complicated.
+std::vector<std::string> ties_of(const std::string& kind, const JudgedCandidate& best, const Diagnosis& diagnosis) {
   std::vector<std::string> tied;
   for (const JudgedCandidate& candidate : diagnosis.candidates) {
-    if (&candidate == &best || candidate.kinds.size() != 1 || !earns_its_place(candidate, diagnosis)) continue;
+    const std::string other = exchanged_for(kind, best, candidate);
+    if (other.empty() || !earns_its_place(candidate, diagnosis)) continue;
     if (error_of_both(candidate) > (1.0 + kTie) * error_of_both(best)) continue;
-    if (parameters_added(candidate) > parameters_added(best)) continue;
-    tied.push_back(candidate.kinds.front());
+    if (parameters_of(candidate) > parameters_of(best)) continue;
+    tied.push_back(other);
   }
   return tied;
 }
@@ -84,7 +94,7 @@ const JudgedCandidate* simplest_near(const JudgedCandidate* best, const Diagnosi
   for (const JudgedCandidate& candidate : diagnosis.candidates)
     if (candidate.kinds.size() == 1 && candidate.after <= (1.0 + kNear) * best->after &&
         candidate.train_after <= (1.0 + kNear) * best->train_after &&
-        parameters_added(candidate) < parameters_added(*simplest))
+        parameters_of(candidate) < parameters_of(*simplest))
       simplest = &candidate;
   return simplest;
 }
@@ -213,17 +223,17 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     verdict.status = Status::missing;
     const sim::EffectInfo& first = *sim::find_effect(chosen->kinds.front());
     const auto gap = widest_speed_gap(prepared_records(diagnosis.training), given.data);
-    if (chosen->kinds.size() == 1) {
-      std::vector<std::string> tied = ties_of(*chosen, diagnosis);
-      if (gap && may_be_stribeck(*chosen, diagnosis) && std::ranges::find(tied, "stribeck") == tied.end())
-        tied.emplace_back("stribeck");
-      if (!tied.empty()) {
-        verdict.status = Status::ambiguous;
-        std::vector<std::string> group = chosen->kinds;
-        group.insert(group.end(), tied.begin(), tied.end());
-        verdict.effects = group;
-        verdict.alternatives.push_back(group);
-      }
+    for (const std::string& kind : chosen->kinds) {
+      std::vector<std::string> group = ties_of(kind, *chosen, diagnosis);
+      if (gap && may_be_stribeck(*chosen, diagnosis) && std::ranges::find(group, "stribeck") == group.end())
+        group.emplace_back("stribeck");
+      if (group.empty()) continue;
+      group.insert(group.begin(), kind);
+      verdict.alternatives.push_back(std::move(group));
+    }
+    if (chosen->kinds.size() == 1 && !verdict.alternatives.empty()) {
+      verdict.status = Status::ambiguous;
+      verdict.effects = verdict.alternatives.front();
     }
     std::vector<std::string> titles;
     for (const std::string& kind : chosen->kinds) titles.push_back(title_of(kind));
@@ -236,8 +246,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         "to explain. {}.",
         fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
         chosen->after, 100.0 * explained_share(before, chosen->after), first.shows);
-    if (verdict.status == Status::ambiguous)
-      verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(verdict.effects, ", "));
+    for (const std::vector<std::string>& group : verdict.alternatives)
+      verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)
       verdict.explanation += fmt::format(
           " Much more than noise is left whatever is added, so the model is judged {} before it adds up to a drift.",

@@ -51,6 +51,11 @@ Outcome outcome_of(const Truth& truth, const DiagnosisVerdict& verdict) {
   const auto claims = [&](const std::string& kind) {
     return std::ranges::find(verdict.effects, kind) != verdict.effects.end();
   };
+  const auto is_offered = [&](const std::string& kind) {
+    return claims(kind) || std::ranges::any_of(verdict.alternatives, [&](const std::vector<std::string>& group) {
+             return std::ranges::find(group, kind) != group.end();
+           });
+  };
   const auto is_true = [&](const std::string& kind) {
     return std::ranges::find(truth.effects, kind) != truth.effects.end();
   };
@@ -59,7 +64,8 @@ Outcome outcome_of(const Truth& truth, const DiagnosisVerdict& verdict) {
   if (verdict.effects.empty()) return truth.effects.empty() ? Outcome::right : Outcome::missed;
   if (std::ranges::is_permutation(truth.effects, verdict.effects) && verdict.status == Status::missing)
     return Outcome::right;
-  if (verdict.status == Status::ambiguous && !truth.effects.empty() && std::ranges::all_of(truth.effects, claims))
+  if (!truth.effects.empty() && std::ranges::all_of(truth.effects, is_offered) &&
+      (verdict.status == Status::ambiguous || truth.effects.size() == verdict.effects.size()))
     return Outcome::group;
   return std::ranges::all_of(verdict.effects, is_true) ? Outcome::partly : Outcome::wrong;
 }

@@ -62,6 +62,39 @@ TEST(Diagnosis, ATachometerWithoutADataSheetHasTheNoiseThatItsRecordShows) {
   EXPECT_LT(diagnosis.given_validate, 2.0);
 }
 
+/// A drive with dead time, and with a dead zone of so many volts: it answers a command that is larger by as much.
+DriveCase late_with_dead_zone(double width_V) {
+  DriveCase late("single/case-06");
+  for (std::vector<host::Record>* records : {&late.train, &late.validate})
+    for (host::Record& record : *records)
+      for (double& u_V : record.u_V)
+        if (u_V != 0.0) u_V += std::copysign(width_V, u_V);
+  return late;
+}
+
+/// While the axis slides the effort shows the dead time alone.
+TEST(Diagnosis, WhatTheEffortLeavesTheMotionTells) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  DriveCase late = late_with_dead_zone(0.2);
+  const host::Diagnosis diagnosis = late.diagnose();
+  EXPECT_EQ(diagnosis.verdict.status, host::Status::missing) << diagnosis.verdict.explanation;
+  EXPECT_THAT(diagnosis.verdict.effects, testing::UnorderedElementsAre("input_delay", "dac_dead_zone"));
+  EXPECT_LT(diagnosis.after_validate, 1.1);
+}
+
+/// What is often taken for the first of two effects is tried in its place too, beside the second.
+TEST(Diagnosis, BothEffectsOfAPairHaveRivals) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  DriveCase late = late_with_dead_zone(0.12);
+  const host::Diagnosis diagnosis = late.diagnose();
+  const auto judged = [&](const std::vector<std::string>& kinds) {
+    return std::ranges::any_of(diagnosis.candidates,
+                               [&](const auto& one) { return std::ranges::is_permutation(one.kinds, kinds); });
+  };
+  EXPECT_TRUE(judged({"input_delay", "dac_dead_zone"}));
+  EXPECT_TRUE(judged({"current_loop_lag", "dac_dead_zone"}));
+}
+
 TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   // What trains moves so that its viscous coefficient is far off where another motion judges.

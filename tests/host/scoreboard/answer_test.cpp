@@ -24,6 +24,11 @@ TEST(Outcomes, AreWhatTheTruthMakesOfAnAnswer) {
   EXPECT_EQ(host::outcome_of(cogging, verdict(Status::adequate)), Outcome::missed);
   EXPECT_EQ(host::outcome_of(both, verdict(Status::missing, {"backlash", "cogging"})), Outcome::right);
   EXPECT_EQ(host::outcome_of(both, verdict(Status::missing, {"backlash"})), Outcome::partly);
+  host::DiagnosisVerdict either = verdict(Status::missing, {"cogging", "presliding"});
+  EXPECT_EQ(host::outcome_of(both, either), Outcome::wrong);
+  either.alternatives = {{"presliding", "backlash"}};
+  EXPECT_EQ(host::outcome_of(both, either), Outcome::group);
+  EXPECT_EQ(host::outcome_of(cogging, either), Outcome::wrong);
   EXPECT_EQ(host::outcome_of(nothing, verdict(Status::parameters)), Outcome::right);
   EXPECT_EQ(host::outcome_of(nothing, verdict(Status::missing, {"cogging"})), Outcome::wrong);
   EXPECT_EQ(host::outcome_of(alien, verdict(Status::unexplained)), Outcome::right);
