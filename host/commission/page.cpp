@@ -85,25 +85,33 @@ std::vector<std::string> findings(const Page& page) {
       sentences.push_back(fmt::format("{}: {}. Usual origin: {}.", info->title, info->shows, info->origin));
   const auto& ladder = page.improvement["ladder"];
   sentences.push_back(
-      fmt::format("On motions that no fit has seen, the model errs by {} times what the sensors leave open without {}, "
-                  "and by {} times with {}.",
-                  format_value(ladder.front()["validate"].get<double>()), kinds.size() > 1 ? "them" : "it",
-                  format_value(ladder.back()["validate"].get<double>()), kinds.size() > 1 ? "them" : "it"));
+      fmt::format("The model predicts motions that it has not learnt from with an error of {} times the sensors' noise "
+                  "as it was, and of {} times with {}; 1 is perfect.",
+                  format_value(ladder.front()["validate"].get<double>()),
+                  format_value(ladder.back()["validate"].get<double>()), kinds.size() > 1 ? "these" : "this"));
   return sentences;
+}
+
+/// What of the gain is the controller's and what is the cause's; empty where it was one step.
+std::string shares_of_gain(const Page& page) {
+  if (!page.is_new() || page.sets().size() < 3 || page.sets()[1]["rms_um"].is_null()) return {};
+  const double faster = page.sets()[1]["rms_um"];
+  if (!(faster < page.before()) || !(page.after() < faster)) return {};
+  return fmt::format("Of the {} µm gained, a controller of more bandwidth brings {}, and the better model {}.",
+                     format_value(page.before() - page.after()), format_value(page.before() - faster),
+                     format_value(faster - page.after()));
 }
 
 Verdict verdict_of(const Page& page) {
   Verdict verdict;
   verdict.tone = page.is_new() ? Tone::good : Tone::neutral;
-  verdict.label = page.is_new() ? "better" : "no gain";
-  verdict.headline =
-      fmt::format("Following error: {} µm before, {}, floor {}. Cause: {}.", format_value(page.before()),
-                  page.has_after() ? format_value(page.after()) + " after" : "stopped by the new parameters",
-                  format_value(page.floor()), page.cause());
-  verdict.sentences = findings(page);
-  verdict.sentences.push_back(
-      fmt::format("The {} parameters are on the board{}.", page.is_new() ? "new" : "old",
-                  page.state.value("saved", false) ? " and saved" : "; they are not saved yet"));
+  verdict.label = page.is_new() ? "error reduced" : "no gain";
+  verdict.headline = fmt::format(
+      "Following error: {} µm before, {}; the best possible (floor) is {} µm. Cause: {}.", format_value(page.before()),
+      page.has_after() ? format_value(page.after()) + " µm after" : "stopped by the new parameters",
+      format_value(page.floor()), page.cause());
+  if (const std::string shares = shares_of_gain(page); !shares.empty()) verdict.sentences.push_back(shares);
+  for (std::string& found : findings(page)) verdict.sentences.push_back(std::move(found));
   for (const auto& kind : page.errors["by_hand"]) {
     const std::string name = kind.get<std::string>();
     const sim::EffectInfo* info = sim::find_effect(name.substr(0, name.find_first_of(" :")));
@@ -115,6 +123,9 @@ Verdict verdict_of(const Page& page) {
         fmt::format("{} is compensated only from home: wire a switch or an index, and begin "
                     "again with --home.",
                     title_of(kind)));
+  verdict.sentences.push_back(fmt::format(
+      "The {} parameters are on the board{}", page.is_new() ? "new" : "old",
+      page.state.value("saved", false) ? " and saved." : ", until it is switched off. This keeps them for good:"));
   if (!page.state.value("saved", false)) verdict.command = "axistool save";
   return verdict;
 }
@@ -125,17 +136,16 @@ std::string set_title(const Page& page, const std::string& name) {
   if (name == "before")
     return page.state.value("was_fitted", false) ? "before: as the board was" : "before: base model";
   if (name == "bandwidth") return "with the bandwidth raised";
-  return is_first ? "after: with what was found" : "after: with what was found, too";
+  return is_first ? "after: with the better model" : "after: with the better model, too";
 }
 
 BarChart errors_chart(const Page& page) {
   BarChart chart;
   chart.title = "The axis's own following error, µm RMS";
   chart.caption =
-      "The same jogs each time, made twice with each set. Before: the controller that identification of the base "
-      "(inertia, friction) gives, with friction feed-forward and its disturbance estimate cancelled, or what the board "
-      "ran. Floor: what the last set does not repeat; no parameter mends that. A contour needs two axes: once both are "
-      "commissioned, axistool run drives a circle and tells its contour error.";
+      "The same jogs with each set of parameters, twice (±: by how much the two differ). Base model: a controller "
+      "designed on inertia and friction alone. Floor: what differs from run to run, which no parameter mends. Once "
+      "both axes are commissioned, axistool run drives a circle and tells its contour error.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
@@ -150,10 +160,10 @@ BarChart errors_chart(const Page& page) {
 
 Facts model_facts(const Page& page) {
   Facts facts;
-  facts.title = "The model behind it, error over floor (1 is perfect)";
+  facts.title = "The model's error in predicting motions, in multiples of the sensors' noise (1 is perfect)";
   for (const auto& rung : page.improvement["ladder"]) {
     const auto added = rung["added"].get<std::vector<std::string>>();
-    facts.items.emplace_back(added.empty() ? "without" : fmt::format("with {}", fmt::join(added, " + ")),
+    facts.items.emplace_back(added.empty() ? "as it was" : fmt::format("with {}", fmt::join(added, " + ")),
                              format_value(rung["validate"].get<double>()));
   }
   return facts;

@@ -130,8 +130,8 @@ class ResponseStep {
     files_.emplace_back("response.html");
     if (after_Hz < kWorth * before_Hz && keeps_margin(measured)) return give_up("the margin asked for allows no more");
     const std::string change =
-        fmt::format("The bandwidth goes from {:.3g} to {:.3g} Hz at a modulus margin of {:.2g}{}", before_Hz, after_Hz,
-                    session_.options().modulus,
+        fmt::format("The bandwidth is {} from {:.3g} to {:.3g} Hz at a modulus margin of {:.2g}{}",
+                    after_Hz < before_Hz ? "lowered" : "raised", before_Hz, after_Hz, session_.options().modulus,
                     loop.filters.notch ? fmt::format(", with a notch at {:.3g} Hz", loop.filters.notch->f_Hz) : "");
     session_.ask(change + ", on the measured response. It is downloaded, not saved, and measured again.");
     session_.download(session_.design(model_, {loop.design, loop.filters}, "raised-params.toml"));

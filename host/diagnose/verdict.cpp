@@ -254,7 +254,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
           diagnosis.measure == Measure::effort
               ? std::string("by the effort that the measured motion needed, in which what is missing shows")
               : fmt::format("over windows of {:g} s, in which an error of force shows", diagnosis.window_s));
-    verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
+    if (chosen->after > kExplained)
+      verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }
   const std::string closest = chosen == nullptr ? std::string() : doubt_in_words(*chosen, diagnosis);
