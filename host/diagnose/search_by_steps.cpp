@@ -78,13 +78,14 @@ bool is_as_good(const sim::DriveDescription& model, const Errors& with, const Pr
   return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
 }
 
-/// Whether the base was stuck in a valley: from where the best effect has carried its fit it is as good as that effect,
-/// and nothing is missing. It stays there then.
+/// Whether the base was stuck in a valley: from where the best effect has carried its fit it trains as well as with
+/// that effect. It stays there then.
 bool base_was_stuck(PreparedSets& sets, const Candidate& best) {
   constexpr double kBetter = 0.98;
   const sim::DriveDescription base = without_or_handed(best, best.kinds.back(), sets);
-  const Errors here(base, sets), before(sets.base, sets);
-  if (here.training > kBetter * before.training || !is_as_good(base, Errors(best.model, sets), sets)) return false;
+  const double here = Errors(base, sets).training;
+  if (here > kBetter * Errors(sets.base, sets).training || here > kAsGood * Errors(best.model, sets).training)
+    return false;
   sets.base = base;
   return true;
 }

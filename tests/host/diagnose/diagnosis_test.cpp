@@ -116,6 +116,17 @@ TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
   EXPECT_EQ(diagnosis.verdict.status, host::Status::parameters) << diagnosis.verdict.explanation;
 }
 
+/// A breakaway that ran away bent the base so far that half of it was called an effect; without that the training data
+/// leave the base open, and so does the verdict.
+TEST(Diagnosis, ABaseThatWasStuckIsFreedWhateverItsJudgesSay) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const host::SimulatedNull null = host::simulated_null(2'000'049);
+  const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
+  const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
+  EXPECT_LT(diagnosis.before_train, 1.0) << "of the base, re-fitted";
+  EXPECT_THAT(diagnosis.verdict.effects, IsEmpty()) << diagnosis.verdict.explanation;
+}
+
 /// Half of what is left goes with the acceleration there: the smoother's own, and nothing that is missing.
 TEST(Diagnosis, WhatTheSmootherRoundsOffIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
