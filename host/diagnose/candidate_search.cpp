@@ -166,7 +166,14 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
   for_each_in_parallel(starts.size(), [&](std::size_t k) {
     results[k] = fit_model(starts[k], affordable(thin, starts[k], kSeriousFit), kSeriousFit);
   });
-  const FitResult& best = *std::ranges::min_element(results, {}, &FitResult::robust);
+  FitResult best = *std::ranges::min_element(results, {}, &FitResult::robust);
+  // A breakaway may have carried static friction away, into a valley that the rest of the base has left since.
+  if (const sim::EffectEntry* static_friction = given.find("stribeck")) {
+    sim::DriveDescription again = best.model;
+    *again.find("stribeck") = *static_friction;
+    FitResult back = fit_model(again, affordable(thin, again, kSeriousFit), kSeriousFit);
+    if (back.robust < best.robust) best = std::move(back);
+  }
   const RecordSet last = thinned(training, SearchEffort{}.over(window_s).final_windows);
   return fit_model(best.model, affordable(last, best.model, kLastWord), kLastWord).model;
 }

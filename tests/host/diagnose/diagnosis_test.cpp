@@ -127,6 +127,16 @@ TEST(Diagnosis, ABaseThatWasStuckIsFreedWhateverItsJudgesSay) {
   EXPECT_THAT(diagnosis.verdict.effects, IsEmpty()) << diagnosis.verdict.explanation;
 }
 
+/// Static friction ran away to all that the motor gives, and no candidate led back.
+TEST(Diagnosis, StaticFrictionThatRanAwayIsFittedAgainFromWhatWasGiven) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const host::SimulatedNull null = host::simulated_null(1'000'040);
+  const host::Measurements measured = host::MeasurementGate(null.model).admit(null.train, null.validate);
+  const host::Diagnosis diagnosis = host::diagnose(null.model, measured);
+  EXPECT_LT(diagnosis.before_train, 1.0) << "of the base, re-fitted";
+  EXPECT_LT(diagnosis.base.find("stribeck")->at("static_positive"), 6.0) << "4.4 Nm in the machine";
+}
+
 /// Half of what is left goes with the acceleration there: the smoother's own, and nothing that is missing.
 TEST(Diagnosis, WhatTheSmootherRoundsOffIsNoEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
