@@ -277,7 +277,11 @@ void name_coordinate(Diagnosis& diagnosis) {
       " A free curve of {} knots over {} takes {:.0f} % of the squared effort that is left (axistool add MODEL "
       "free_curve --over {}).",
       curve->knots, spaced(curve->over), 100.0 * share, curve->over);
-  const std::string coordinate = curve->over == "friction_along_position" ? "position" : curve->over;
+  if (curve->period > 0.0)
+    verdict.explanation += fmt::format(" It repeats every {:.4g} {}.", curve->period,
+                                       screen.base.model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
+  const std::string coordinate =
+      curve->over == "friction_along_position" || curve->over == "phase" ? "position" : curve->over;
   const auto along = [&](const std::string& name) {
     return std::ranges::find(diagnosis.residual.dependences, name, &ResidualDependence::coordinate);
   };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
 #include "sim/harmonic.hpp"
 
 namespace host {
@@ -95,6 +96,11 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
       if (partner != nullptr && entry.has(*partner) && entry.at(*partner) == value) {
         free.entries.emplace_back(*partner, 1.0);
         taken.push_back(*partner);
+      }
+      if (info.curve && id == "value_0" && sim::Curve(entry).period() > 0.0) {
+        const std::size_t last = sim::Curve(entry).values().size() - 1;
+        free.entries.emplace_back(sim::numbered_id("value", static_cast<double>(last)), 1.0);
+        taken.push_back(free.entries.back().first);
       }
       if (info.periodic && id != "period") {  // one amplitude, whatever the phase
         const double order = sim::number_of(id).value_or(1.0);

@@ -5,7 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "host/effort/effort_orders.hpp"
 #include "host/statistics.hpp"
 #include "sim/curve.hpp"
 
@@ -39,22 +41,56 @@ VectorXd travel_since_reversal(const EffortRows& rows) {
 
 struct Coordinate {
   VectorXd at;
-  VectorXd weight;  ///< -1 or 1: friction turns with the motion
+  VectorXd weight;      ///< -1 or 1: friction turns with the motion
+  double period = 0.0;  ///< `at` goes from 0 to it and begins anew
 };
 
-std::optional<Coordinate> coordinate_of(const EffortRows& rows, std::string_view over) {
+/// The shortest travel after which what the best model leaves comes back; nothing where it does not.
+std::optional<double> period_of(const EffortScreen& screen) {
+  EffortRows left = screen.rows;
+  left.effort = screen.best().residual;
+  const std::vector<EffortTerm> base = base_terms(screen.best().model, left);
+  MatrixXd columns(left.x.size(), 0);
+  for (const EffortTerm& term : base) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + term.columns.cols());
+    columns.rightCols(term.columns.cols()) = term.columns;
+  }
+  const OrderChoice choice =
+      choose_orders(screen.base.model.data, left, columns, VectorXd::Ones(left.x.size()), left.effort);
+  if (choice.orders.empty() || !comes_back(choice, screen.base.model.data, left)) return {};
+  long common = 0;
+  for (const double order : choice.orders) common = std::gcd(common, std::lround(order));
+  return choice.period / static_cast<double>(common);
+}
+
+std::optional<Coordinate> coordinate_of(const EffortScreen& screen, std::string_view over) {
+  const EffortRows& rows = screen.rows;
   const VectorXd one = VectorXd::Ones(rows.w.size());
   if (over == "speed") return Coordinate{rows.w, one};
+  const VectorXd direction = rows.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
   if (over == "time") return Coordinate{rows.t_s, one};
   if (over == "current") return Coordinate{rows.effort, one};
   if (!rows.has_position) return {};
   if (over == "position") return Coordinate{rows.x, one};
-  return Coordinate{over == "friction_along_position" ? rows.x : travel_since_reversal(rows),
-                    rows.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; })};
+  if (over == "phase") {
+    const std::optional<double> period = period_of(screen);
+    if (!period) return {};
+    return Coordinate{rows.x.unaryExpr([&](double x) { return x - *period * std::floor(x / *period); }), one, *period};
+  }
+  return Coordinate{over == "friction_along_position" ? rows.x : travel_since_reversal(rows), direction};
 }
 
-/// Knots that part the training rows evenly.
-std::vector<double> knots_of(const EffortRows& rows, const VectorXd& at, std::size_t count) {
+std::vector<double> even_knots(double period, std::size_t count) {
+  std::vector<double> knots;
+  for (std::size_t n = 0; n < count; ++n)
+    knots.push_back(period * static_cast<double>(n) / static_cast<double>(count - 1));
+  return knots;
+}
+
+/// Knots that part the training rows evenly, or a period.
+std::vector<double> knots_of(const EffortRows& rows, const Coordinate& coordinate, std::size_t count) {
+  const VectorXd& at = coordinate.at;
+  if (coordinate.period > 0.0) return even_knots(coordinate.period, count);
   std::vector<double> sorted;
   for (Index k = 0; k < at.size(); ++k)
     if (!rows.judges[static_cast<std::size_t>(k)]) sorted.push_back(at(k));
@@ -80,6 +116,10 @@ MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
     columns(k, n - 1) = coordinate.weight(k) * (1.0 - part);
     columns(k, n) = coordinate.weight(k) * part;
   }
+  if (coordinate.period > 0.0) {  // the last knot is the first one again
+    columns.col(0) += columns.rightCols(1);
+    columns.conservativeResize(Eigen::NoChange, columns.cols() - 1);
+  }
   return columns;
 }
 
@@ -91,7 +131,7 @@ sim::EffectEntry entry_of(std::string_view over, const std::vector<double>& knot
   entry.over = over;
   const MatrixXd covariance = variance * information.ldlt().solve(MatrixXd::Identity(values.size(), values.size()));
   for (std::size_t n = 0; n < knots.size(); ++n) {
-    const auto c = static_cast<Index>(n);
+    const Index c = static_cast<Index>(n) % values.size();
     const std::string id = sim::numbered_id("value", static_cast<double>(n));
     entry.parameters[sim::numbered_id("knot", static_cast<double>(n))] = knots[n];
     entry.parameters[id] = values(c);
@@ -101,13 +141,13 @@ sim::EffectEntry entry_of(std::string_view over, const std::vector<double>& knot
   return entry;
 }
 
-std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view over, std::size_t count) {
+std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view over, const Coordinate& coordinate,
+                                   std::size_t count) {
   const EffortRows& rows = screen.rows;
-  const std::optional<Coordinate> coordinate = coordinate_of(rows, over);
-  if (!coordinate) return {};
-  const std::vector<double> knots = knots_of(rows, coordinate->at, count);
+  const std::vector<double> knots = knots_of(rows, coordinate, count);
   if (knots.size() < 2) return {};
-  EffortTerm term{"free_curve", hats(*coordinate, knots), std::vector<int>(knots.size(), 0), {}, {}};
+  EffortTerm term{"free_curve", hats(coordinate, knots), {}, {}, {}};
+  term.sign.assign(static_cast<std::size_t>(term.columns.cols()), 0);
   MatrixXd seen = term.columns;
   for (Index k = 0; k < seen.rows(); ++k)
     if (rows.judges[static_cast<std::size_t>(k)]) seen.row(k).setZero();
@@ -121,22 +161,42 @@ std::optional<FreeCurveFit> fitted(const EffortScreen& screen, std::string_view 
   };
   std::optional<ScreenedModel> with = refitted_with(screen, term);
   if (!with) return {};
-  return FreeCurveFit{std::string(over), knots.size(), *std::move(with)};
+  return FreeCurveFit{std::string(over), knots.size(), coordinate.period, *std::move(with)};
+}
+
+std::optional<FreeCurveFit> fitted_with_as_many_knots_as_pay(const EffortScreen& screen, std::string_view over) {
+  const std::optional<Coordinate> coordinate = coordinate_of(screen, over);
+  if (!coordinate) return {};
+  std::optional<FreeCurveFit> best;
+  for (const std::size_t count : {3U, 5U, 8U, 12U, 17U, 25U}) {
+    std::optional<FreeCurveFit> fit = fitted(screen, over, *coordinate, count);
+    const double limit = best ? std::sqrt(1.0 - kLeastGain) * best->model.validate : screen.best().validate;
+    if (fit && fit->model.validate < limit) best = std::move(fit);
+  }
+  return best;
+}
+
+/// Over the effort itself a curve and the inertia could take any part of each other's: the inertia stands as it is.
+/// Without acceleration nothing else would.
+std::optional<FreeCurveFit> fitted_over_effort(const EffortScreen& screen) {
+  if (screen.rows.steady) return {};
+  EffortScreen standing = screen;
+  sim::DriveDescription& model = standing.chosen.empty() ? standing.base.model : standing.chosen.back().model;
+  const bool was_free = model.find("inertia")->held.insert("J").second;
+  std::optional<FreeCurveFit> fit = fitted_with_as_many_knots_as_pay(standing, "current");
+  if (fit && was_free) fit->model.model.find("inertia")->held.erase("J");
+  return fit;
 }
 
 }  // namespace
 
 std::optional<FreeCurveFit> fit_free_curve(const EffortScreen& screen, std::string_view over) {
   std::optional<FreeCurveFit> best;
-  for (const std::string_view coordinate : sim::kCurveCoordinates) {
+  for (const std::string_view name : sim::kCurveCoordinates) {
     // The effort explains itself: a curve over it is only drawn where it is asked for.
-    if (over.empty() ? coordinate == "current" : coordinate != over) continue;
-    std::optional<FreeCurveFit> own;
-    for (const std::size_t count : {3U, 5U, 8U, 12U, 17U, 25U}) {
-      std::optional<FreeCurveFit> fit = fitted(screen, coordinate, count);
-      const double limit = own ? std::sqrt(1.0 - kLeastGain) * own->model.validate : screen.best().validate;
-      if (fit && fit->model.validate < limit) own = std::move(fit);
-    }
+    if (over.empty() ? name == "current" : name != over) continue;
+    std::optional<FreeCurveFit> own =
+        name == "current" ? fitted_over_effort(screen) : fitted_with_as_many_knots_as_pay(screen, name);
     if (own && (!best || own->model.validate < best->model.validate)) best = std::move(own);
   }
   return best;

@@ -12,6 +12,7 @@ namespace host {
 struct FreeCurveFit {
   std::string over;
   std::size_t knots = 0;
+  double period = 0.0;  ///< mm or m; 0 where it does not come back
   ScreenedModel model;  ///< the screen's best model with the curve added
 };
 

@@ -255,6 +255,9 @@ class ModelReader {
            values.size());
     if (!std::ranges::is_sorted(knots, std::less_equal{}))
       fail(line_of(*table.get(knots_key)), "{}: each must lie above the one before", knots_key);
+    if (entry.over == "phase" && values.front() != values.back())
+      fail(line_of(*table.get(values_key)), "{}: over phase the curve comes back: the last must be as the first",
+           values_key);
     std::vector<double> deviations;
     if (table.contains(deviation_key)) deviations = numbers_at(table, deviation_key);
     for (std::size_t n = 0; n < knots.size(); ++n) {

@@ -1,4 +1,6 @@
 // A curve that no formula gives.
+#include <algorithm>
+
 #include "sim/curve.hpp"
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
@@ -22,6 +24,7 @@ void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
     drive.effort_limit.push_back([curve](double effort, double) { return effort - curve(effort); });
   } else {
     const bool by_time = entry.over == "time";
+    if (curve.period() > 0.0) drive.finest_period = std::min(drive.finest_period, curve.period());
     drive.load_effort.push_back([curve, by_time](double t_s, double x) { return -curve(by_time ? t_s : x); });
   }
 }
@@ -34,8 +37,9 @@ const EffectInfo free_curve{
     .title = "A curve without a formula",
     .equation =
         "T_motor = ... + f(q), f straight between its knots and level beyond them; q: speed, position, "
-        "friction_along_position, travel_since_reversal, time or current (the motor's torque). Over speed, along the "
-        "position and since a reversal f is friction",
+        "friction_along_position, travel_since_reversal, time, current (the motor's torque) or phase (the position "
+        "within a period, which goes from the first knot to the last). Over speed, along the position and since a "
+        "reversal f is friction",
     .stage = Stage::load,
     .curve = true,
     .parameters = {{.id = "knot",
@@ -56,7 +60,12 @@ const EffectInfo free_curve{
     .shows = "Residual torque follows one coordinate, and no effect of the catalogue has that shape",
     .confused_with = {"nonlinear_viscous", "cogging", "thermal_friction_drift", "presliding"},
     .separate_by =
-        "It names nothing: look at its shape, then record that coordinate alone, slowly and over its whole range",
+        "It names nothing: look at its shape, then record that coordinate alone, slowly and over its whole range. "
+        "Asked for over current it carries dac_dead_zone and current_saturation. No curve carries what two coordinates "
+        "make together (torque_ripple: phase and torque; thermal_friction_drift: time and direction), what goes with "
+        "acceleration (input_delay, current_loop_lag, compliance, backlash: a second mass in its gap), what acts at "
+        "rest and at breaking away alone (presliding, friction_lag, dwell_stiction), nor a sensor's error, which is no "
+        "effort (tach_gain, tach_offset, tach_lag, tach_ripple, encoder_cyclic_error)",
     .origin = "Whatever the catalogue does not hold, or holds in another shape",
     .remedy = "The curve itself serves a feed-forward, over speed and position",
     .install = install,

@@ -107,6 +107,17 @@ TEST(FreeCurve, FrictionAlongThePositionHoldsBothWays) {
   }
 }
 
+TEST(FreeCurve, OverPhaseComesBackWithItsPeriod) {
+  const auto drive = Drive(with_curve(
+      coulomb_drive(), "phase",
+      {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 1.0}, {"value_1", 0.5}, {"knot_2", 2.0}, {"value_2", 0.0}}));
+  for (const double x : {-3.0, 1.0, 41.0}) {
+    EXPECT_EQ(run(drive, drive.at(x, 0.0), kCoulomb + 0.5 - 1e-6, 5, 0.001).w, 0.0) << x;
+    EXPECT_GT(run(drive, drive.at(x, 0.0), kCoulomb + 0.5 + 1e-6, 5, 0.001).w, 0.0) << x;
+  }
+  EXPECT_GT(run(drive, drive.at(40.0, 0.0), kCoulomb + 1e-6, 5, 0.001).w, 0.0);
+}
+
 TEST(FreeCurve, OverTravelSinceReversalBeginsAnewWhenTheMotionTurns) {
   const auto drive = Drive(with_curve(coulomb_drive(), "travel_since_reversal",
                                       {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 1.0}, {"value_1", 0.3}}));

@@ -69,6 +69,26 @@ TEST(ParameterVector, EqualSpeedsOfOneDirectionStayEqual) {
   EXPECT_EQ(stribeck.at("omega2_negative"), -4.7);
 }
 
+TEST(ParameterVector, ACurveOverPhaseStaysClosed) {
+  sim::DriveDescription model = HandMade::model();
+  sim::EffectEntry curve{
+      "free_curve",
+      {{"knot_0", 0.0}, {"value_0", 0.1}, {"knot_1", 1.0}, {"value_1", 0.2}, {"knot_2", 2.0}, {"value_2", 0.1}},
+      {},
+      {}};
+  curve.over = "phase";
+  model.effects.push_back(curve);
+  const host::ParameterVector vector(model);
+  const Eigen::Index first = place_of(vector, model, "free_curve.value_0");
+  ASSERT_GE(first, 0);
+  EXPECT_EQ(place_of(vector, model, "free_curve.value_2"), -1);
+  Eigen::VectorXd values = vector.read(model);
+  values(first) = 0.3;
+  vector.write(values, model);
+  EXPECT_EQ(model.find("free_curve")->at("value_0"), 0.3);
+  EXPECT_EQ(model.find("free_curve")->at("value_2"), 0.3);
+}
+
 TEST(ParameterVector, DifferentSpeedsOfOneDirectionMoveAlone) {
   const sim::DriveDescription model = with_stribeck(6.0);
   const host::ParameterVector vector(model);

@@ -345,6 +345,7 @@ TEST(ReadModel, ACurveThatIsNone) {
   EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"weather\"")), HasSubstr("position"));
   EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0, 0.0]")), HasSubstr("above"));
   EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0]")), HasSubstr("as many"));
+  EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"phase\"")), HasSubstr("as the first"));
 }
 
 TEST(WriteModel, WritesNumbersAsPeopleDo) {
