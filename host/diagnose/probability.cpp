@@ -59,8 +59,10 @@ void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   const double unexplained = 1.0 - std::min(explained_share(best->before, best->after),
                                             explained_share(diagnosis.before_train, best->train_after));
   constexpr double kLeastPart = 0.01;
-  const double other = logistic(scale.other_slope * std::log((unexplained + kLeastPart) / scale.other_at) -
-                                (diagnosis.rough ? scale.rough : 0.0));
+  const double other =
+      scale.lapse +
+      (1.0 - scale.lapse) * logistic(scale.other_slope * std::log((unexplained + kLeastPart) / scale.other_at) -
+                                     (diagnosis.rough ? scale.rough : 0.0));
   double candidates = 0.0;
   for (std::size_t k = 0; k < weights.size(); ++k) {
     diagnosis.candidates[k].probability = (1.0 - nothing) * (1.0 - other) * (1.0 - best->luck) * weights[k] / sum;

@@ -18,6 +18,7 @@ struct ProbabilityScale {
   double traced = 3.0;        ///< the same where what is left is small but no noise
   double other_at = 0.12;     ///< unexplained part at which something else is as probable as the best candidate
   double other_slope = 2.4;   ///< of the log odds over the log of that part
+  double lapse = 0.05;        ///< "something else" however well a candidate explains: on cuts one such answer in 16
   double rough = 3.5;  ///< log odds that a rough machine, which lacks many small things, takes off "something else"
 };
 
