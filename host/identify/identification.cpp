@@ -16,13 +16,12 @@ namespace host {
 namespace {
 
 void require_same_rate(const std::vector<Record>& records) {
-  if (records.empty()) throw Failure(ExitCode::usage, "no record was given");
   for (const Record& record : records) {
     if (std::abs(record.sample_period_s - records.front().sample_period_s) > 1e-6 * record.sample_period_s) {
       throw Failure(
           ExitCode::bad_input,
-          fmt::format("{}: sampled every {:g} s but {} every {:g} s; records that are stacked need one rate "
-                      "(axistool import --resample)",
+          fmt::format("{}: sampled every {:g} s but {} every {:g} s; this method stacks samples of one rate "
+                      "(--method sliding-ls takes several; axistool import --resample makes them one)",
                       record.path, record.sample_period_s, records.front().path, records.front().sample_period_s));
     }
   }
@@ -134,7 +133,10 @@ IdentificationMethod method_named(std::string_view name, const std::vector<Recor
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options) {
   const std::vector<Record>& given = measured.training();
-  require_same_rate(given);
+  if (given.empty()) throw Failure(ExitCode::usage, "no record was given");
+  const bool tachometer = std::ranges::all_of(given, &Record::has_speed);
+  const bool by_samples = tachometer && method != IdentificationMethod::sliding_ls;
+  if (by_samples) require_same_rate(given);
   require_enough(given);
   Identification result;
   result.method = method;
@@ -153,11 +155,9 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   result.excitation = summarise_excitation(records, motions, drive.data);
   require_motion(result.excitation, drive.data);
 
-  const bool tachometer = std::ranges::all_of(records, &Record::has_speed);
   const Coulomb coulomb = method == IdentificationMethod::simple_ls ? Coulomb::left_out : Coulomb::estimated;
-  result.estimate = tachometer && method != IdentificationMethod::sliding_ls
-                        ? discrete_least_squares(records, drive.data, motions.front().deadband, coulomb)
-                        : inverse_least_squares(motions, coulomb);
+  result.estimate = by_samples ? discrete_least_squares(records, drive.data, motions.front().deadband, coulomb)
+                               : inverse_least_squares(motions, coulomb);
   require_determined(result.estimate, result.excitation, drive.data);
   result.warnings = judge_estimate(result.estimate, result.excitation, drive.data);
 

@@ -151,7 +151,7 @@ double guard_cutoff_Hz(const Motion& motion) { return decimation_cutoff_Hz(motio
 double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data) {
   constexpr double kNoiseShare = 0.01;
   constexpr double kStep = 0.8;
-  const double rate_Hz = 1.0 / records.front().sample_period_s;
+  const double rate_Hz = 1.0 / std::ranges::max_element(records, {}, &Record::sample_period_s)->sample_period_s;
   const double lowest = std::min(kLowestCutoff_Hz, rate_Hz / 50.0);
   double cutoff = std::min(kHighestCutoff_Hz, rate_Hz / 10.0);
   while (cutoff * kStep >= lowest) {

@@ -64,9 +64,9 @@ DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& dat
 /// The record's shaft speed from its encoder after the zero-phase filter, or from the tachometer without an encoder.
 std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz);
 
-/// Cut-off for these records: a tenth of the sampling rate, at most 100 Hz (above lie resonances, not the rigid axis),
-/// lowered until the acceleration noise that the sensor leaves (encoder steps, tachometer noise) is below 1 % of the
-/// acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
+/// Cut-off for these records: a tenth of the lowest sampling rate, at most 100 Hz (above lie resonances, not the rigid
+/// axis), lowered until the acceleration noise that the sensor leaves (encoder steps, tachometer noise) is below 1 % of
+/// the acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
 double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data);
 
 /// Rows that prepare_motion() leaves out at each end: two differences, each of which needs both neighbours.

@@ -30,6 +30,19 @@ host::Record steps(const char* axis, double Ku) {
   return host::record_open_loop(*host::paper_drive(axis), host::doublet_series(Ku * host::kStepUnit_V, 0.001), 1);
 }
 
+/// As a logger of half the rate would have it.
+host::Record every_second_row(const host::Record& record) {
+  host::Record coarse = record;
+  coarse.sample_period_s *= 2.0;
+  for (std::vector<double> host::Record::*column :
+       {&host::Record::t_s, &host::Record::u_V, &host::Record::x, &host::Record::w, &host::Record::i_A}) {
+    std::vector<double>& values = coarse.*column;
+    for (std::size_t k = 0; 2 * k < values.size(); ++k) values[k] = values[2 * k];
+    values.resize((values.size() + 1) / 2);
+  }
+  return coarse;
+}
+
 class StepIdentification : public testing::TestWithParam<Truth> {};
 
 TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
@@ -47,6 +60,24 @@ TEST_P(StepIdentification, IsRefusedWhereTheAxisStandsStill) {
         EXPECT_THAT(failure.what(), HasSubstr(Ku == 1.0 ? "±0.6 V" : "±1.5 V"));
       }
     }
+  }
+}
+
+/// The paper's method stacks samples; the one that smooths takes each record as it comes.
+TEST_P(StepIdentification, TakesRecordsOfSeveralRates) {
+  const Truth& truth = GetParam();
+  const sim::DriveDescription sheet = data_sheet_of(truth.axis);
+  const host::Record whole = steps(truth.axis, 5.0), coarse = every_second_row(steps(truth.axis, 7.5));
+  const host::Measurements measured = host::MeasurementGate(sheet).admit({whole, coarse});
+  const host::Identification found = host::identify_drive(measured, sheet, IdentificationMethod::sliding_ls);
+  EXPECT_NEAR(found.model.find("inertia")->at("J"), truth.J, 0.02 * truth.J);
+  EXPECT_NEAR(found.model.find("coulomb")->at("positive"), truth.coulomb[0], 0.05 * truth.coulomb[0]);
+  try {
+    host::identify_drive(measured, sheet, IdentificationMethod::unbiased_ls);
+    FAIL() << "samples of two rates were stacked";
+  } catch (const host::Failure& failure) {
+    EXPECT_EQ(failure.code, host::ExitCode::bad_input);
+    EXPECT_THAT(failure.what(), HasSubstr("--method sliding-ls"));
   }
 }
 
