@@ -160,8 +160,11 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto pair = std::ranges::min_element(found.pairs, {}, cost);
   if (pair == found.pairs.end() || !is_physical(*pair)) return found;
   renew(pair->model);
-  const Candidate best_pair = *pair;
-  std::ranges::move(with_first_exchanged(best_pair, found.singles, sets), std::back_inserter(found.pairs));
+  Candidate best_pair = *pair;
+  std::vector<Candidate> exchanged = with_first_exchanged(best_pair, found.singles, sets);
+  for (const Candidate& other : exchanged)
+    if (cost(other) < cost(best_pair)) best_pair = other;
+  std::ranges::move(exchanged, std::back_inserter(found.pairs));
   if (std::vector<Candidate> shorter = without_what_is_needless(best_pair, sets); !shorter.empty()) {
     for (Candidate& better : shorter) {
       std::erase_if(found.singles, [&](const Candidate& stuck) { return stuck.kinds == better.kinds; });
