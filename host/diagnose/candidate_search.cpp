@@ -150,6 +150,21 @@ SearchEffort SearchEffort::over(double window_s) const {
   return effort;
 }
 
+namespace {
+
+/// Whether a breakaway carried static friction beyond three times what was given, into a valley that the rest of the
+/// base may have left since.
+bool static_friction_ran_away(const sim::DriveDescription& fitted, const sim::DriveDescription& given) {
+  constexpr double kFar = 3.0;
+  const sim::EffectEntry *before = given.find("stribeck"), *after = fitted.find("stribeck");
+  return before != nullptr && after != nullptr && std::ranges::any_of(before->parameters, [&](const auto& parameter) {
+           const auto& [id, value] = parameter;
+           return id.starts_with("static") && std::abs(after->at(id)) > kFar * std::abs(value);
+         });
+}
+
+}  // namespace
+
 sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training) {
   // From the given values, and from a drive 25 % heavier or lighter with friction that goes the other way.
   constexpr std::array kFactors{1.0, 1.25, 0.8};
@@ -167,10 +182,9 @@ sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordS
     results[k] = fit_model(starts[k], affordable(thin, starts[k], kSeriousFit), kSeriousFit);
   });
   FitResult best = *std::ranges::min_element(results, {}, &FitResult::robust);
-  // A breakaway may have carried static friction away, into a valley that the rest of the base has left since.
-  if (const sim::EffectEntry* static_friction = given.find("stribeck")) {
+  if (static_friction_ran_away(best.model, given)) {
     sim::DriveDescription again = best.model;
-    *again.find("stribeck") = *static_friction;
+    *again.find("stribeck") = *given.find("stribeck");
     FitResult back = fit_model(again, affordable(thin, again, kSeriousFit), kSeriousFit);
     if (back.robust < best.robust) best = std::move(back);
   }
