@@ -19,8 +19,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kHeartbeat{20};  // a fifth of the silence that a board suffers
-
 class CaptureRun {
  public:
   CaptureRun(BoardClient& board, const CaptureSettings& settings)

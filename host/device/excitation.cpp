@@ -23,7 +23,6 @@ using firmware::ExcitationPhase;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kHeartbeat{20};
 constexpr double kRest_s = 0.2;
 
 /// Rows of a capture as they come, in the order of the channels.

@@ -16,8 +16,6 @@ using firmware::SupervisorState;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kRound{20};  // a fifth of the silence that a board suffers while it moves
-
 SupervisorState state_of(const BoardState& status, std::size_t axis) {
   return static_cast<SupervisorState>(status.axis.at(axis).state);
 }
@@ -29,7 +27,7 @@ bool ask_until(BoardClient& board, std::chrono::duration<double> patience, Done 
   for (;;) {
     if (done(board.status())) return true;
     if (board.now() > deadline) return false;
-    board.wait(kRound);
+    board.wait(kHeartbeat);
   }
 }
 
@@ -61,7 +59,7 @@ void stop_and_wait(BoardClient& board, std::uint8_t axis) {
 /// Of a motion that ends by itself.
 void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
   bool interrupted = false;
-  board.wait(kRound);  // it begins with the next control period
+  board.wait(kHeartbeat);  // it begins with the next control period
   ask_until(board, std::chrono::hours(24), [&](const auto& status) {
     interrupted = stop();
     return interrupted || rests(status, axis);

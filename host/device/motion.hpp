@@ -9,6 +9,9 @@
 
 namespace host {
 
+/// How often a board is told that its host lives: a fifth of the silence that it suffers while an axis moves.
+inline constexpr std::chrono::milliseconds kHeartbeat{20};
+
 /// Enables the axes of `mask` and waits until their loops are closed, a self-test before included. Throws
 /// Failure(device_fault, refused, time_out).
 void enable_and_wait(BoardClient& board, std::uint8_t mask);

@@ -75,15 +75,15 @@ std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model,
   return found;
 }
 
-Doubt doubt_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  if (!gains(candidate, diagnosis)) return Doubt::no_gain;
-  if (!candidate.on_bound.empty()) return Doubt::on_bound;
+Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  if (!gains(candidate, diagnosis)) return Reservation::no_gain;
+  if (!candidate.on_bound.empty()) return Reservation::on_bound;
   if (!diagnosis.rough && (explained_share(candidate.before, candidate.after) < 1.0 - kMostLeft ||
                            explained_share(diagnosis.before_train, candidate.train_after) < 1.0 - kMostLeft))
-    return Doubt::leaves_much;
+    return Reservation::leaves_much;
   if (candidate.luck > kMostLuck || candidate.confidence < (diagnosis.rough ? kLeastRoughConfidence : kLeastConfidence))
-    return Doubt::luck;
-  return Doubt::none;
+    return Reservation::luck;
+  return Reservation::none;
 }
 
 double least_validation_s(std::size_t tried) {

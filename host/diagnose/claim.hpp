@@ -25,7 +25,7 @@ double explained_share(double before, double after);
 std::size_t parameters_of(const JudgedCandidate& candidate);
 
 /// Why a candidate is not claimed.
-enum class Doubt {
+enum class Reservation {
   none,
   no_gain,      ///< it lowers too little of the error, or not on training and validation alike
   on_bound,     ///< a parameter ran to the end of its physical range
@@ -33,8 +33,8 @@ enum class Doubt {
   luck,         ///< too few windows judged it to rule out that the best of all that were tried was lucky
 };
 
-/// The first doubt, in the order above.
-Doubt doubt_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
+/// The first one, in the order above.
+Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// Parameters of the effects in `kinds` that stand at the end of their range, "compliance: damping_ratio". A range that
 /// ends at zero ends where the parameter's part of the effect is absent, which is no fault.

@@ -37,7 +37,7 @@ const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size
 }
 
 bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  return doubt_about(candidate, diagnosis) == Doubt::none;
+  return reservation_about(candidate, diagnosis) == Reservation::none;
 }
 
 /// Whether two effects do more together than what each does alone adds up to: judged one at a time, each hides the
@@ -141,17 +141,17 @@ double validation_s(const Diagnosis& diagnosis) {
 std::string doubt_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
   const std::string what = fmt::format("; the closest, {}, leaves {:.2f} (training: {:.2f})",
                                        fmt::join(closest.kinds, " + "), closest.after, closest.train_after);
-  switch (doubt_about(closest, diagnosis)) {
-    case Doubt::none:
+  switch (reservation_about(closest, diagnosis)) {
+    case Reservation::none:
       return {};
-    case Doubt::no_gain:
+    case Reservation::no_gain:
       return what;
-    case Doubt::on_bound:
+    case Reservation::on_bound:
       return what + fmt::format(", and only with {} at the end of its range", fmt::join(closest.on_bound, ", "));
-    case Doubt::luck:
+    case Reservation::luck:
       return what + fmt::format(", which with {} candidates tried may be luck on {:.1f} s of validation data",
                                 diagnosis.tried, validation_s(diagnosis));
-    case Doubt::leaves_much:
+    case Reservation::leaves_much:
       return what + ", too much for an effect that is really there: it makes up for something else";
   }
   return {};
@@ -254,12 +254,11 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
           diagnosis.measure == Measure::effort
               ? std::string("by the effort that the measured motion needed, in which what is missing shows")
               : fmt::format("over windows of {:g} s, in which an error of force shows", diagnosis.window_s));
-    if (chosen->after > kExplained)
-      verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
+    if (chosen->after > kExplained) verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }
   const std::string closest = chosen == nullptr ? std::string() : doubt_in_words(*chosen, diagnosis);
-  if (chosen != nullptr && doubt_about(*chosen, diagnosis) == Doubt::luck) {
+  if (chosen != nullptr && reservation_about(*chosen, diagnosis) == Reservation::luck) {
     verdict.status = Status::insufficient_data;
     verdict.explanation = fmt::format("The error on validation data is {:.2f} times the floor{}.", before, closest);
     verdict.next_experiment = fmt::format(

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "host/evidence/channel_relations.hpp"
@@ -13,13 +12,12 @@
 #include "host/evidence/position_jumps.hpp"
 #include "host/identify/rigid_estimate.hpp"
 #include "host/record/columns.hpp"
+#include "host/record/record_origin.hpp"
 #include "sim/drive.hpp"
 
 namespace host {
 
 namespace {
-
-std::string file_name(const Record& record) { return std::filesystem::path(record.path).filename().string(); }
 
 class FaultList {
  public:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "host/evidence/channel_relations.hpp"
 #include "host/evidence/log_faults.hpp"
@@ -13,6 +12,7 @@
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/read_record.hpp"
+#include "host/record/record_origin.hpp"
 
 namespace host {
 
@@ -20,8 +20,6 @@ namespace {
 
 /// Rows that judge and train at once, in parts of the record that judges, beyond which the judgement means nothing.
 constexpr double kMostInCommon = 0.1;
-
-std::string file_name(const Record& record) { return std::filesystem::path(record.path).filename().string(); }
 
 void require_known(const std::vector<std::string>& accepted) {
   constexpr auto kLast = static_cast<int>(LogFaultKind::records_disagree);

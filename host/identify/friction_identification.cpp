@@ -9,6 +9,7 @@
 #include "host/exit_codes.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/plausibility.hpp"
+#include "host/record/record_origin.hpp"
 
 namespace host {
 
@@ -44,12 +45,6 @@ std::vector<CurvePoint> by_disturbance(const std::vector<FrictionPoint>& points,
       curve.push_back({point.speed, point.observed_effort.value_or(0.0), point.standard_error});
   }
   return curve;
-}
-
-std::string origin_of(const std::vector<Record>& records) {
-  std::string origin;
-  for (const Record& record : records) origin += (origin.empty() ? "" : ", ") + record.path;
-  return origin;
 }
 
 /// One direction's values as the model file has them: backward ones negative.

@@ -10,6 +10,7 @@
 #include "host/identify/inverse_model.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/record/channel_checks.hpp"
+#include "host/record/record_origin.hpp"
 
 namespace host {
 
@@ -34,12 +35,6 @@ void require_enough(const std::vector<Record>& records) {
     require_rate(record, kLowestRate_Hz, "see the axis accelerate");
     require_duration(record, kShortest_s, "hold a movement");
   }
-}
-
-std::string origin_of(const std::vector<Record>& records) {
-  std::string origin;
-  for (const Record& record : records) origin += (origin.empty() ? "" : ", ") + record.path;
-  return origin;
 }
 
 void set_entry(sim::DriveDescription& model, const std::string& kind, const std::string& from,

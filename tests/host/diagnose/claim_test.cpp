@@ -12,7 +12,7 @@
 
 namespace {
 
-using host::Doubt;
+using host::Reservation;
 
 host::JudgedCandidate candidate(double before, double after, double train_after) {
   host::JudgedCandidate judged;
@@ -35,33 +35,33 @@ host::Diagnosis diagnosis(double before_train, double before_validate) {
 }
 
 TEST(Claim, WhatTakesNearlyAllOfTheErrorOnBothSetsStands) {
-  EXPECT_EQ(host::doubt_about(candidate(12.0, 1.0, 1.1), diagnosis(20.0, 12.0)), Doubt::none);
+  EXPECT_EQ(host::reservation_about(candidate(12.0, 1.0, 1.1), diagnosis(20.0, 12.0)), Reservation::none);
   // An impact that comes a moment late leaves 3 floors of 20 on training: 2 % of the square.
-  EXPECT_EQ(host::doubt_about(candidate(12.0, 1.0, 3.0), diagnosis(20.0, 12.0)), Doubt::none);
+  EXPECT_EQ(host::reservation_about(candidate(12.0, 1.0, 3.0), diagnosis(20.0, 12.0)), Reservation::none);
 }
 
 TEST(Claim, ACompleteModelLeavesNothingToExplain) {
   // Lucky on validation, where a few windows are bad; on training there was nothing to begin with.
-  EXPECT_EQ(host::doubt_about(candidate(1.24, 0.97, 0.76), diagnosis(0.83, 1.24)), Doubt::no_gain);
-  EXPECT_EQ(host::doubt_about(candidate(1.05, 0.8, 0.8), diagnosis(1.05, 1.05)), Doubt::no_gain);
+  EXPECT_EQ(host::reservation_about(candidate(1.24, 0.97, 0.76), diagnosis(0.83, 1.24)), Reservation::no_gain);
+  EXPECT_EQ(host::reservation_about(candidate(1.05, 0.8, 0.8), diagnosis(1.05, 1.05)), Reservation::no_gain);
 }
 
 TEST(Claim, WhatLowersOneSetOnlyIsNoFinding) {
-  EXPECT_EQ(host::doubt_about(candidate(12.0, 1.0, 20.5), diagnosis(20.0, 12.0)), Doubt::no_gain);
-  EXPECT_EQ(host::doubt_about(candidate(12.0, 12.5, 1.0), diagnosis(20.0, 12.0)), Doubt::no_gain);
+  EXPECT_EQ(host::reservation_about(candidate(12.0, 1.0, 20.5), diagnosis(20.0, 12.0)), Reservation::no_gain);
+  EXPECT_EQ(host::reservation_about(candidate(12.0, 12.5, 1.0), diagnosis(20.0, 12.0)), Reservation::no_gain);
 }
 
 TEST(Claim, WhatLeavesAThirdOfTheErrorMakesUpForSomethingElse) {
-  EXPECT_EQ(host::doubt_about(candidate(4.0, 2.4, 1.0), diagnosis(4.0, 4.0)), Doubt::leaves_much);
+  EXPECT_EQ(host::reservation_about(candidate(4.0, 2.4, 1.0), diagnosis(4.0, 4.0)), Reservation::leaves_much);
   host::Diagnosis rough = diagnosis(40.0, 40.0);
   rough.rough = true;  // many small things are missing there
-  EXPECT_EQ(host::doubt_about(candidate(40.0, 20.0, 20.0), rough), Doubt::none);
+  EXPECT_EQ(host::reservation_about(candidate(40.0, 20.0, 20.0), rough), Reservation::none);
 }
 
 TEST(Claim, AParameterAtTheEndOfItsRangeIsNoFinding) {
   host::JudgedCandidate judged = candidate(12.0, 1.0, 1.0);
   judged.on_bound = {"compliance: damping_ratio"};
-  EXPECT_EQ(host::doubt_about(judged, diagnosis(20.0, 12.0)), Doubt::on_bound);
+  EXPECT_EQ(host::reservation_about(judged, diagnosis(20.0, 12.0)), Reservation::on_bound);
 }
 
 TEST(Claim, TheEndOfARangeIsSeenButNotWhereItIsZero) {
