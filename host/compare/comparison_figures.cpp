@@ -14,6 +14,7 @@
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/record/drive_units.hpp"
+#include "host/record/record_origin.hpp"
 #include "host/report/binned_curve.hpp"
 
 namespace host {
@@ -88,7 +89,7 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
   for (const ComparedModel& one : models)
     predictions.push_back(predict_all_rows(one.model, one.set.records[record_index].prepared));
   TimePlot plot;
-  plot.title = "Measured and predicted: " + std::filesystem::path(record.path).filename().string();
+  plot.title = "Measured and predicted: " + file_name(record);
   plot.caption = "Predictions restart at every window: what grows from there to the next one is what a model lacks.";
   plot.t_s = record.t_s;
   const auto add = [&](const char* quantity, const char* unit, const std::vector<double>& measured,

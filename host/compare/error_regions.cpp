@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 
 #include "host/compare/error_partition.hpp"
 #include "host/compare/error_spectra.hpp"
 #include "host/evidence/regime.hpp"
 #include "host/record/drive_units.hpp"
+#include "host/record/record_origin.hpp"
 
 namespace host {
 
@@ -207,10 +207,6 @@ Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, cons
   return partition;
 }
 
-std::string file_name(const PreparedRecord& prepared) {
-  return std::filesystem::path(prepared.record->path).filename().string();
-}
-
 Partition by_time(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   Partition partition("time");
   double longest = 0.0;
@@ -223,8 +219,9 @@ Partition by_time(const std::vector<ErrorRow>& rows, const RecordSet& set) {
     add_to_bin(
         partition, prepared.record->t_s[row.row] - prepared.record->t_s.front(), step, row.square,
         [&](const std::string& from, const std::string& to) {
-          return std::pair(fmt::format("{}..{} s of {}", from, to, file_name(prepared)),
-                           fmt::format("from {} s to {} s after the start of {}", from, to, file_name(prepared)));
+          return std::pair(
+              fmt::format("{}..{} s of {}", from, to, file_name(*prepared.record)),
+              fmt::format("from {} s to {} s after the start of {}", from, to, file_name(*prepared.record)));
         },
         kRecordOffset * static_cast<long>(row.record));
   }
@@ -282,7 +279,7 @@ Partition by_event(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   const PreparedRecord& prepared = set.records[rows[worst.begin].record].prepared;
   const double from_s = prepared.record->t_s[rows[worst.begin].row];
   const double to_s = prepared.record->t_s[rows[worst.end - 1].row];
-  const std::string span = fmt::format("t = {:.2f} s to {:.2f} s of {}", from_s, to_s, file_name(prepared));
+  const std::string span = fmt::format("t = {:.2f} s to {:.2f} s of {}", from_s, to_s, file_name(*prepared.record));
   partition.define(0, span, "from " + span);
   partition.define(1, "elsewhere", "everywhere but " + span);
   for (std::size_t k = 0; k < rows.size(); ++k)

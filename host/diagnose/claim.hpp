@@ -33,7 +33,7 @@ enum class Reservation {
   luck,         ///< too few windows judged it to rule out that the best of all that were tried was lucky
 };
 
-/// The first one, in the order above.
+/// The first reservation, in the order above.
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// Parameters of the effects in `kinds` that stand at the end of their range, "compliance: damping_ratio". A range that

@@ -138,7 +138,7 @@ double validation_s(const Diagnosis& diagnosis) {
 }
 
 /// Why the closest candidate is not claimed, to follow a statement of the error.
-std::string doubt_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
+std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
   const std::string what = fmt::format("; the closest, {}, leaves {:.2f} (training: {:.2f})",
                                        fmt::join(closest.kinds, " + "), closest.after, closest.train_after);
   switch (reservation_about(closest, diagnosis)) {
@@ -257,7 +257,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     if (chosen->after > kExplained) verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }
-  const std::string closest = chosen == nullptr ? std::string() : doubt_in_words(*chosen, diagnosis);
+  const std::string closest = chosen == nullptr ? std::string() : reservation_in_words(*chosen, diagnosis);
   if (chosen != nullptr && reservation_about(*chosen, diagnosis) == Reservation::luck) {
     verdict.status = Status::insufficient_data;
     verdict.explanation = fmt::format("The error on validation data is {:.2f} times the floor{}.", before, closest);
