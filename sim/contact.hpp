@@ -23,6 +23,21 @@ double sum_at(const Terms& terms, double x) {
   return value;
 }
 
+inline FrictionPoint operator+(const FrictionPoint& a, const FrictionPoint& b) {
+  return {a.effort + b.effort, a.slope + b.slope};
+}
+
+/// Friction never drives, whatever a fit tries.
+inline FrictionPoint never_driving(const FrictionPoint& friction) {
+  return friction.effort < 0.0 ? FrictionPoint{0.0, 0.0} : friction;
+}
+
+inline FrictionPoint further_friction(const Drive& drive, int side, double speed) {
+  FrictionPoint all{0.0, 0.0};
+  for (const auto& further : drive.sliding_friction) all = all + further(side, speed);
+  return all;
+}
+
 /// A drive that has nothing but eq. (19), with or without the Stribeck effect: the predictor's innermost loop.
 template <bool kStribeck>
 struct PlainContact {
@@ -32,10 +47,7 @@ struct PlainContact {
   PlainContact(const Drive& drive, const DriveMotion&, double /*t_s*/, double /*x*/, double /*motor*/)
       : sides(drive.curves()) {}
 
-  FrictionPoint sliding(int side, double speed) const {
-    const FrictionPoint level = dry(side, speed), fluid = viscous(side, speed);
-    return {level.effort + fluid.effort, level.slope + fluid.slope};
-  }
+  FrictionPoint sliding(int side, double speed) const { return dry(side, speed) + viscous(side, speed); }
   FrictionPoint dry(int side, double speed) const {
     const SlidingCurve& curve = sides[static_cast<std::size_t>(side)];
     if constexpr (!kStribeck) return {curve.coulomb, 0.0};
@@ -49,6 +61,19 @@ struct PlainContact {
   void broke_away() const {}
   void came_to_rest() const {}
   void rested(double) const {}
+};
+
+/// Eq. (19) and further friction of a direction over its speed.
+struct BentContact : PlainContact<true> {
+  const Drive& drive;
+
+  BentContact(const Drive& of_drive, const DriveMotion& motion, double t_s, double x, double motor)
+      : PlainContact(of_drive, motion, t_s, x, motor), drive(of_drive) {}
+
+  FrictionPoint sliding(int side, double speed) const { return never_driving(dry(side, speed) + viscous(side, speed)); }
+  FrictionPoint viscous(int side, double speed) const {
+    return PlainContact::viscous(side, speed) + further_friction(drive, side, speed);
+  }
 };
 
 /// A contact on which further effects act; `motion` keeps what it remembers.
@@ -69,11 +94,7 @@ struct RichContact {
     for (const auto& further : drive.friction_after_reversal) carried += further(std::abs(x - motion.turned_x));
   }
 
-  FrictionPoint sliding(int side, double speed) const {
-    const FrictionPoint part = dry(side, speed), fluid = viscous(side, speed);
-    if (part.effort + fluid.effort < 0.0) return {0.0, 0.0};  // friction never drives, whatever a fit tries
-    return {part.effort + fluid.effort, part.slope + fluid.slope};
-  }
+  FrictionPoint sliding(int side, double speed) const { return never_driving(dry(side, speed) + viscous(side, speed)); }
 
   FrictionPoint dry(int side, double speed) const {
     const SlidingCurve& curve = drive.curves()[static_cast<std::size_t>(side)];
@@ -85,13 +106,7 @@ struct RichContact {
   /// The part that fluid and not the contact carries.
   FrictionPoint viscous(int side, double speed) const {
     const double coefficient = viscosity * drive.curves()[static_cast<std::size_t>(side)].viscous;
-    FrictionPoint all{coefficient * speed, coefficient};
-    for (const auto& further : drive.sliding_friction) {
-      const FrictionPoint part = further(side, speed);
-      all.effort += part.effort;
-      all.slope += part.slope;
-    }
-    return all;
+    return FrictionPoint{coefficient * speed, coefficient} + further_friction(drive, side, speed);
   }
 
   double breakaway(int side) const {

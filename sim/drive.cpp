@@ -39,13 +39,19 @@ void Drive::settle() {
   }
   const bool stribeck =
       std::ranges::any_of(friction, [](const FrictionSide& side) { return side.omega1 > 0.0 || side.omega2 > 0.0; });
-  const bool rich = !level_factor.empty() || !viscous_factor.empty() || !sliding_friction.empty() ||
-                    !friction_along_position.empty() || !friction_after_reversal.empty() || transmitted_share != 0.0 ||
-                    friction_memory_s > 0.0 || dwell_gain > 0.0;
-  contact_form_ = rich ? ContactForm::rich : (stribeck ? ContactForm::stribeck : ContactForm::coulomb);
+  const bool rich = !level_factor.empty() || !viscous_factor.empty() || !friction_along_position.empty() ||
+                    !friction_after_reversal.empty() || transmitted_share != 0.0 || friction_memory_s > 0.0 ||
+                    dwell_gain > 0.0;
+  contact_form_ = rich                        ? ContactForm::rich
+                  : !sliding_friction.empty() ? ContactForm::bent
+                  : stribeck                  ? ContactForm::stribeck
+                                              : ContactForm::coulomb;
   bare_ = !rich && current_lag_s <= 0.0 && tach_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
           load_effort.empty();
-  plain_ = bare_ && command.empty() && delay_s <= 0.0 && !bristles && !second_mass;
+  one_mass_ = !bristles && !second_mass;
+  straight_command_ = command.empty() && effort_limit.empty();
+  remembers_ = current_lag_s > 0.0 || tach_lag_s > 0.0 || friction_memory_s > 0.0 || !friction_after_reversal.empty();
+  plain_ = bare_ && one_mass_ && straight_command_ && delay_s <= 0.0;
   // The mean of a sine over an eighth of its period is within 2.5 % of its middle value.
   constexpr double kPeriodShare = 0.125;
   parts_per_s_ = 1.0 / max_step_s;
@@ -73,7 +79,8 @@ DriveState Drive::at(double x, double w) const {
   return state;
 }
 
-double Drive::command_effort(double u_V, double w) const {
+inline double Drive::command_effort(double u_V, double w) const {
+  if (straight_command_) return effort_per_volt * u_V;
   for (const auto& stage : command) u_V = stage(u_V);
   double effort = effort_per_volt * u_V;
   for (const auto& limit : effort_limit) effort = limit(effort, w);
@@ -98,7 +105,8 @@ void Drive::filter_tach(DriveMotion& motion, double w_before, double duration_s)
 }
 
 template <typename Contact>
-void Drive::move_masses(DriveMotion& motion, double effort, double duration_s, int parts, Contact& contact) const {
+[[gnu::always_inline]] inline void Drive::move_masses(DriveMotion& motion, double effort, double duration_s, int parts,
+                                                      Contact& contact) const {
   if (coupling_) {
     move_two_masses(*coupling_, lead, motion, effort, duration_s, parts, contact);
   } else if (bristles) {
@@ -112,14 +120,20 @@ void Drive::move_masses(DriveMotion& motion, double effort, double duration_s, i
 }
 
 template <typename Contact>
-void Drive::move(DriveMotion& motion, double effort, double t_s, double duration_s) const {
+[[gnu::always_inline]] inline void Drive::push(DriveMotion& motion, double effort, double t_s,
+                                               double duration_s) const {
   const double middle_x = motion.x + 0.5 * duration_s * lead * motion.w;
   const double motor = effort * product(effort_factor, middle_x);
   double net = motor;
   for (const auto& load : load_effort) net += load(t_s, middle_x);
   Contact contact(*this, motion, t_s, middle_x, motor);
-  const double w_before = motion.w;
   move_masses(motion, net, duration_s, 1, contact);
+}
+
+template <typename Contact>
+void Drive::move(DriveMotion& motion, double effort, double t_s, double duration_s) const {
+  const double w_before = motion.w;
+  push<Contact>(motion, effort, t_s, duration_s);
   if (friction_memory_s > 0.0)
     lag_mean(motion.friction_speed, 0.5 * std::abs(w_before + motion.w), friction_memory_s, duration_s);
   note_reversal(motion, motion.x, motion.w);
@@ -137,24 +151,30 @@ int Drive::parts_of(double duration_s, double w) const {
   constexpr double kMostParts = 6.0;
   const double by_travel = std::min(std::abs(w) * lead * duration_s * parts_per_travel_, kMostParts);
   const double wanted = std::max(duration_s * parts_per_s_, by_travel) - 1e-9;
-  return wanted <= 1.0 ? 1 : static_cast<int>(std::ceil(wanted));
+  const int whole = static_cast<int>(wanted);
+  return whole < wanted ? whole + 1 : std::max(whole, 1);
 }
 
 template <typename Contact>
 void Drive::hold(DriveMotion& motion, double u_V, double t_s, double duration_s) const {
   const int parts = parts_of(duration_s, motion.w);
   const double part_s = parts == 1 ? duration_s : duration_s / parts;
-  if (bare_) {
-    Contact contact(*this, motion, t_s, motion.x, 0.0);
-    move_masses(motion, command_effort(u_V, motion.w), part_s, parts, contact);
-    motion.tach = motion.w;
+  if (remembers_ || !effort_limit.empty()) {
+    for (int part = 0; part < parts; ++part) {
+      const double at_s = t_s + part * part_s;
+      const double w = limiting_speed<Contact>(motion, u_V, at_s, part_s);
+      move<Contact>(motion, deliver(motion, u_V, w, part_s), at_s, part_s);
+    }
     return;
   }
-  for (int part = 0; part < parts; ++part) {
-    const double at_s = t_s + part * part_s;
-    const double w = limiting_speed<Contact>(motion, u_V, at_s, part_s);
-    move<Contact>(motion, deliver(motion, u_V, w, part_s), at_s, part_s);
+  const double effort = command_effort(u_V, motion.w);
+  if (bare_) {
+    Contact contact(*this, motion, t_s, motion.x, 0.0);
+    move_masses(motion, effort, part_s, parts, contact);
+  } else {
+    for (int part = 0; part < parts; ++part) push<Contact>(motion, effort, t_s + part * part_s, part_s);
   }
+  motion.tach = motion.w;
 }
 
 template <typename Contact>
@@ -182,9 +202,18 @@ void Drive::step_on(DriveState& state, double u_V, double t_s, double duration_s
   }
   const std::size_t whole = whole_periods_of_delay(duration_s);
   const double rest_s = std::min(delay_s - static_cast<double>(whole) * duration_s, duration_s);
-  const double newer = whole == 0 ? u_V : state.past_u_V[whole - 1];
-  if (rest_s > 0.0) hold<Contact>(state, state.past_u_V[whole], t_s, rest_s);
-  if (rest_s < duration_s) hold<Contact>(state, newer, t_s + rest_s, duration_s - rest_s);
+  const double older = state.past_u_V[whole], newer = whole == 0 ? u_V : state.past_u_V[whole - 1];
+  bool moved = false;
+  if (bare_ && one_mass_) {
+    SlidingMass mass{state.x, state.w, mobility_, lead};
+    Contact contact(*this, state, t_s, state.x, 0.0);
+    moved = slide_through_change(mass, command_effort(older, state.w), command_effort(newer, state.w), rest_s,
+                                 duration_s, contact);
+    state.x = mass.x;
+    state.w = state.tach = mass.w;
+  }
+  if (!moved && rest_s > 0.0) hold<Contact>(state, older, t_s, rest_s);
+  if (!moved && rest_s < duration_s) hold<Contact>(state, newer, t_s + rest_s, duration_s - rest_s);
   remember_command(state, u_V, whole);
 }
 
@@ -194,6 +223,8 @@ void Drive::step(DriveState& state, double u_V, double t_s, double duration_s) c
       return step_on<PlainContact<false>>(state, u_V, t_s, duration_s);
     case ContactForm::stribeck:
       return step_on<PlainContact<true>>(state, u_V, t_s, duration_s);
+    case ContactForm::bent:
+      return step_on<BentContact>(state, u_V, t_s, duration_s);
     case ContactForm::rich:
       return step_on<RichContact>(state, u_V, t_s, duration_s);
   }

@@ -153,7 +153,7 @@ class Drive {
 
  private:
   /// What the contact asks of the friction law; the cheapest form that the effects allow is simulated.
-  enum class ContactForm { coulomb, stribeck, rich };
+  enum class ContactForm { coulomb, stribeck, bent, rich };
 
   void settle();
   double tach_ripple_at(double x) const;
@@ -164,6 +164,8 @@ class Drive {
   void step_on(DriveState& state, double u_V, double t_s, double duration_s) const;
   template <typename Contact>
   void hold(DriveMotion& motion, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void push(DriveMotion& motion, double effort, double t_s, double duration_s) const;
   template <typename Contact>
   void move(DriveMotion& motion, double effort, double t_s, double duration_s) const;
   template <typename Contact>
@@ -180,7 +182,10 @@ class Drive {
   double mobility_ = 0.0;                 ///< 1/inertia
   std::array<SlidingCurve, 2> curves_{};  ///< of `friction`
   ContactForm contact_form_ = ContactForm::rich;
-  bool plain_ = false;             ///< nothing acts but inertia and the friction of eq. (19)
+  bool one_mass_ = false;
+  bool straight_command_ = false;  ///< effort in proportion to the command
+  bool remembers_ = false;         ///< something but the masses and their contact remembers
+  bool plain_ = false;             ///< nothing acts but inertia and the friction of its contact
   bool bare_ = false;              ///< the command's effort acts alone, and on nothing but masses and their contact
   double parts_per_s_ = 0.0;       ///< that the masses need at least
   double parts_per_travel_ = 0.0;  ///< per mm or m

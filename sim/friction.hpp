@@ -111,6 +111,26 @@ inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& 
   slide_through_stops(mass, effort, duration_s, contact);
 }
 
+/// `slide` where the effort changes once, `change_s` after the start; false, with the mass as it was, where it may
+/// stop on the way. Friction is linearised once for both parts: exact where it is Coulomb and viscous, order 2 else.
+template <typename Contact>
+inline bool slide_through_change(SlidingMass& mass, double before, double after, double change_s, double duration_s,
+                                 Contact& contact) {
+  const double direction = mass.w > 0.0 ? 1.0 : -1.0, speed = std::abs(mass.w);
+  if (speed == 0.0) return false;
+  const SmoothStep step(direction * before, contact.sliding(direction > 0.0 ? 0 : 1, speed), mass.mobility);
+  const double later_s = duration_s - change_s, change = direction * (after - before) * mass.mobility;
+  const ExponentialFactors all = exponential_factors(step.lambda * duration_s);
+  const ExponentialFactors later = exponential_factors(step.lambda * later_s);
+  // Each part is monotone: where its ends move, all of it does.
+  const double unchanged = step.speed_after(speed, duration_s, all);
+  const double end = unchanged + later.phi1 * later_s * change;
+  if (!(unchanged > 0.0 && end > 0.0)) return false;
+  mass.x += mass.lead * direction * (step.way_after(speed, duration_s, all) + later.phi2 * later_s * later_s * change);
+  mass.w = direction * end;
+  return true;
+}
+
 /// The friction of one contact linearised once for several short steps in a row, which then cost a few operations each.
 class LinearisedContact {
  public:

@@ -20,8 +20,8 @@ inline double presliding_step_s(const Bristles& bristles, double inertia) {
 /// Linearly implicit scheme of order 2 (ROS2, gamma = 1 - 1/sqrt 2, L-stable), `parts` steps of `duration_s` each: two
 /// stages, each one 2-by-2 solution.
 template <typename Contact>
-inline void move_on_bristles(const Bristles& bristles, double mobility, double lead, DriveMotion& motion, double effort,
-                             double duration_s, int parts, Contact& contact) {
+[[gnu::noinline]] void move_on_bristles(const Bristles& bristles, double mobility, double lead, DriveMotion& motion,
+                                        double effort, double duration_s, int parts, Contact& contact) {
   const double stiffness = bristles.stiffness, damping = bristles.damping;
   struct Rates {
     double w, z;
@@ -34,6 +34,15 @@ inline void move_on_bristles(const Bristles& bristles, double mobility, double l
     const FrictionPoint dry = contact.dry(side, std::abs(w)), viscous = contact.viscous(side, std::abs(w));
     const double g = std::max(dry.effort, 1e-9);
     return Curve{g, 1.0 / g, dry.slope, viscous.effort, viscous.slope};
+  };
+  // Within so small a change of its level a curve is as good as straight.
+  const auto straight_on = [&](const Curve& curve, double w0, double w1) {
+    constexpr double kStraight = 0.01;
+    const double faster = std::abs(w1) - std::abs(w0), change = curve.g_slope * faster * curve.per_g;
+    if (!(w0 * w1 > 0.0 && std::abs(change) < kStraight)) return curve_at(w1);
+    const double per_change = 1.0 - change + change * change;
+    return Curve{curve.g * (1.0 + change), curve.per_g * per_change, curve.g_slope,
+                 curve.further + curve.further_slope * faster, curve.further_slope};
   };
   const auto rates = [&](double w, double z, const Curve& curve) {
     const double z_rate = w - stiffness * std::abs(w) * z * curve.per_g;
@@ -60,7 +69,7 @@ inline void move_on_bristles(const Bristles& bristles, double mobility, double l
     };
     const Rates k1 = solve(now);
     const double w1 = w0 + h * k1.w, z1 = z0 + h * k1.z;
-    const Curve then = curve_at(w1);
+    const Curve then = straight_on(curve, w0, w1);
     const Rates at_end = rates(w1, z1, then);
     const Rates k2 = solve({at_end.w - 2.0 * k1.w, at_end.z - 2.0 * k1.z});
     const double w2 = w0 + h * (1.5 * k1.w + 0.5 * k2.w);

@@ -4,6 +4,7 @@
 
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
+#include "sim/power.hpp"
 
 namespace sim::effects {
 
@@ -22,13 +23,13 @@ void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
     return;
   }
   const double exponent = entry.has("exponent") ? entry.at("exponent") : 1.0;
-  drive.sliding_friction.push_back([=](int, double speed) {
+  const double per_reference = 1.0 / reference;
+  drive.sliding_friction.push_back([=, power = Power(exponent)](int, double speed) {
     // A law that flattens is infinitely steep at rest; below a thousandth of the reference its slope is held.
-    const double ratio = speed / reference, steepest = std::max(ratio, 1e-3);
-    const double at_steepest = coefficient * std::pow(steepest, exponent);
-    const double effort =
-        ratio == steepest ? at_steepest : (ratio > 0.0 ? coefficient * std::pow(ratio, exponent) : 0.0);
-    return FrictionPoint{effort, exponent * at_steepest / (steepest * reference)};
+    const double ratio = speed * per_reference, steepest = std::max(ratio, 1e-3);
+    const double at_steepest = coefficient * power(steepest);
+    const double effort = ratio == steepest ? at_steepest : (ratio > 0.0 ? coefficient * power(ratio) : 0.0);
+    return FrictionPoint{effort, exponent * per_reference * at_steepest / steepest};
   });
 }
 
