@@ -51,10 +51,7 @@ bool is_steady(const std::vector<double>& speed, double slow, double inertia, co
 
 /// Deviation of the acceleration that the channel's noise leaves below a cut-off.
 double acceleration_deviation(const Record& record, const sim::DataSheet& data, bool by_speed, double cutoff_Hz) {
-  if (!by_speed) return std::sqrt(acceleration_noise(record, data, cutoff_Hz));
-  const double circle = 2.0 * std::numbers::pi;
-  return std::sqrt(data.tach_noise_variance.value_or(0.0) * 2.0 * record.sample_period_s * circle * circle *
-                   std::pow(cutoff_Hz, 3) / 3.0);
+  return std::sqrt(acceleration_noise(record, data, cutoff_Hz, by_speed));
 }
 
 /// As high as the sampling allows, lowered until the sensor's noise is a hundredth of the effort.
@@ -66,23 +63,6 @@ double cutoff_of(const Record& record, const sim::DataSheet& data, bool by_speed
          inertia * acceleration_deviation(record, data, by_speed, cutoff_Hz) > kNoiseShare * effort)
     cutoff_Hz *= kStep;
   return cutoff_Hz;
-}
-
-/// Samples by which the speed channel lags behind the position: a driver computes it from positions that have been.
-std::size_t lag_of(const std::vector<double>& speed, const std::vector<double>& by_position, double period_s) {
-  constexpr double kMost_s = 0.02;
-  const auto most = std::min(static_cast<std::size_t>(kMost_s / period_s), speed.size() / 4);
-  std::size_t best = 0;
-  double least = HUGE_VAL;
-  for (std::size_t lag = 0; lag <= most; ++lag) {
-    double square = 0.0;
-    for (std::size_t k = most; k + 2 * most < speed.size(); ++k) square += std::pow(speed[k + lag] - by_position[k], 2);
-    if (square < least) {
-      least = square;
-      best = lag;
-    }
-  }
-  return best;
 }
 
 struct Builder {
@@ -108,16 +88,7 @@ struct Builder {
         record.sample_period_s, cutoff_of(record, model.data, by_speed, inertia, size), {}, {}, {}, {},
         columns[0].size()};
     const auto low_pass = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, rate_Hz);
-    std::vector<double> speed = low_pass(record.w);
-    if (record.has_position()) {
-      const std::vector<double> by_position = smooth_speed(record, model.data, signals.cutoff_Hz);
-      if (by_speed) {
-        const std::size_t lag = lag_of(speed, by_position, record.sample_period_s);
-        std::rotate(speed.begin(), speed.begin() + static_cast<std::ptrdiff_t>(lag), speed.end());
-      } else {
-        speed = by_position;
-      }
-    }
+    const std::vector<double> speed = smooth_speed(record, model.data, signals.cutoff_Hz, by_speed);
     const std::vector<double> travel =
         record.has_position() ? low_pass(record.x) : std::vector<double>(record.size(), 0.0);
     const std::vector<double> effort = delivered_effort(record, model.data, signals.cutoff_Hz, true, path).effort;

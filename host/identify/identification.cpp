@@ -98,6 +98,16 @@ std::string dropped_effects(const sim::DriveDescription& drive) {
   return kinds;
 }
 
+/// The records as one of the channels moves them.
+struct Attempt {
+  MotionOptions options;
+  std::vector<Motion> motions;
+  ExcitationSummary excitation;
+  RigidEstimate estimate;
+  sim::DriveDescription model;
+  double relative_error = 0.0;
+};
+
 }  // namespace
 
 std::string_view method_name(IdentificationMethod method) {
@@ -141,25 +151,47 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   const bool corrected = method == IdentificationMethod::sliding_ls && result.tachometer.has_value();
   if (corrected) apply_calibration(*result.tachometer, records);
 
-  MotionOptions settled = options;
-  if (!settled.cutoff_Hz) settled.cutoff_Hz = choose_cutoff(records, drive.data);
-  std::vector<Motion> motions;
-  for (const Record& record : records) motions.push_back(prepare_motion(record, drive.data, settled));
-  result.cutoff_Hz = motions.front().cutoff_Hz;
-  result.decimation = motions.front().decimation;
-  result.excitation = summarise_excitation(records, motions, drive.data);
-  require_motion(result.excitation, drive.data);
-
   const Coulomb coulomb = method == IdentificationMethod::simple_ls ? Coulomb::left_out : Coulomb::estimated;
-  result.estimate = by_samples ? discrete_least_squares(records, drive.data, motions.front().deadband, coulomb)
-                               : inverse_least_squares(motions, coulomb);
-  require_determined(result.estimate, result.excitation, drive.data);
+  const auto attempt = [&](bool by_speed) {
+    Attempt made;
+    made.options = options;
+    made.options.by_speed = by_speed;
+    if (!options.cutoff_Hz) made.options.cutoff_Hz = choose_cutoff(records, drive.data, by_speed);
+    for (const Record& record : records) made.motions.push_back(prepare_motion(record, drive.data, made.options));
+    made.excitation = summarise_excitation(records, made.motions, drive.data);
+    require_motion(made.excitation, drive.data);
+    made.estimate = by_samples ? discrete_least_squares(records, drive.data, made.motions.front().deadband, coulomb)
+                               : inverse_least_squares(made.motions, coulomb);
+    require_determined(made.estimate, made.excitation, drive.data);
+    made.model = model_from(drive, made.estimate, origin_of(given));
+    made.relative_error = relative_error(made.model, records, made.options);
+    return made;
+  };
+  Attempt best = attempt(false);
+  const bool positions = std::ranges::all_of(records, &Record::has_position);
+  if (corrected && positions) {
+    // A tachometer has errors of its own: it must be clearly better.
+    constexpr double kClearlyBetter = 0.8;
+    try {
+      if (Attempt by_speed = attempt(true); by_speed.relative_error < kClearlyBetter * best.relative_error)
+        best = std::move(by_speed);
+    } catch (const Failure&) {  // the speed channel alone does not determine the drive
+    }
+  }
+  result.by_speed = best.options.by_speed || !positions;
+  result.cutoff_Hz = best.motions.front().cutoff_Hz;
+  result.decimation = best.motions.front().decimation;
+  result.excitation = best.excitation;
+  result.estimate = best.estimate;
+  result.relative_error = best.relative_error;
   result.warnings = judge_estimate(result.estimate, result.excitation, drive.data);
-
-  result.model = model_from(drive, result.estimate, origin_of(given));
+  result.model = std::move(best.model);
+  if (result.by_speed && positions)
+    result.warnings.push_back(
+        "the motion was taken from the speed channel: the position differentiates clearly worse (time stamps that "
+        "jitter, coarse steps)");
   if (result.tach_noise_variance && tachometer) result.model.data.tach_noise_variance = result.tach_noise_variance;
   std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
-  result.relative_error = relative_error(result.model, records, settled);
   warn_of_tachometer(result, corrected);
   if (const std::string kinds = dropped_effects(drive); !kinds.empty()) {
     result.warnings.push_back(

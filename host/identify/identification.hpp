@@ -31,6 +31,7 @@ struct Identification {
   sim::DriveDescription model;  ///< data sheet plus inertia, viscous, coulomb with intervals and origin
   RigidEstimate estimate;
   double relative_error = 0.0;  ///< of the inverse model on the same records
+  bool by_speed = false;        ///< the motion was taken from the speed channel
   double cutoff_Hz = 0.0;       ///< of the zero-phase filter
   std::size_t decimation = 1;
   ExcitationSummary excitation;
@@ -41,7 +42,8 @@ struct Identification {
 
 /// Identifies from one or several (training) records of the same drive and sampling period. `drive` gives the data
 /// sheet; a base effect that it has in the one-level form keeps that form, other effects are not taken over (a warning
-/// says so). sliding_ls corrects the tachometer by the encoder first; the paper's methods take the records as they are.
+/// says so). sliding_ls corrects the tachometer by the encoder first, and takes the motion from it where the position
+/// differentiates clearly worse; the paper's methods take the records as they are.
 /// Throws Failure(refused) for want of excitation, Failure(bad_input) for records that do not fit the drive.
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});

@@ -18,6 +18,7 @@ nlohmann::json identification_json(const Identification& identification) {
       {"format", "axis-identification/1"},
       {"method", method_name(identification.method)},
       {"relative_error", identification.relative_error},
+      {"motion_from", identification.by_speed ? "speed" : "position"},
       {"parameters", parameters},
       {"condition_number", estimate.condition_number},
       {"filter", {{"cutoff_Hz", identification.cutoff_Hz}, {"decimation", identification.decimation}}},

@@ -43,6 +43,23 @@ std::vector<bool> slides(const std::vector<double>& speed, double deadband, std:
   return counts;
 }
 
+/// Samples by which the speed channel lags behind the position: a driver computes it from positions that have been.
+std::size_t lag_of(const std::vector<double>& speed, const std::vector<double>& by_position, double period_s) {
+  constexpr double kMost_s = 0.02;
+  const auto most = std::min(static_cast<std::size_t>(kMost_s / period_s), speed.size() / 4);
+  std::size_t best = 0;
+  double least = HUGE_VAL;
+  for (std::size_t lag = 0; lag <= most; ++lag) {
+    double square = 0.0;
+    for (std::size_t k = most; k + 2 * most < speed.size(); ++k) square += std::pow(speed[k + lag] - by_position[k], 2);
+    if (square < least) {
+      least = square;
+      best = lag;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<double> Motion::seen(const std::vector<double>& signal) const {
@@ -128,18 +145,22 @@ DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& dat
   return delivered;
 }
 
-std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
+std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool by_speed) {
   const auto low_pass = ZeroPhaseLowPass::butterworth(cutoff_Hz, 1.0 / record.sample_period_s);
   if (!record.has_position()) return low_pass(record.w);
-  std::vector<double> speed = central_difference(low_pass(record.x), record.sample_period_s);
-  for (double& w : speed) w /= data.lead;
+  std::vector<double> by_position = central_difference(low_pass(record.x), record.sample_period_s);
+  for (double& w : by_position) w /= data.lead;
+  if (!by_speed) return by_position;
+  std::vector<double> speed = low_pass(record.w);
+  const std::size_t lag = lag_of(speed, by_position, record.sample_period_s);
+  std::rotate(speed.begin(), speed.begin() + static_cast<std::ptrdiff_t>(lag), speed.end());
   return speed;
 }
 
-double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz) {
+double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool by_speed) {
   const double rate_Hz = 1.0 / record.sample_period_s;
   const double circle = 2.0 * std::numbers::pi;
-  if (record.has_position()) {
+  if (record.has_position() && !by_speed) {
     const double step = encoder_step(record, data) / data.lead;
     return step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4) * std::pow(cutoff_Hz, 5) / 5.0;
   }
@@ -148,7 +169,7 @@ double acceleration_noise(const Record& record, const sim::DataSheet& data, doub
 
 double guard_cutoff_Hz(const Motion& motion) { return decimation_cutoff_Hz(motion.decimation, motion.sample_rate_Hz); }
 
-double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data) {
+double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data, bool by_speed) {
   constexpr double kNoiseShare = 0.01;
   constexpr double kStep = 0.8;
   const double rate_Hz = 1.0 / std::ranges::max_element(records, {}, &Record::sample_period_s)->sample_period_s;
@@ -157,8 +178,9 @@ double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& d
   while (cutoff * kStep >= lowest) {
     double noise = 0.0, signal = 0.0;
     for (const Record& record : records) {
-      signal += sum_of_squares(central_difference(smooth_speed(record, data, cutoff), record.sample_period_s));
-      noise += acceleration_noise(record, data, cutoff) * static_cast<double>(record.size());
+      const std::vector<double> speed = smooth_speed(record, data, cutoff, by_speed);
+      signal += sum_of_squares(central_difference(speed, record.sample_period_s));
+      noise += acceleration_noise(record, data, cutoff, by_speed) * static_cast<double>(record.size());
     }
     if (noise <= kNoiseShare * kNoiseShare * signal) break;
     cutoff *= kStep;
@@ -169,7 +191,7 @@ double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& d
 Motion prepare_motion(const Record& record, const sim::DataSheet& data, const MotionOptions& options) {
   Motion motion;
   motion.sample_rate_Hz = 1.0 / record.sample_period_s;
-  motion.cutoff_Hz = options.cutoff_Hz ? *options.cutoff_Hz : choose_cutoff({record}, data);
+  motion.cutoff_Hz = options.cutoff_Hz ? *options.cutoff_Hz : choose_cutoff({record}, data, options.by_speed);
   if (!(motion.cutoff_Hz > 0.0) || motion.cutoff_Hz >= 0.5 * motion.sample_rate_Hz) {
     throw Failure(ExitCode::usage, fmt::format("--cutoff is {} Hz but must lie between 0 and half the sampling rate of "
                                                "{} ({} Hz)",
@@ -190,7 +212,7 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
   const auto low_pass = ZeroPhaseLowPass::butterworth(motion.cutoff_Hz, motion.sample_rate_Hz);
   motion.t_s = record.t_s;
   motion.travel = record.has_position() ? low_pass(record.x) : std::vector<double>(record.size());
-  motion.speed = smooth_speed(record, data, motion.cutoff_Hz);
+  motion.speed = smooth_speed(record, data, motion.cutoff_Hz, options.by_speed);
   motion.acceleration = central_difference(motion.speed, record.sample_period_s);
   DeliveredEffort delivered = delivered_effort(record, data, motion.cutoff_Hz, sliding_only, options.command_path);
   motion.effort = std::move(delivered.effort);

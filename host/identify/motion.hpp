@@ -23,6 +23,8 @@ struct MotionOptions {
   /// Whose command path stands between command and motor (converter, delay, torque constant along the travel); none: a
   /// command acts as it was sent.
   const sim::Drive* command_path = nullptr;
+  /// Speed and acceleration from the speed channel, though there is a position; its lag behind that is taken out.
+  bool by_speed = false;
 };
 
 /// One record's signals at its own rate, without the two samples at each end whose differences lack a neighbour.
@@ -33,7 +35,7 @@ struct Motion {
   std::size_t decimation = 1;
   std::vector<double> t_s;
   std::vector<double> travel;        ///< filtered, mm or m; zeros where the record has no position
-  std::vector<double> speed;         ///< from the position where there is one, else from the tachometer
+  std::vector<double> speed;         ///< from the position, or from the speed channel (smooth_speed)
   std::vector<double> acceleration;  ///< rad/s^2 or m/s^2
   std::vector<double> effort;        ///< of the motor, filtered, Nm or N
   std::vector<bool> counts;          ///< by decimated sample: whether it may be used
@@ -47,8 +49,8 @@ struct Motion {
 std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data);
 
 /// Variance that a record's sensor leaves on the acceleration below a cut-off, (rad/s^2)^2 or (m/s^2)^2: encoder steps,
-/// or tachometer noise where there is no encoder.
-double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz);
+/// or tachometer noise where there is no encoder or the speed channel was asked for.
+double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool by_speed = false);
 
 /// Where the guard filter in front of a motion's decimation cuts off, Hz.
 double guard_cutoff_Hz(const Motion& motion);
@@ -61,13 +63,16 @@ struct DeliveredEffort {
 DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool sliding_only,
                                  const sim::Drive* command_path);
 
-/// The record's shaft speed from its encoder after the zero-phase filter, or from the tachometer without an encoder.
-std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz);
+/// The record's shaft speed from its encoder after the zero-phase filter, or from the speed channel where there is no
+/// encoder or that is asked for: then without its lag, up to 20 ms, for a driver computes it from positions that have
+/// been.
+std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& data, double cutoff_Hz,
+                                 bool by_speed = false);
 
 /// Cut-off for these records: a tenth of the lowest sampling rate, at most 100 Hz (above lie resonances, not the rigid
 /// axis), lowered until the acceleration noise that the sensor leaves (encoder steps, tachometer noise) is below 1 % of
 /// the acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
-double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data);
+double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data, bool by_speed = false);
 
 /// Rows that prepare_motion() leaves out at each end: two differences, each of which needs both neighbours.
 inline constexpr std::size_t kMotionMargin = 2;

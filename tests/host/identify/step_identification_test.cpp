@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "host/evidence/measurement_gate.hpp"
@@ -79,6 +80,23 @@ TEST_P(StepIdentification, TakesRecordsOfSeveralRates) {
     EXPECT_EQ(failure.code, host::ExitCode::bad_input);
     EXPECT_THAT(failure.what(), HasSubstr("--method sliding-ls"));
   }
+}
+
+/// A logger whose clock swings by 0.4 ms at 60 Hz stamps positions where the axis was not: differentiated twice that is
+/// as large as the acceleration. The tachometer next to it knows better.
+TEST_P(StepIdentification, TakesTheMotionFromTheSpeedWhereThePositionJitters) {
+  const Truth& truth = GetParam();
+  const sim::DriveDescription sheet = data_sheet_of(truth.axis);
+  host::Record jittery = steps(truth.axis, 7.5);
+  for (std::size_t k = 0; k < jittery.size(); ++k)
+    jittery.x[k] += sheet.data.lead * jittery.w[k] * 0.4e-3 * std::sin(2.0 * std::numbers::pi * 60.0 * jittery.t_s[k]);
+  const host::Measurements measured = host::MeasurementGate(sheet).admit({jittery});
+  const host::Identification found = host::identify_drive(measured, sheet, IdentificationMethod::sliding_ls);
+  EXPECT_TRUE(found.by_speed);
+  EXPECT_NEAR(found.model.find("inertia")->at("J"), truth.J, 0.03 * truth.J);
+  EXPECT_NEAR(found.model.find("coulomb")->at("positive"), truth.coulomb[0], 0.05 * truth.coulomb[0]);
+  const host::Measurements clean = host::MeasurementGate(sheet).admit({steps(truth.axis, 7.5)});
+  EXPECT_FALSE(host::identify_drive(clean, sheet, IdentificationMethod::sliding_ls).by_speed);
 }
 
 TEST_P(StepIdentification, ARecordTooSlowOrTooShortIsBadInput) {
