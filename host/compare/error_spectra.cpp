@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "host/compare/effort_residual.hpp"
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 #include "host/report/text_format.hpp"
 #include "host/statistics.hpp"
 

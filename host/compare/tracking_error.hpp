@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 #include "host/record/record.hpp"
 
 namespace host {

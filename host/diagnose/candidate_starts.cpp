@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "host/compare/effort_residual.hpp"
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {

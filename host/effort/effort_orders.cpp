@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 #include "host/statistics.hpp"
 
 namespace host {

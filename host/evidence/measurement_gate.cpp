@@ -9,6 +9,7 @@
 #include "host/evidence/log_faults.hpp"
 #include "host/evidence/record_agreement.hpp"
 #include "host/evidence/record_overlap.hpp"
+#include "host/evidence/record_zeros.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/read_record.hpp"
@@ -162,11 +163,35 @@ void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<R
                                 file_name(odd), column, what, disagreement->factor, why)});
 }
 
+void MeasurementGate::share_zero(std::vector<Record>& training, std::vector<Record>& validation,
+                                 std::vector<LogFault>& faults) const {
+  std::vector<Record*> records;
+  for (auto* role : {&training, &validation})
+    for (Record& record : *role) records.push_back(&record);
+  for (const AnotherZero& other : other_zeros({records.begin(), records.end()}, drive_.data)) {
+    Record& record = *records[other.record];
+    const bool rotary = drive_.data.kind == sim::DriveKind::rotary;
+    std::string message = fmt::format(
+        "{}: what repeats along the travel lies {:.4g} {} from where {} has it, alike in size: the axis was homed anew "
+        "between them. What goes with the position is judged by its size alone",
+        file_name(record), other.shift, rotary ? "mm" : "m", file_name(*records[other.reference]));
+    if (!options_.as_logged) {
+      for (auto* column : {&record.x, &record.x_ref})
+        for (double& x : *column) x += other.shift;
+      message += "; moved to that zero here";
+    }
+    faults.push_back({LogFaultKind::another_zero, std::string(name_in_file(record, &Record::x)), record.path,
+                      record.t_s.front(), other.shift, message, false});
+  }
+}
+
 Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Record> validation) const {
   std::vector<LogFault> faults;
   for (auto* role : {&training, &validation})
     for (Record& record : *role) std::ranges::move(check(record), std::back_inserter(faults));
   compare_roles(training, validation, faults);
+  if (std::ranges::none_of(faults, [&](const LogFault& fault) { return fault.fatal && !is_accepted(fault); }))
+    share_zero(training, validation, faults);
   std::string fatal;
   for (LogFault& fault : faults) {
     fault.accepted = fault.fatal && is_accepted(fault);

@@ -13,7 +13,8 @@ struct GateOptions {
   std::vector<std::string> accepted;  ///< families ("sign") or kinds ("command_sign") of faults that end nothing
   /// Rows and channels stay as they were logged. Otherwise what can be mended without a guess is: a speed that only
   /// differences the position is left out, a tachometer that runs late by whole samples is shifted back, a record that
-  /// is given twice counts once. All of it is said in the log.
+  /// was homed anew is moved to the first one's zero, one that is given twice counts once. All of it is said in the
+  /// log.
   bool as_logged = false;
 };
 
@@ -32,6 +33,7 @@ class MeasurementGate {
  private:
   bool is_accepted(const LogFault& fault) const;
   std::vector<LogFault> check(Record& record) const;
+  void share_zero(std::vector<Record>& training, std::vector<Record>& validation, std::vector<LogFault>& faults) const;
   void compare_roles(std::vector<Record>& training, std::vector<Record>& validation,
                      std::vector<LogFault>& faults) const;
 

@@ -27,6 +27,7 @@ constexpr Row kRows[] = {
     {"swapped", "swapped", "exchange the two columns' names"},
     {"clipped", "clipped", "log the command over its whole range, or record with smaller commands"},
     {"scaled_copy", "scaled_copy", "log the other channel itself, or leave the copy out"},
+    {"another_zero", "zero", "home on the encoder's index before each record"},
     {"same_record", "same_record", "give a record of another motion"},
     {"records_disagree", "records_disagree",
      "record again under one set of units and settings, or leave the record out"},

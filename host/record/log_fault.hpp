@@ -26,6 +26,7 @@ enum class LogFaultKind {
   swapped,           ///< position and speed stand in each other's column
   clipped,           ///< the log cuts the command off where the amplifier did not
   scaled_copy,       ///< one channel is another times a constant
+  another_zero,      ///< what repeats along the travel lies elsewhere than in the first record: homed anew
   same_record,       ///< rows that judge are rows that train, or rows that count twice
   records_disagree,  ///< the records are not of one machine, or a channel's scale changed between them
 };
@@ -42,7 +43,7 @@ struct LogFault {
   std::string channel;    ///< column in the file
   std::string record;     ///< path
   double t_s = 0.0;       ///< where it shows first
-  double size = 0.0;      ///< of the jump, mm or m; times too large; s too late; number of samples; s in common
+  double size = 0.0;      ///< of the jump or between the zeros, mm or m; times too large; s too late; number of samples; s in common
   std::string message;    ///< what, where, and what mends it
   bool fatal = true;      ///< with it any answer would be meaningless
   bool accepted = false;  ///< fatal, but the user knows better

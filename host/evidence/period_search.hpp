@@ -21,6 +21,9 @@ struct TravelSignal {
   std::vector<double> weight;
 };
 
+/// Least squares of one pair at a period; all zero where the signal cannot tell its two amplitudes apart.
+PeriodPeak peak_at(const TravelSignal& signal, double period);
+
 /// The strongest `most` peaks with periods from `shortest` to `longest`, strongest first, no two closer than the travel
 /// can tell apart. The spectrum of the signal on a fine grid over the travel (FFTW) finds them; least squares refines
 /// them.

@@ -1,4 +1,4 @@
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/compare/period_search.hpp"
+#include "host/evidence/period_search.hpp"
 
 #include <fftw3.h>
 
@@ -39,7 +39,22 @@ std::vector<double> power_spectrum(const TravelSignal& signal, double origin, do
   return power;
 }
 
-PeriodPeak least_squares(const TravelSignal& signal, double period) {
+/// Least squares at orders around a peak, as far as the grid leaves it open.
+PeriodPeak refine(const TravelSignal& signal, double order, double order_step) {
+  PeriodPeak best = peak_at(signal, 1.0 / order);
+  constexpr int kSteps = 8;
+  for (int step = -kSteps; step <= kSteps; ++step) {
+    const double near = order + step * order_step / kSteps;
+    if (near <= 0.0) continue;
+    const PeriodPeak peak = peak_at(signal, 1.0 / near);
+    if (peak.share > best.share) best = peak;
+  }
+  return best;
+}
+
+}  // namespace
+
+PeriodPeak peak_at(const TravelSignal& signal, double period) {
   double cc = 0.0, cs = 0.0, ss = 0.0, cv = 0.0, sv = 0.0, vv = 0.0;
   for (std::size_t k = 0; k < signal.x.size(); ++k) {
     const double c = signal.weight[k] * std::cos(kTwoPi * signal.x[k] / period);
@@ -58,21 +73,6 @@ PeriodPeak least_squares(const TravelSignal& signal, double period) {
   const double sine = (cc * sv - cs * cv) / determinant;
   return {period, cosine, sine, (cosine * cv + sine * sv) / vv};
 }
-
-/// Least squares at orders around a peak, as far as the grid leaves it open.
-PeriodPeak refine(const TravelSignal& signal, double order, double order_step) {
-  PeriodPeak best = least_squares(signal, 1.0 / order);
-  constexpr int kSteps = 8;
-  for (int step = -kSteps; step <= kSteps; ++step) {
-    const double near = order + step * order_step / kSteps;
-    if (near <= 0.0) continue;
-    const PeriodPeak peak = least_squares(signal, 1.0 / near);
-    if (peak.share > best.share) best = peak;
-  }
-  return best;
-}
-
-}  // namespace
 
 std::vector<PeriodPeak> find_periods(const TravelSignal& signal, double shortest, double longest, std::size_t most) {
   std::vector<PeriodPeak> peaks;
