@@ -62,7 +62,10 @@ struct EffectInfo {
   /// numbered from 0.
   bool curve = false;
   std::vector<ParameterInfo> parameters;
-  std::string_view shows;                       ///< how it shows in the residual
+  std::string_view shows;  ///< how it shows in the residual
+  /// Coordinates that its trace goes with, where something else has to say what is missing: speed, position,
+  /// travel_since_reversal, acceleration, current, rest, time, frequency.
+  std::vector<std::string_view> along{};
   std::vector<std::string_view> confused_with;  ///< kinds that leave a similar trace
   std::string_view separate_by;                 ///< the experiment that tells them apart
   std::string_view origin;                      ///< where on a machine it comes from

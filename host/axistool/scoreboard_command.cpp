@@ -240,11 +240,14 @@ std::vector<host::Trial> trials_of(const Arguments& arguments, std::map<std::str
 void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, bool talks, const std::string& json) {
   nlohmann::json lines = nlohmann::json::array();
   std::map<Outcome, std::size_t> outcomes;
+  std::size_t coordinates = 0;
   for (const host::Trial& trial : trials) {
     SearchProgress progress(trial.name);
     const host::LeftOut result = host::leave_out(trial, progress.callback());
     ++outcomes[result.answer.outcome];
+    if (result.right_coordinate) ++coordinates;
     lines.push_back({{"case", trial.name},
+                     {"right_coordinate", result.right_coordinate},
                      {"truth", result.answer.truth.effects},
                      {"outcome", std::string(host::outcome_name(result.answer.outcome))},
                      {"status", std::string(host::status_name(result.answer.verdict.status))},
@@ -263,8 +266,10 @@ void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, boo
     std::fflush(stdout);
   }
   if (talks)
-    fmt::print("Without their effect in the catalogue: {} cases, {} without a name, {} near relatives, {} wrong\n",
-               lines.size(), outcomes[Outcome::right], outcomes[Outcome::group], outcomes[Outcome::wrong]);
+    fmt::print(
+        "Without their effect in the catalogue: {} cases, {} without a name, {} near relatives, {} wrong; the right "
+        "coordinate or a relative in {}\n",
+        lines.size(), outcomes[Outcome::right], outcomes[Outcome::group], outcomes[Outcome::wrong], coordinates);
   if (!json.empty()) write_json({{"format", "axis-left-out/1"}, {"trials", lines}}, json);
 }
 

@@ -14,12 +14,12 @@ constexpr double kBelievedSteps = 3.0;
 
 /// Of every row: signed travel since the last reversal, and seconds of the rest before the present motion.
 struct History {
-  std::vector<double> since_reversal, rest_s;
+  std::vector<double> since_reversal, rest_s, moved_s;
 
   History(const SmoothedMotion& motion, double resolution, double period_s)
-      : since_reversal(motion.x.size()), rest_s(motion.x.size()) {
+      : since_reversal(motion.x.size()), rest_s(motion.x.size()), moved_s(motion.x.size()) {
     std::size_t turning = 0, extreme = 0;
-    double direction = 0.0, rest = 0.0;
+    double direction = 0.0, rest = 0.0, moved = 0.0;
     for (std::size_t k = 0; k < motion.x.size(); ++k) {
       const double beyond = motion.x[k] - motion.x[extreme];
       if (direction == 0.0 ? std::abs(beyond) > kBelievedSteps * resolution
@@ -32,14 +32,27 @@ struct History {
       }
       since_reversal[k] = motion.x[k] - motion.x[turning];
       if (motion.standing[k]) rest = k > 0 && motion.standing[k - 1] ? rest + period_s : period_s;
+      moved = motion.standing[k] ? 0.0 : moved + period_s;
       rest_s[k] = rest;
+      moved_s[k] = moved;
     }
   }
 };
 
+/// Over an average's own samples.
+double mean_of(const std::vector<double>& values, std::size_t row, std::size_t step) {
+  const std::size_t begin = row - step / 2;
+  double sum = 0.0;
+  for (std::size_t k = begin; k < begin + step; ++k) sum += values[k];
+  return sum / static_cast<double>(step);
+}
+
+enum class Beyond { motion, speed_channel };
+
 /// Appends the averages of one record.
 void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared, std::size_t index,
-            const Prediction& prediction, std::size_t first_window, bool with_temperature, ResidualEffort& out) {
+            const Prediction& prediction, std::size_t first_window, bool with_temperature, Beyond what,
+            ResidualEffort& out) {
   const Record& record = *prepared.record;
   const SmoothedMotion& motion = prepared.motion();
   const History history(motion, data.encoder_resolution, prepared.period_s);
@@ -54,6 +67,12 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       if (row == window.begin) return 0.0;
       return by_position ? motion.x[row] - prediction.x[row] : motion.w[row] - prediction.w[row];
     };
+    const auto motion_at = [&](std::size_t row) {
+      sim::DriveMotion at;
+      at.x = motion.x[row];
+      at.w = at.tach = motion.w[row];
+      return at;
+    };
     for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
       if (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0) continue;
       const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
@@ -62,7 +81,8 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       out.record.push_back(index);
       out.slot.push_back(row / step);
       out.window.push_back(first_window + place);
-      out.missing.push_back(drive.inertia * acceleration);
+      out.missing.push_back(what == Beyond::motion ? drive.inertia * acceleration
+                                                   : mean_of(record.w, row, step) - drive.tachometer(motion_at(row)));
       out.t_s.push_back(record.t_s[row] - record.t_s.front());
       out.x.push_back(motion.x[row]);
       out.w.push_back(motion.w[row]);
@@ -70,6 +90,7 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       out.command_V.push_back(prepared.u_V[row]);
       out.since_reversal.push_back(history.since_reversal[row]);
       out.rest_s.push_back(history.rest_s[row]);
+      out.moved_s.push_back(history.moved_s[row]);
       if (with_temperature) out.temp_C.push_back(record.temp_C[row]);
     }
   }
@@ -96,9 +117,7 @@ PreparedRecord in_long_windows(PreparedRecord prepared) {
   return prepared;
 }
 
-}  // namespace
-
-ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set) {
+ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set, Beyond what) {
   const sim::Drive drive(model);
   const bool with_temperature = std::ranges::none_of(
       set.records, [](const ComparedRecord& compared) { return compared.prepared.record->temp_C.empty(); });
@@ -108,10 +127,23 @@ ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordS
   for (std::size_t r = 0; r < set.records.size(); ++r) {
     const PreparedRecord prepared = in_long_windows(set.records[r].prepared);
     predict(drive, prepared, prediction);
-    append(drive, model.data, prepared, r, prediction, windows, with_temperature, residual);
+    append(drive, model.data, prepared, r, prediction, windows, with_temperature, what, residual);
     windows += prepared.windows.size();
   }
   return residual;
+}
+
+}  // namespace
+
+ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set) {
+  return residual(model, set, Beyond::motion);
+}
+
+ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set) {
+  const bool both = std::ranges::all_of(set.records, [](const ComparedRecord& compared) {
+    return compared.prepared.record->has_position() && compared.prepared.record->has_speed();
+  });
+  return both ? residual(model, set, Beyond::speed_channel) : ResidualEffort{};
 }
 
 }  // namespace host

@@ -18,11 +18,16 @@ struct ResidualEffort {
   std::vector<double> command_V;
   std::vector<double> since_reversal;  ///< travel since the last reversal, mm or m; negative in backward motion
   std::vector<double> rest_s;          ///< how long the axis had stood before this motion
+  std::vector<double> moved_s;         ///< and how long it has moved since
   std::vector<double> temp_C;          ///< empty unless every record has it
 };
 
 /// What the smoothed motion accelerates beyond the predicted one, times the inertia. Unlike the inverse model's, it is
 /// there for any model: bristles, gaps and second masses move as they do in a prediction.
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set);
+
+/// What the speed channel reads beyond the smoothed motion that the position shows, rad/s or m/s, in the place of the
+/// effort; empty where a record lacks one of the two.
+ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set);
 
 }  // namespace host

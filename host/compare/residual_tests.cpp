@@ -98,10 +98,11 @@ struct Half {
 struct Folds {
   std::array<Values, 2> along, value;
 
-  Folds(const std::array<const Half*, 2>& halves, Values ResidualEffort::*coordinate) {
+  template <typename Coordinate>
+  Folds(const std::array<const Half*, 2>& halves, Coordinate coordinate) {
     constexpr std::size_t kBlock = 10;  // windows
     for (const Half* half : halves) {
-      const Values& values = half->samples.*coordinate;
+      const Values& values = std::invoke(coordinate, half->samples);
       for (std::size_t k = 0; k < values.size(); ++k) {
         const std::size_t fold = (half->samples.window[k] / kBlock) % 2;
         along[fold].push_back(values[k]);
@@ -280,17 +281,38 @@ Correlation correlation(const ResidualEffort& samples, const Values& value, cons
   return result;
 }
 
-}  // namespace
+/// Speeds after short rests, then after longer ones, and so on: a friction that a rest has raised fades with speed.
+Values speed_after_rests(const ResidualEffort& samples) {
+  constexpr std::array kEdges_s{0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};
+  const double apart = 3.0 * std::ranges::max(samples.w, {}, [](double w) { return std::abs(w); });
+  Values result = samples.w;
+  for (std::size_t k = 0; k < result.size(); ++k)
+    result[k] += apart * static_cast<double>(std::ranges::upper_bound(kEdges_s, samples.rest_s[k]) - kEdges_s.begin());
+  return result;
+}
 
-ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet& training,
-                             const RecordSet& validation) {
+/// Time through all records, one after the other.
+Values time_in_all(const ResidualEffort& samples) {
+  Values result = samples.t_s;
+  double before = 0.0, longest = 0.0;
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    if (k > 0 && samples.record[k] != samples.record[k - 1]) {
+      before += longest;
+      longest = 0.0;
+    }
+    longest = std::max(longest, samples.t_s[k]);
+    result[k] += before;
+  }
+  return result;
+}
+
+ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& data, bool has_position) {
   ResidualTests tests;
-  const Half first(residual_effort(model, training)), second(residual_effort(model, validation));
   if (std::min(first.value.size(), second.value.size()) < kFewestSamples) return tests;
   if (!(sum_of_squares(first.value) > 0.0) || !(sum_of_squares(second.value) > 0.0)) return tests;
   tests.rms = std::sqrt(sum_of_squares(second.value) / static_cast<double>(second.value.size()));
 
-  const bool rotary = model.data.kind == sim::DriveKind::rotary;
+  const bool rotary = data.kind == sim::DriveKind::rotary;
   const std::array as_friction{first.resisting(), second.resisting()};
   const auto against = [&](const char* coordinate, Values ResidualEffort::*along, std::size_t bins, double factor,
                            const char* words, const char* unit) {
@@ -313,10 +335,10 @@ ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet
   const double in_mm = rotary ? 1.0 : 1e3;
   const char* speed_unit = rotary ? "rad/s" : "m/s";
   against("speed", &ResidualEffort::w, 24, 1.0, "at speeds", speed_unit);
-  if (training.records.front().prepared.record->has_position()) {
+  if (has_position) {
     against("position", &ResidualEffort::x, 40, in_mm, "at positions", "mm");
     for (const auto& halves : {std::array{&first, &second}, std::array{&as_friction[0], &as_friction[1]}})
-      if (ResidualDependence periodic = on_period(halves, model.data.encoder_resolution, in_mm);
+      if (ResidualDependence periodic = on_period(halves, data.encoder_resolution, in_mm);
           !tests.dependences.empty() && tests.dependences.back().coordinate == "position" &&
           periodic.share > tests.dependences.back().share)
         tests.dependences.back() = std::move(periodic);
@@ -330,12 +352,37 @@ ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet
   tests.dependences.push_back(
       {"time", "from one moment to the next", std::max(share_of_time(first), share_of_time(second))});
   tests.dependences.push_back(on_frequency(first, second));
+  const auto in_detail = [&](const char* coordinate, auto along, std::size_t bins) {
+    const auto known = std::ranges::find(tests.dependences, coordinate, &ResidualDependence::coordinate);
+    for (const auto& halves : {std::array{&first, &second}, std::array{&as_friction[0], &as_friction[1]}})
+      known->in_detail = std::max(known->in_detail, Folds(halves, along).removed_share(bins));
+  };
+  constexpr std::size_t kFine = 100, kSlow = 40;
+  in_detail("rest", speed_after_rests, kFine);
+  in_detail("travel_since_reversal", &ResidualEffort::since_reversal, kFine);
+  in_detail("time", time_in_all, kSlow);
+  for (const auto& halves : {std::array{&first, &second}, std::array{&as_friction[0], &as_friction[1]}})
+    tests.constant = std::max(tests.constant, Folds(halves, &ResidualEffort::w).removed_share(1));
   std::ranges::stable_sort(tests.dependences, std::greater(), &ResidualDependence::share);
 
   constexpr long kLags = 20;  // of 5 ms: as long as a window
   tests.with_itself = correlation(second.samples, second.value, second.value, 0, kLags);
   tests.with_command = correlation(second.samples, second.value, second.samples.command_V, -kLags, kLags);
   return tests;
+}
+
+}  // namespace
+
+ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet& training,
+                             const RecordSet& validation) {
+  return test(Half(residual_effort(model, training)), Half(residual_effort(model, validation)), model.data,
+              training.records.front().prepared.record->has_position());
+}
+
+ResidualTests test_speed_channel(const sim::DriveDescription& model, const RecordSet& training,
+                                 const RecordSet& validation) {
+  return test(Half(residual_of_speed_channel(model, training)), Half(residual_of_speed_channel(model, validation)),
+              model.data, true);
 }
 
 }  // namespace host

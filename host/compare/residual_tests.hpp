@@ -21,6 +21,9 @@ struct ResidualDependence {
   /// Frequency: the smaller part of both sets, at the same line. Time: the larger, since what happens at a time may
   /// happen in one of them.
   double share = 0.0;
+  /// The same seen more finely, which only names a coordinate: speeds after rests of one length, the first micrometres
+  /// after a reversal, time over whole records.
+  double in_detail = 0.0;
 };
 
 /// A correlation function, with the bound that 99 of 100 values of a white residual keep.
@@ -33,11 +36,16 @@ struct ResidualTests {
   std::vector<ResidualDependence> dependences;  ///< largest share first
   Correlation with_itself;                      ///< of the residual on validation data
   Correlation with_command;                     ///< of the residual with earlier and later commands
+  double constant = 0.0;                        ///< share that a constant takes, with the motion's sign or without
   double rms = 0.0;                             ///< of the residual effort on validation data, Nm or N
 };
 
 /// The lists are empty where the axis hardly moves in one of the sets.
 ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet& training,
                              const RecordSet& validation);
+
+/// The same of what the speed channel reads beyond the motion of the position; empty without one of the two channels.
+ResidualTests test_speed_channel(const sim::DriveDescription& model, const RecordSet& training,
+                                 const RecordSet& validation);
 
 }  // namespace host

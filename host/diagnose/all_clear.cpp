@@ -96,7 +96,8 @@ bool is_taken_up(const std::string& kind, const sim::DriveDescription& base) {
 }
 
 std::string_view coordinate_of(std::string_view partition, std::string_view region) {
-  if (partition == "regime") return region == "reversal" ? "travel_since_reversal" : "speed";
+  if (region == "reversal") return "travel_since_reversal";
+  if (region == "acceleration" || region == "braking") return "acceleration";
   if (partition == "position" || partition == "place" || partition == "order") return "position";
   if (partition == "time" || partition == "event") return "time";
   if (partition == "rest") return "rest";
@@ -106,23 +107,50 @@ std::string_view coordinate_of(std::string_view partition, std::string_view regi
 
 }  // namespace
 
-Trace strongest_trace(const ResidualTests& tests, const std::vector<ErrorRegion>& regions) {
+bool speed_channel_alone_fails(const Diagnosis& diagnosis) {
+  constexpr double kClearlyWorse = 1.5;
+  const SetError error = error_of(sim::Drive(diagnosis.base), diagnosis.validation);
+  if (!(error.x_floor > 0.0) || !(error.w_floor > 0.0)) return false;
+  return error.w_rms / error.w_floor > kClearlyWorse * std::max(1.0, error.x_rms / error.x_floor);
+}
+
+Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion) {
+  const bool by_speed_channel = speed_channel_alone_fails(diagnosis);
+  const ResidualTests tests =
+      by_speed_channel ? test_speed_channel(diagnosis.base, diagnosis.training, diagnosis.validation) : of_motion;
   // Of made cases without any effect it is below this, but for one in a hundred.
   constexpr double kLeast = 0.02;
-  // Whatever depends on the motion also lasts from one moment to the next.
-  constexpr double kGeneric = 0.15;
-  const ResidualDependence* best = nullptr;
-  double most = 0.0;
+  // The smoother alone leaves as much along the acceleration, so that it is named where nothing else shows.
+  constexpr double kLeastOnAcceleration = 0.05;
+  // Whatever depends on the motion also lasts from one moment to the next; and a program whose parts differ makes it
+  // differ from one part of the record to another.
+  constexpr double kLasting = 0.15, kSlow = 0.8;
+  // After rests of one length there are more bins than over all speeds: what they add must be clear.
+  constexpr double kAfterRests = 0.85;
+  // What hardly depends on where it is found is a constant.
+  constexpr double kConstant = 0.7;
+  const ResidualDependence *best = nullptr, *on_acceleration = nullptr;
+  double most = kLeast;
   for (const ResidualDependence& dependence : tests.dependences) {
-    if (dependence.share < kLeast || dependence.coordinate == "acceleration") continue;
-    const bool generic = dependence.coordinate == "time";
-    const double weight = (generic ? kGeneric : 1.0) * dependence.share;
-    if (weight <= most) continue;
+    if (dependence.coordinate == "acceleration") {
+      on_acceleration = &dependence;
+      if (dependence.share < kMostOnAcceleration) continue;
+    }
+    const double weight =
+        dependence.coordinate == "time"   ? std::max(kLasting * dependence.share, kSlow * dependence.in_detail)
+        : dependence.coordinate == "rest" ? std::max(dependence.share, kAfterRests * dependence.in_detail)
+                                          : std::max(dependence.share, dependence.in_detail);
+    if (weight < most) continue;
     most = weight;
     best = &dependence;
   }
-  if (best != nullptr) return {best->coordinate, best->where};
-  if (const ErrorRegion* worst = worst_region(regions))
+  if (best != nullptr && tests.constant > kConstant * most)
+    return {"speed", by_speed_channel ? "in the speed channel alone, at any speed alike" : "at any speed alike"};
+  if (best == nullptr && on_acceleration != nullptr && on_acceleration->share >= kLeastOnAcceleration)
+    best = on_acceleration;
+  if (best != nullptr)
+    return {best->coordinate, (by_speed_channel ? "in the speed channel alone, " : "") + best->where};
+  if (const ErrorRegion* worst = worst_region(diagnosis.where))
     return {std::string(coordinate_of(worst->partition, worst->region)), worst->words};
   return {"time", "spread evenly over the records"};
 }

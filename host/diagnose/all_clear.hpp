@@ -26,11 +26,14 @@ std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis);
 /// The objection to calling the re-fitted base complete; empty where there is none.
 std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests);
 
-/// What is left as the coordinate that carries most of it, and where along it, in words. Falls back on the regions of
-/// the error where the residual effort depends on nothing.
+/// Whether the base fails at the speed channel, and not at the motion that the position shows.
+bool speed_channel_alone_fails(const Diagnosis& diagnosis);
+
+/// What is left as the coordinate that carries most of it, and where along it, in words: of the effort (`of_motion`),
+/// or of the speed channel where that alone fails. Falls back on the regions of the error where it depends on nothing.
 struct Trace {
   std::string coordinate, where;
 };
-Trace strongest_trace(const ResidualTests& tests, const std::vector<ErrorRegion>& regions);
+Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion);
 
 }  // namespace host

@@ -71,8 +71,10 @@ nlohmann::json correlation_json(const Correlation& correlation) {
 nlohmann::json residual_json(const ResidualTests& tests) {
   nlohmann::json dependences = nlohmann::json::array();
   for (const ResidualDependence& dependence : tests.dependences)
-    dependences.push_back(
-        {{"coordinate", dependence.coordinate}, {"share", dependence.share}, {"where", dependence.where}});
+    dependences.push_back({{"coordinate", dependence.coordinate},
+                           {"share", dependence.share},
+                           {"in_detail", dependence.in_detail},
+                           {"where", dependence.where}});
   return {{"rms", tests.rms},
           {"dependences", std::move(dependences)},
           {"autocorrelation", correlation_json(tests.with_itself)},

@@ -262,11 +262,11 @@ void name_coordinate(Diagnosis& diagnosis) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   if (verdict.status != Status::unexplained) return;
   if (verdict.coordinate.empty()) {
-    Trace trace = strongest_trace(diagnosis.residual, diagnosis.where);
+    Trace trace = strongest_trace(diagnosis, diagnosis.residual);
     verdict.coordinate = std::move(trace.coordinate);
     verdict.where = std::move(trace.where);
   }
-  if (!diagnosis.screen || diagnosis.screen->empty()) return;
+  if (!diagnosis.screen || diagnosis.screen->empty() || speed_channel_alone_fails(diagnosis)) return;
   const EffortScreen& screen = *diagnosis.screen;
   if (differs_between_records(screen, verdict)) return;
   const std::optional<FreeCurveFit> curve = fit_free_curve(screen);
@@ -290,6 +290,9 @@ void name_coordinate(Diagnosis& diagnosis) {
   // From one moment to the next everything lasts.
   if (named != none && named->coordinate != "time" && named->share >= share) return;
   if (verdict.coordinate == coordinate) return;
+  // What takes much of the effort while the axis slides, but nothing of what the predictions lack, fits by chance.
+  constexpr double kShows = 0.02;
+  if (taken != none && std::max(taken->share, taken->in_detail) < kShows) return;
   verdict.coordinate = coordinate;
   verdict.where = taken == none ? "over all of it" : taken->where;
   verdict.explanation += fmt::format(" So it goes with {}.", spaced(coordinate));

@@ -272,7 +272,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     verdict.status = objection->status;
     verdict.explanation = objection->explanation + closest + ".";
     if (objection->status == Status::unexplained) {
-      const Trace trace = strongest_trace(tests, diagnosis.where);
+      const Trace trace = strongest_trace(diagnosis, tests);
       verdict.coordinate = trace.coordinate;
       verdict.where = trace.where;
       verdict.explanation += fmt::format(" What is left depends most on {}: {}. By motion, {}.",

@@ -150,6 +150,7 @@ nlohmann::json effect_json(const sim::EffectInfo& info) {
           {"equation", info.equation},
           {"parameters", parameters},
           {"shows", info.shows},
+          {"along", info.along},
           {"confused_with", info.confused_with},
           {"separate_by", info.separate_by},
           {"origin", info.origin},
@@ -189,6 +190,8 @@ std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal) {
   append_section(page, "Equation", info.equation, terminal);
   append_parameters(page, info);
   append_section(page, "How it shows in the residual", info.shows, terminal);
+  if (!info.along.empty())
+    append_section(page, "What its trace goes with", fmt::format("{}", fmt::join(info.along, ", ")), terminal);
   append_section(page, "Confused with", fmt::format("{}", fmt::join(info.confused_with, ", ")), terminal);
   append_section(page, "What to measure to tell them apart", info.separate_by, terminal);
   append_section(page, "Where it comes from", info.origin, terminal);

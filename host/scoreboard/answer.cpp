@@ -135,7 +135,8 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress) {
   const Truth truth = read_truth(trial.folder);
   const std::vector<Record> train = read_pieces(trial.train, model.data);
   const std::vector<Record> validate = read_pieces(trial.validate, model.data);
-  LeftOut result{ask(trial.name, "left out", truth, model, train, validate, progress, truth.effects), {}, 0.0};
+  LeftOut result;
+  result.answer = ask(trial.name, "left out", truth, model, train, validate, progress, truth.effects);
   Answer& answer = result.answer;
   const auto is_near = [&](const std::string& claimed) {
     return std::ranges::any_of(truth.effects, [&](const std::string& hidden) {
@@ -147,6 +148,11 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress) {
                    : answer.verdict.effects.empty()                       ? Outcome::right
                    : std::ranges::all_of(answer.verdict.effects, is_near) ? Outcome::group
                                                                           : Outcome::wrong;
+  const auto goes_with = [&](const std::string& hidden) {
+    const auto& along = sim::find_effect(hidden)->along;
+    return std::ranges::find(along, answer.verdict.coordinate) != along.end();
+  };
+  result.right_coordinate = answer.outcome == Outcome::group || std::ranges::any_of(truth.effects, goes_with);
   try {
     const Addition curve = add_free_curve(model, {}, MeasurementGate(model).admit(train, validate));
     result.over = curve.judged.model.effects.back().over;

@@ -47,6 +47,7 @@ Answer run_trial(const Trial& trial, const ShareDone& progress = {});
 
 /// What is left of a catalogue when the effect that a case hides is taken out of it.
 struct LeftOut {
+  bool right_coordinate = false;  ///< the one that the hidden effect goes with; or a relative was named
   Answer answer;       ///< right: no name. Group: near relatives of it alone. Wrong: any other name, or an all-clear
   std::string over;    ///< coordinate of the free curve that judged best; empty where none lowers the error
   double curve = 0.0;  ///< part of the explainable squared error that it takes, 0..1

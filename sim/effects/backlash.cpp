@@ -50,6 +50,7 @@ const EffectInfo backlash{
     .shows =
         "After a reversal the motor runs free for a fixed travel, then hits the load: torque falls short, then peaks. "
         "The travel is the same at any speed",
+    .along = {"travel_since_reversal", "current"},
     .confused_with = {"compliance", "presliding", "input_delay"},
     .separate_by =
         "Encoders on motor and table; reversals under a bias load, which closes the gap: what then disappears was "

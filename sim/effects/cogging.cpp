@@ -50,6 +50,7 @@ const EffectInfo cogging{
     .shows =
         "Residual torque periodic in position, of the same size at any speed and any current, and in the same sense "
         "both ways",
+    .along = {"position"},
     .confused_with = {"torque_ripple", "encoder_cyclic_error", "tach_ripple", "position_dependent_friction"},
     .separate_by =
         "The same slow stroke with two loads: cogging keeps its size, ripple grows with the current. A sweep of "

@@ -47,6 +47,7 @@ const EffectInfo compliance{
     .shows =
         "Residual rings at one frequency after each change of torque, the same at any speed. Below the resonance both "
         "inertias act, above it the motor's alone",
+    .along = {"frequency", "acceleration"},
     .confused_with = {"backlash", "presliding", "current_loop_lag", "tach_ripple"},
     .separate_by =
         "Swept sine with encoders on motor and table: a resonance stays at its frequency, ripple moves with speed; a "

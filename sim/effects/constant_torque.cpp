@@ -30,6 +30,7 @@ const EffectInfo constant_torque{
     .shows =
         "Residual torque constant, of one sign in both directions. A released axis moves by itself where friction does "
         "not hold it",
+    .along = {"speed"},
     .confused_with = {"coulomb_asymmetry", "dac_offset", "viscous_asymmetry", "spring_torque"},
     .separate_by =
         "Hold the axis at rest without friction in play (coupling off); turn the axis over; read the motor current at "

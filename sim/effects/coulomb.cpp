@@ -50,6 +50,7 @@ const EffectInfo coulomb{
                     .optional = true,
                     .pair_of = "positive negative"}},
     .shows = "Residual torque constant in each direction of motion, at any speed; a jump at every reversal",
+    .along = {"speed"},
     .confused_with = {"constant_torque", "dac_offset", "coulomb_asymmetry", "dac_dead_zone"},
     .separate_by =
         "Constant speeds both ways: half the difference of forward and backward torque, carried on to zero speed, is "

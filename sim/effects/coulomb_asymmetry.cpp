@@ -32,6 +32,7 @@ const EffectInfo coulomb_asymmetry{
     .shows =
         "Residual torque constant, of one sign in both directions, while the axis moves. Where friction falls with "
         "speed, the asymmetry fades with it and an offset does not",
+    .along = {"speed"},
     .confused_with = {"constant_torque", "dac_offset", "viscous_asymmetry"},
     .separate_by =
         "While moving it equals a constant torque. Hold the axis at rest with the coupling off, or turn the axis over: "

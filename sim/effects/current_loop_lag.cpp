@@ -28,6 +28,7 @@ const EffectInfo current_loop_lag{
                     .upper = 2000.0,
                     .starts = {50, 150}}},
     .shows = "Residual torque in proportion to jerk: every step of the command is rounded off",
+    .along = {"acceleration", "frequency"},
     .confused_with = {"input_delay", "tach_lag", "compliance", "inertia", "friction_lag"},
     .separate_by =
         "Log the motor current: a step at standstill shows lag as a slope, dead time as nothing at all. A lag of 1 ms "

@@ -33,6 +33,7 @@ const EffectInfo current_saturation{
     .shows =
         "Residual only where the command is large, with a flat top: more command brings no more acceleration, in "
         "whichever direction",
+    .along = {"current"},
     .confused_with = {"voltage_limit", "nonlinear_viscous", "torque_ripple"},
     .separate_by = "The same motion at half the amplitude; the same torque at low speed tells it from a voltage limit",
     .origin = "Peak or thermal limit of the amplifier, a limit left in from commissioning",

@@ -31,6 +31,7 @@ const EffectInfo dac_dead_zone{
                     .scale = Scale::converter_range,
                     .starts = {0.005}}},
     .shows = "Residual changes sign with the command, not with the motion; commands below the zone move nothing",
+    .along = {"current"},
     .confused_with = {"load_dependent_friction", "stribeck", "coulomb", "dac_offset"},
     .separate_by =
         "Coupling off: a slow ramp of the command through zero, both ways. A dead zone is symmetric in the command, "

@@ -30,6 +30,7 @@ const EffectInfo dac_offset{
     .shows =
         "Residual torque constant, of one sign in both directions and at rest, from the electronics instead of the "
         "mechanics",
+    .along = {"speed", "current"},
     .confused_with = {"constant_torque", "coulomb_asymmetry", "viscous_asymmetry"},
     .separate_by = "Voltmeter at the converter with zero command. Motion alone never tells it from a constant torque",
     .origin = "Drift of the converter or of the amplifier's input: 0.1 to 2 % of full scale (textbook)",

@@ -36,6 +36,7 @@ const EffectInfo dwell_stiction{
     .shows =
         "The first breakaway after a rest needs more torque, the longer the rest the more. Starts after short stops "
         "are not affected",
+    .along = {"rest"},
     .confused_with = {"stribeck", "thermal_friction_drift", "presliding", "position_dependent_friction"},
     .separate_by =
         "Rests of 0.1, 1, 10 and 100 s at one place before the same slow ramp; another ramp rate tells it from a lag",

@@ -46,6 +46,7 @@ const EffectInfo encoder_cyclic_error{
     .shows =
         "Error of the position, periodic in position, of one size at any speed; carried into torque it grows with the "
         "square of speed",
+    .along = {"position"},
     .confused_with = {"cogging", "tach_ripple", "torque_ripple"},
     .separate_by =
         "Constant speeds: a fixed size in position points to the encoder, a fixed size in torque to cogging; a second "

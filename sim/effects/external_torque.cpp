@@ -50,6 +50,7 @@ const EffectInfo external_torque{
                     .scale = Scale::duration,
                     .starts = {0.05}}},
     .shows = "Residual torque inside one stretch of time, whatever the drive does there; nothing before and after",
+    .along = {"time"},
     .confused_with = {"thermal_friction_drift", "position_dependent_friction"},
     .separate_by =
         "Run the same programme again without cutting and with nobody at the machine: what does not repeat belongs to "

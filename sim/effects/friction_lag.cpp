@@ -28,6 +28,7 @@ const EffectInfo friction_lag{
     .shows =
         "A loop of residual torque over speed while sliding at low speed, wider at higher frequency. Friction is "
         "higher while speeding up than while slowing down",
+    .along = {"speed", "acceleration"},
     .confused_with = {"input_delay", "presliding", "stribeck", "current_loop_lag"},
     .separate_by =
         "A sine on a bias that never reverses, at several frequencies: the loop widens in time, not in travel. Without "

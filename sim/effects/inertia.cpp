@@ -26,6 +26,7 @@ const EffectInfo inertia{
                     .scale = Scale::inertia,
                     .starts = {1}}},
     .shows = "Residual torque proportional to acceleration, alike in both directions; none at constant speed",
+    .along = {"acceleration"},
     .confused_with = {"current_loop_lag", "tach_gain", "input_delay", "load_dependent_friction"},
     .separate_by =
         "Two acceleration levels at the same speeds: inertia keeps its ratio to acceleration, a lag follows jerk. A "

@@ -27,6 +27,7 @@ const EffectInfo input_delay{
     .shows =
         "Residual torque in proportion to jerk: everything comes late by the same time; its correlation with the "
         "command peaks off zero",
+    .along = {"acceleration", "frequency"},
     .confused_with = {"current_loop_lag", "tach_lag", "friction_lag", "inertia"},
     .separate_by =
         "Log the motor current: a step at standstill shows dead time as nothing at all, lag as a slope. With one "

@@ -28,6 +28,7 @@ const EffectInfo load_dependent_friction{
     .shows =
         "Residual torque in proportion to the motor torque, against the motion. Motoring loses, braking is helped: "
         "seeming inertias differ",
+    .along = {"current"},
     .confused_with = {"dac_dead_zone", "inertia", "torque_ripple", "coulomb"},
     .separate_by =
         "Two known loads at one speed; or the same profile with two accelerations, comparing speeding up with braking",

@@ -70,6 +70,7 @@ const EffectInfo nonlinear_viscous{
                     .starts = {0.1},
                     .optional = true}},
     .shows = "Residual torque over speed curves at the plateaus, alike in both directions, fast or slow",
+    .along = {"speed"},
     .confused_with = {"thermal_friction_drift", "voltage_limit", "stribeck", "viscous_asymmetry", "tach_gain"},
     .separate_by =
         "Five constant speeds or more at one temperature, from creep to rapid traverse; slow plateaus tell a "

@@ -49,6 +49,7 @@ const EffectInfo position_dependent_friction{
                     .scale = Scale::travel,
                     .starts = {0.3, 0.6, 1.0, 2.0}}},
     .shows = "Half the difference of forward and backward torque follows the position; half the sum does not",
+    .along = {"position"},
     .confused_with = {"thermal_friction_drift", "spring_torque", "cogging", "load_dependent_friction"},
     .separate_by =
         "Constant speed over the full stroke, both ways, twice: a repeat at the same place is position, a drift from "

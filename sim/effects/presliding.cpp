@@ -39,6 +39,7 @@ const EffectInfo presliding{
     .shows =
         "Residual torque follows the travel since the last reversal and fades within micrometres, however fast they "
         "are passed. The axis springs back when the torque is let go",
+    .along = {"travel_since_reversal"},
     .confused_with = {"backlash", "compliance", "stribeck", "friction_lag"},
     .separate_by =
         "Triangles of a few micrometres at two rates and two amplitudes: a loop that depends on travel, not on time, "

@@ -36,6 +36,7 @@ const EffectInfo spring_torque{
                     .scale = Scale::travel,
                     .starts = {0.0}}},
     .shows = "The mean of forward and backward residual torque is a straight line over the position",
+    .along = {"position"},
     .confused_with = {"position_dependent_friction", "constant_torque", "coulomb_asymmetry"},
     .separate_by =
         "Slow strokes over the full travel, both ways, with the cable chain or bellows disconnected and connected",

@@ -112,6 +112,7 @@ const EffectInfo stribeck{
     .shows =
         "Residual torque rises towards zero speed, the same while speeding up and braking. Starts come late and jerk; "
         "slow motion sticks and slips",
+    .along = {"speed"},
     .confused_with = {"presliding", "friction_lag", "dwell_stiction", "nonlinear_viscous", "dac_dead_zone"},
     .separate_by =
         "Constant speeds, log-spaced from 0.05 to 10 rad/s, both ways, without acceleration; a slow command ramp from "

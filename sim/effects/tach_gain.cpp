@@ -26,6 +26,7 @@ const EffectInfo tach_gain{
     .shows =
         "The integral of the measured speed leaves the encoder in proportion to the travel; in torque nothing shows, "
         "because inertia and viscous friction take it up",
+    .along = {"speed"},
     .confused_with = {"viscous", "inertia"},
     .separate_by =
         "Integrate the tachometer over a long stroke and compare with the encoder; forth and back, so that an offset "

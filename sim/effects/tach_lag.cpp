@@ -30,6 +30,7 @@ const EffectInfo tach_lag{
     .shows =
         "The measured speed trails the derivative of the position, in proportion to acceleration; the position itself "
         "is on time",
+    .along = {"acceleration"},
     .confused_with = {"current_loop_lag", "input_delay", "friction_lag"},
     .separate_by =
         "Compare the tachometer with the differentiated encoder during a hard acceleration: a lag of the sensor leaves "

@@ -45,6 +45,7 @@ const EffectInfo tach_ripple{
                     .scale = Scale::millimetre}},
     .shows =
         "Error of the measured speed, periodic in position and in proportion to speed; the encoder does not show it",
+    .along = {"position"},
     .confused_with = {"cogging", "torque_ripple", "encoder_cyclic_error", "compliance"},
     .separate_by =
         "Constant speeds: compare the tachometer with the differentiated encoder over the motor angle; real motion "

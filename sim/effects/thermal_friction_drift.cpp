@@ -48,6 +48,7 @@ const EffectInfo thermal_friction_drift{
     .shows =
         "Residual torque follows the time since the start, with the sign of the motion. It grows with speed where "
         "viscous friction drifts",
+    .along = {"time", "temperature"},
     .confused_with = {"position_dependent_friction", "nonlinear_viscous", "dwell_stiction", "external_torque"},
     .separate_by =
         "Repeat one cycle for an hour, stop, repeat; log the temperature of the nut. Another order of the motions "

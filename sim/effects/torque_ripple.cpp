@@ -49,6 +49,7 @@ const EffectInfo torque_ripple{
     .shows =
         "Residual torque periodic in position, in proportion to the current: strong in accelerations, weak while "
         "coasting",
+    .along = {"position"},
     .confused_with = {"cogging", "tach_ripple", "encoder_cyclic_error", "load_dependent_friction"},
     .separate_by =
         "The same stroke with two loads, or constant speed against hard acceleration over the same places: cogging "

@@ -28,6 +28,7 @@ const EffectInfo viscous{
                     .scale = Scale::viscous,
                     .starts = {1}}},
     .shows = "Residual torque proportional to speed, of opposite sign in the two directions",
+    .along = {"speed"},
     .confused_with = {"nonlinear_viscous", "viscous_asymmetry", "tach_gain", "voltage_limit", "thermal_friction_drift"},
     .separate_by =
         "Five constant speeds or more, both ways, at one temperature; check the tachometer against the encoder first, "

@@ -28,6 +28,7 @@ const EffectInfo viscous_asymmetry{
                     .upper = 0.95,
                     .starts = {0.1, -0.1}}},
     .shows = "The mean of forward and backward residual torque grows with speed, and vanishes at rest",
+    .along = {"speed"},
     .confused_with = {"coulomb_asymmetry", "constant_torque", "dac_offset", "tach_offset", "nonlinear_viscous"},
     .separate_by =
         "Three constant speeds or more each way: an offset or unequal Coulomb levels keep their size, this grows in "

@@ -43,6 +43,7 @@ const EffectInfo voltage_limit{
                     .scale = Scale::top_speed,
                     .starts = {1.5}}},
     .shows = "Residual only at speed with torque in the direction of motion, none while braking",
+    .along = {"speed", "current"},
     .confused_with = {"current_saturation", "nonlinear_viscous", "viscous", "thermal_friction_drift"},
     .separate_by = "The same torque at low speed, and braking from top speed; log the bus voltage",
     .origin = "Supply voltage against back-EMF; sagging bus while several axes accelerate",

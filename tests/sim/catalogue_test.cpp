@@ -92,6 +92,15 @@ TEST_P(EveryEffect, HasAllItsTexts) {
   EXPECT_NE(info.install, nullptr);
 }
 
+TEST_P(EveryEffect, SaysWhatItsTraceGoesWith) {
+  const std::set<std::string_view> coordinates = {"speed",        "position", "travel_since_reversal",
+                                                  "acceleration", "current",  "rest",
+                                                  "temperature",  "time",     "frequency"};
+  const EffectInfo& info = *GetParam();
+  EXPECT_EQ(info.along.empty(), info.curve);  // a free curve goes with what it is asked to
+  for (const std::string_view coordinate : info.along) EXPECT_TRUE(coordinates.contains(coordinate)) << coordinate;
+}
+
 TEST_P(EveryEffect, IsConfusedWithOthersThatExist) {
   const EffectInfo& info = *GetParam();
   std::set<std::string_view> seen;

@@ -69,4 +69,38 @@ TEST(ResidualTests, TheAutocorrelationBeginsAtOneAndHasABound) {
   EXPECT_LT(least, -tests.with_itself.bound);
 }
 
+TEST(ResidualTests, AFrictionThatDriftsIsSlow) {
+  const auto tests =
+      tests_of(record_with([](double t_s, double, double w) { return (w > 0.0 ? 0.2 : -0.2) * std::cos(0.3 * t_s); }));
+  double slow = 0.0;
+  for (const host::ResidualDependence& dependence : tests.dependences)
+    if (dependence.coordinate == "time") slow = dependence.in_detail;
+  EXPECT_GT(slow, 0.5);
+  EXPECT_LT(tests.constant, 0.2);
+}
+
+/// What the speed channel reads, from the true speed, its acceleration and the travel.
+using Reading = std::function<double(double w, double acceleration, double x_mm)>;
+
+host::ResidualTests tests_of_reading(const Reading& reading) {
+  host::Record record = HandMade::record(20.0);
+  for (std::size_t k = 0; k < record.size(); ++k)
+    record.w[k] = reading(record.w[k], HandMade::acceleration(record.t_s[k]), record.x[k]);
+  const host::RecordSet set = host::compare_on({&record}, HandMade::model());
+  return host::test_speed_channel(HandMade::model(), set, set);
+}
+
+TEST(SpeedChannel, IsHeldAgainstTheMotionOfThePosition) {
+  const auto gain = tests_of_reading([](double w, double, double) { return 1.05 * w; });
+  EXPECT_EQ(gain.dependences.front().coordinate, "speed");
+  EXPECT_GT(share_on(gain, "speed"), 0.9);
+  const auto lag = tests_of_reading([](double w, double a, double) { return w - 0.004 * a; });
+  EXPECT_EQ(lag.dependences.front().coordinate, "acceleration");
+  const auto ripple = tests_of_reading(
+      [](double w, double, double x_mm) { return w * (1.0 + 0.03 * std::cos(2.0 * std::numbers::pi * x_mm / 5.0)); });
+  EXPECT_EQ(ripple.dependences.front().coordinate, "position");
+  const auto offset = tests_of_reading([](double w, double, double) { return w + 0.5; });
+  EXPECT_GT(offset.constant, 0.8);
+}
+
 }  // namespace
