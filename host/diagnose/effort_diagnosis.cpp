@@ -269,7 +269,9 @@ void name_coordinate(Diagnosis& diagnosis) {
   if (!diagnosis.screen || diagnosis.screen->empty() || speed_channel_alone_fails(diagnosis)) return;
   const EffortScreen& screen = *diagnosis.screen;
   if (differs_between_records(screen, verdict)) return;
-  const std::optional<FreeCurveFit> curve = fit_free_curve(screen);
+  // Anything in proportion to the effort explains the effort: a curve over it is drawn where the predictions ask for
+  // it.
+  const std::optional<FreeCurveFit> curve = fit_free_curve(screen, verdict.coordinate == "current" ? "current" : "");
   if (!curve) return;
   const double ratio = curve->model.validate / screen.best().validate, share = 1.0 - ratio * ratio;
   if (share < kLeastShare) return;

@@ -12,6 +12,7 @@
 #include "host/model/model_file.hpp"
 #include "host/scoreboard/simulated_null.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/curve.hpp"
 
 namespace host {
 
@@ -153,12 +154,18 @@ LeftOut leave_out(const Trial& trial, const ShareDone& progress) {
     return std::ranges::find(along, answer.verdict.coordinate) != along.end();
   };
   result.right_coordinate = answer.outcome == Outcome::group || std::ranges::any_of(truth.effects, goes_with);
-  try {
-    const Addition curve = add_free_curve(model, {}, MeasurementGate(model).admit(train, validate));
-    result.over = curve.judged.model.effects.back().over;
-    const double before = curve.judged.before * curve.judged.before - 1.0;
-    if (before > 0.0) result.curve = 1.0 - (curve.judged.after * curve.judged.after - 1.0) / before;
-  } catch (const Failure&) {  // no curve lowers the error
+  // Over what the verdict named, as a reader of it would try, and over whatever judges best.
+  for (const std::string& over : {std::string(), answer.verdict.coordinate}) {
+    if (!over.empty() && std::ranges::find(sim::kCurveCoordinates, over) == std::end(sim::kCurveCoordinates)) continue;
+    try {
+      const Addition curve = add_free_curve(model, over, MeasurementGate(model).admit(train, validate));
+      const double before = curve.judged.before * curve.judged.before - 1.0;
+      const double takes = before > 0.0 ? 1.0 - (curve.judged.after * curve.judged.after - 1.0) / before : 0.0;
+      if (!result.over.empty() && takes <= result.curve) continue;
+      result.over = curve.judged.model.effects.back().over;
+      result.curve = takes;
+    } catch (const Failure&) {  // no curve lowers the error
+    }
   }
   return result;
 }
