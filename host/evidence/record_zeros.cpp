@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -37,8 +38,9 @@ constexpr std::size_t kMostRows = 3000;
 constexpr std::size_t kWeights = 3;
 
 struct TravelResidual {
-  std::vector<double> x, left, weight[kWeights];
-  std::vector<PeriodPeak> peaks[kWeights];
+  std::vector<double> x, left;
+  std::array<std::vector<double>, kWeights> weight;
+  std::array<std::vector<PeriodPeak>, kWeights> peaks;
   double middle = 0.0, travel = 0.0;     ///< of x, mm or m
   double size = 0.0;                     ///< norm of `left`, Nm or N
   double shortest = 0.0, longest = 0.0;  ///< periods that the record may show, mm or m
