@@ -14,12 +14,12 @@ constexpr double kBelievedSteps = 3.0;
 
 /// Of every row: signed travel since the last reversal, and seconds of the rest before the present motion.
 struct History {
-  std::vector<double> since_reversal, rest_s, moved_s;
+  std::vector<double> since_reversal, rest_s;
 
   History(const SmoothedMotion& motion, double resolution, double period_s)
-      : since_reversal(motion.x.size()), rest_s(motion.x.size()), moved_s(motion.x.size()) {
+      : since_reversal(motion.x.size()), rest_s(motion.x.size()) {
     std::size_t turning = 0, extreme = 0;
-    double direction = 0.0, rest = 0.0, moved = 0.0;
+    double direction = 0.0, rest = 0.0;
     for (std::size_t k = 0; k < motion.x.size(); ++k) {
       const double beyond = motion.x[k] - motion.x[extreme];
       if (direction == 0.0 ? std::abs(beyond) > kBelievedSteps * resolution
@@ -32,9 +32,7 @@ struct History {
       }
       since_reversal[k] = motion.x[k] - motion.x[turning];
       if (motion.standing[k]) rest = k > 0 && motion.standing[k - 1] ? rest + period_s : period_s;
-      moved = motion.standing[k] ? 0.0 : moved + period_s;
       rest_s[k] = rest;
-      moved_s[k] = moved;
     }
   }
 };
@@ -90,7 +88,6 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       out.command_V.push_back(prepared.u_V[row]);
       out.since_reversal.push_back(history.since_reversal[row]);
       out.rest_s.push_back(history.rest_s[row]);
-      out.moved_s.push_back(history.moved_s[row]);
       if (with_temperature) out.temp_C.push_back(record.temp_C[row]);
     }
   }

@@ -18,7 +18,6 @@ struct ResidualEffort {
   std::vector<double> command_V;
   std::vector<double> since_reversal;  ///< travel since the last reversal, mm or m; negative in backward motion
   std::vector<double> rest_s;          ///< how long the axis had stood before this motion
-  std::vector<double> moved_s;         ///< and how long it has moved since
   std::vector<double> temp_C;          ///< empty unless every record has it
 };
 

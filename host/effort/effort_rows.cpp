@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host/effort/effort_terms.hpp"
 #include "host/exit_codes.hpp"
