@@ -28,6 +28,7 @@ enum class Scale {
   top_speed,           ///< the highest speed of the records
   travel,              ///< the travel that the records cover
   duration,            ///< the length of the longest record, s
+  first_stamp,         ///< the earliest time stamp of the records, s; never fitted
 };
 
 struct ParameterInfo {

@@ -19,6 +19,12 @@ std::vector<const PreparedRecord*> prepared_records(const RecordSet& set) {
   return prepared;
 }
 
+double first_stamp_s(const RecordSet& set) {
+  double first_s = HUGE_VAL;
+  for (const ComparedRecord& compared : set.records) first_s = std::min(first_s, compared.prepared.record->t_s.front());
+  return set.records.empty() ? 0.0 : first_s;
+}
+
 double steps_of(const sim::Drive& drive, const RecordSet& set) {
   double steps = 0.0;
   for (const ComparedRecord& compared : set.records) {

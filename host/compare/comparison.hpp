@@ -40,6 +40,9 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
+/// The earliest time stamp of all: what changes with time is told from there, whatever the logger's clock began with.
+double first_stamp_s(const RecordSet& set);
+
 /// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses
 /// swing within a sample.
 double steps_of(const sim::Drive& drive, const RecordSet& set);

@@ -61,6 +61,8 @@ double scale_value(sim::Scale scale, const sim::DriveDescription& model, const R
       return scales.travel;
     case sim::Scale::duration:
       return scales.duration_s;
+    case sim::Scale::first_stamp:
+      return scales.first_stamp_s;
   }
   return 1.0;
 }
@@ -68,14 +70,16 @@ double scale_value(sim::Scale scale, const sim::DriveDescription& model, const R
 /// The parameters that a new entry has: those that must be there, and of the pairs the form that the model's Coulomb
 /// friction has (speeds of fading are shared by both directions, which data seldom tell apart).
 std::vector<const sim::ParameterInfo*> parameters_to_start(const sim::EffectInfo& info,
-                                                           const sim::DriveDescription& model) {
+                                                           const sim::DriveDescription& model,
+                                                           const RecordScales& scales) {
   const sim::EffectEntry* coulomb = model.find("coulomb");
   const bool by_direction = coulomb != nullptr && coulomb->has("positive");
   std::vector<const sim::ParameterInfo*> chosen;
   for (const sim::ParameterInfo& parameter : info.parameters) {
     const std::string_view id = parameter.id;
     const bool directional = id.ends_with("_positive") || id.ends_with("_negative");
-    if (!parameter.optional || id == "exponent") {
+    if (!parameter.optional || id == "exponent" ||
+        (parameter.scale == sim::Scale::first_stamp && scales.first_stamp_s != 0.0)) {
       chosen.push_back(&parameter);
     } else if (id.starts_with("omega")) {
       if (!directional) chosen.push_back(&parameter);
@@ -98,7 +102,7 @@ sim::EffectEntry entry_from(const sim::EffectInfo& info, const std::vector<const
 
 std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                            const RecordScales& scales) {
-  const auto parameters = parameters_to_start(info, model);
+  const auto parameters = parameters_to_start(info, model, scales);
   std::vector<std::vector<double>> rows{{}};
   // Parameters with equal lists of starts move together (W1 = W2), all others are combined.
   std::vector<std::size_t> follows(parameters.size());
@@ -212,6 +216,7 @@ RecordScales scales_of(const RecordSet& set) {
     scales.duration_s = std::max(scales.duration_s, t_s.back() - t_s.front());
   }
   scales.travel = high - low;
+  scales.first_stamp_s = first_stamp_s(set);
   return scales;
 }
 

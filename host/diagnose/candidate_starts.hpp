@@ -13,6 +13,7 @@ struct RecordScales {
   double travel = 0.0;      ///< mm or m that the records cover
   double top_speed = 0.0;   ///< rad/s or m/s
   double duration_s = 0.0;  ///< of the longest record
+  double first_stamp_s = 0.0;
   double top_command_V = 0.0;
 };
 

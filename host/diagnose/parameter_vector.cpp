@@ -70,7 +70,7 @@ ParameterVector::ParameterVector(const sim::DriveDescription& description, Freed
     for (const std::string& id : ids_in_order(info, entry)) {
       const sim::ParameterInfo& parameter = *info.parameter(id);
       if (std::ranges::find(taken, id) != taken.end() || entry.held.contains(id) ||
-          (info.curve && sim::family_of(id) == "knot"))
+          parameter.scale == sim::Scale::first_stamp || (info.curve && sim::family_of(id) == "knot"))
         continue;
       if (only_last && id == "period") continue;
       const double value = entry.at(id);

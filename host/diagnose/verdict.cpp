@@ -81,8 +81,11 @@ std::vector<std::string> ties_of(const std::string& kind, const JudgedCandidate&
 }
 
 /// Friction that falls with a power of the speed is Stribeck friction too where no constant speeds tell: a fit that has
-/// found the one shape does not lead to the other.
+/// found the one shape does not lead to the other. What steepens with speed is the drag of a fluid.
 bool may_be_stribeck(const JudgedCandidate& chosen, const Diagnosis& diagnosis) {
+  constexpr double kSteepens = 1.5;
+  const sim::EffectEntry* bend = chosen.model.find("nonlinear_viscous");
+  if (bend != nullptr && bend->has("exponent") && bend->at("exponent") > kSteepens) return false;
   return chosen.kinds == std::vector<std::string>{"nonlinear_viscous"} && diagnosis.base.find("stribeck") == nullptr &&
          std::ranges::find(diagnosis.absent, "stribeck") == diagnosis.absent.end();
 }

@@ -1,5 +1,6 @@
 #include "host/effort/effort_orders.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -109,6 +110,43 @@ OrderChoice select(const EffortRows& rows, const MatrixXd& base, const VectorXd&
   return choice;
 }
 
+/// Squared error on the training rows of base and orders together.
+double left_with(const EffortRows& rows, const MatrixXd& base, const VectorXd& weight, double period,
+                 const std::vector<double>& orders) {
+  MatrixXd columns(rows.x.size(), base.cols() + 2 * static_cast<Index>(orders.size()));
+  columns << base, order_columns(rows, weight, period, orders);
+  const VectorXd train = VectorXd::NullaryExpr(
+      rows.x.size(), [&](Index k) { return rows.judges[static_cast<std::size_t>(k)] ? 0.0 : 1.0; });
+  columns = train.asDiagonal() * columns;
+  const VectorXd effort = train.cwiseProduct(rows.effort);
+  const VectorXd projection = columns.transpose() * effort;
+  return effort.squaredNorm() -
+         projection.dot((columns.transpose() * columns).completeOrthogonalDecomposition().solve(projection));
+}
+
+/// A period where the error is least, between those that the spectrum cannot tell from the one it found: the fastest
+/// order may be off by a quarter of a wave over the travel.
+double refined_period(const EffortRows& rows, const MatrixXd& base, const VectorXd& weight, const OrderChoice& choice) {
+  const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
+  const double reach = 0.25 * choice.period / (travel * std::ranges::max(choice.orders)) * choice.period;
+  const auto left = [&](double period) { return left_with(rows, base, weight, period, choice.orders); };
+  // Golden section: 16 steps leave 1/2000 of the interval, a thousandth of a wave.
+  constexpr double kGolden = 0.6180339887498949;
+  constexpr int kSteps = 16;
+  double low = choice.period - reach, high = choice.period + reach;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), at_a = left(a), at_b = left(b);
+  for (int step = 0; step < kSteps; ++step) {
+    if (at_a < at_b) {
+      high = b, b = a, at_b = at_a;
+      at_a = left(a = high - kGolden * (high - low));
+    } else {
+      low = a, a = b, at_a = at_b;
+      at_b = left(b = low + kGolden * (high - low));
+    }
+  }
+  return 0.5 * (low + high);
+}
+
 /// The same orders counted over a turn of the shaft, where the period is a whole part of one as nearly as the travel
 /// can tell.
 OrderChoice as_orders_of_a_turn(OrderChoice choice, double turn, double travel) {
@@ -142,7 +180,7 @@ MatrixXd order_columns(const EffortRows& rows, const VectorXd& weight, double pe
 }
 
 OrderChoice choose_orders(const sim::DataSheet& data, const EffortRows& rows, const MatrixXd& base,
-                          const VectorXd& weight, const VectorXd& left) {
+                          const VectorXd& weight, const VectorXd& left, Waves waves) {
   const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
   std::vector<double> speeds(rows.w.data(), rows.w.data() + rows.w.size());
   for (double& w : speeds) w = std::abs(w);
@@ -160,6 +198,15 @@ OrderChoice choose_orders(const sim::DataSheet& data, const EffortRows& rows, co
     if (orders < 1) return;
     const OrderChoice choice = select(rows, base, weight, period, orders);
     if (!choice.orders.empty() && choice.left_validate < advantage * best.left_validate) best = choice;
+  };
+  // One long wave is told from the series that stands for it by leaving as little.
+  const auto consider_wave = [&](double period) {
+    constexpr double kAsLittle = 1.1;
+    const OrderChoice choice =
+        select(rows, base, weight, refined_period(rows, base, weight, {period, {1.0}, 1.0, 1.0}), 2);
+    if (!choice.orders.empty() && (best.orders.empty() || choice.orders.size() <= best.orders.size()) &&
+        choice.left_validate < kAsLittle * best.left_validate)
+      best = choice;
   };
   const double turn = 2.0 * std::numbers::pi * data.lead;
   const bool turns = data.kind == sim::DriveKind::rotary && travel > turn;
@@ -184,7 +231,11 @@ OrderChoice choose_orders(const sim::DataSheet& data, const EffortRows& rows, co
     for (const double multiple : {1.0, 2.0, 3.0, 4.0})
       if (multiple * peak.period < travel)
         consider(multiple * peak.period, kMostMultiples * multiple, best.orders.empty() ? 1.0 : kAdvantage);
-  return turns ? as_orders_of_a_turn(best, turn, travel) : best;
+  if (waves == Waves::any)
+    for (const double part : {2.0, 1.4, 1.0, 0.7, 0.5}) consider_wave(part * travel);
+  if (turns) best = as_orders_of_a_turn(best, turn, travel);
+  if (!best.orders.empty() && best.period != turn) best.period = refined_period(rows, base, weight, best);
+  return best;
 }
 
 }  // namespace host

@@ -23,9 +23,12 @@ bool comes_back(const OrderChoice& choice, const sim::DataSheet& data, const Eff
 Eigen::MatrixXd order_columns(const EffortRows& rows, const Eigen::VectorXd& weight, double period,
                               const std::vector<double>& orders);
 
+/// Whether a wave must come back several times over the travel, or may be as long as that.
+enum class Waves { short_ones, any };
+
 /// Best orders beside `base`, over all periods tried: a turn of the shaft where the travel holds one, and what stands
 /// out of the spectrum of `left` over the travel, with its multiples. Empty where nothing lowers both errors.
 OrderChoice choose_orders(const sim::DataSheet& data, const EffortRows& rows, const Eigen::MatrixXd& base,
-                          const Eigen::VectorXd& weight, const Eigen::VectorXd& left);
+                          const Eigen::VectorXd& weight, const Eigen::VectorXd& left, Waves waves = Waves::short_ones);
 
 }  // namespace host

@@ -163,7 +163,11 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
     Builder builder{model, &path, by_speed, inertia == nullptr ? 0.0 : inertia->at("J")};
     builder.add(training, false, stride);
     builder.add(validation, true, stride);
-    if (builder.columns[0].size() <= kMostRows) return builder.finish();
+    if (builder.columns[0].size() <= kMostRows) {
+      EffortRows rows = builder.finish();
+      rows.first_stamp_s = first_stamp_s(training);
+      return rows;
+    }
     stride *= 1 + builder.columns[0].size() / kMostRows;
   }
 }
@@ -205,11 +209,9 @@ EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& trai
   try {
     rows = built(model, !position, training, validation);
     if (position && speed && enough(rows, false)) {
-      // A position whose time stamps jitter, or of coarse steps, differentiates badly; a tachometer has errors of its
-      // own: it must be clearly better.
-      constexpr double kClearlyBetter = 0.8;
       EffortRows other = built(model, true, training, validation);
-      if (enough(other, false) && left_by_base(other) < kClearlyBetter * left_by_base(rows)) rows = std::move(other);
+      if (enough(other, false) && left_by_base(other) < kClearlyBetterBySpeed * left_by_base(rows))
+        rows = std::move(other);
     }
   } catch (const Failure&) {  // no effort can be had, or too short for the filter
     return {};

@@ -31,7 +31,8 @@ struct EffortRows {
   bool has_position = false;  ///< in every record
   bool steady = true;         ///< the speed hardly changes within the records: no inertia can be found from them
   double lowest_cutoff_Hz = 0.0;
-  double noise = 0.0;  ///< RMS effort that the sensor's own noise makes through the model's inertia, Nm or N
+  double first_stamp_s = 0.0;  ///< of the training records
+  double noise = 0.0;          ///< RMS effort that the sensor's own noise makes through the model's inertia, Nm or N
 
   std::size_t size() const { return judges.size(); }
 };

@@ -256,6 +256,8 @@ struct Tried {
   std::vector<const EffortTerm*> terms;  ///< on top of what was chosen
 };
 
+bool can_be_claimed(const Tried& tried) { return std::ranges::all_of(tried.terms, &EffortTerm::can_be_claimed); }
+
 /// Keeps the best form of each combination of kinds, by its error on the training rows.
 void keep(std::vector<Tried>& found, Tried tried) {
   const auto same =
@@ -287,8 +289,7 @@ std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& scree
   // What differs in the last digits alone keeps the catalogue's order.
   std::ranges::stable_sort(found, {}, [](const Tried& tried) { return std::round(1e6 * product(tried.model)); });
   for (Tried& tried : found)
-    tried.model.confidence =
-        std::ranges::all_of(tried.terms, &EffortTerm::can_be_claimed) ? regressor.confidence(now, tried.model) : 0.0;
+    tried.model.confidence = can_be_claimed(tried) ? regressor.confidence(now, tried.model) : 0.0;
   return found;
 }
 
@@ -414,8 +415,11 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     });
     if (found.empty()) break;
     const Tried* best = &found.front();
-    for (const Tried& tried : found)
-      if (near(tried.model, found.front().model) && tried.model.factors < best->model.factors) best = &tried;
+    for (const Tried& tried : found) {
+      const bool simpler = can_be_claimed(tried) == can_be_claimed(*best) && tried.model.factors < best->model.factors;
+      if (near(tried.model, found.front().model) && (simpler || (can_be_claimed(tried) && !can_be_claimed(*best))))
+        best = &tried;
+    }
     std::vector<Tried> pairs;
     if (!earns_its_place(best->model, before, least_gain)) {
       // Two at once must take as much as a further one.
@@ -431,7 +435,8 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     std::vector<std::string> tied;
     if (pairs.empty())
       for (const Tried& other : found)
-        if (&other != best && near(other.model, best->model) && other.model.factors <= best->model.factors)
+        if (&other != best && can_be_claimed(other) && near(other.model, best->model) &&
+            other.model.factors <= best->model.factors)
           tied.push_back(other.model.kinds.back());
     screen.tied.push_back(std::move(tied));
     screen.chosen.push_back(best->model);

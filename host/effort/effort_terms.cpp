@@ -102,7 +102,9 @@ bool write_harmonics(std::string_view kind, const OrderChoice& choice, double sc
 
 void append_periodic(const sim::DriveDescription& model, const EffortRows& rows, std::string kind, const MatrixXd& base,
                      const VectorXd& weight, const VectorXd& left, std::vector<EffortTerm>& terms) {
-  const OrderChoice choice = choose_orders(model.data, rows, base, weight, left);
+  const bool friction = kind == "position_dependent_friction";
+  const OrderChoice choice =
+      choose_orders(model.data, rows, base, weight, left, friction ? Waves::any : Waves::short_ones);
   if (choice.orders.empty()) return;
   EffortTerm term{kind, order_columns(rows, weight, choice.period, choice.orders), {}, {}, {}};
   term.sign.assign(2 * choice.orders.size(), 0);
@@ -113,7 +115,10 @@ void append_periodic(const sim::DriveDescription& model, const EffortRows& rows,
   term.words = fmt::format("{} {:g} of {:.5g} {}", choice.orders.size() == 1 ? "order" : "orders",
                            fmt::join(choice.orders, ", "), choice.period,
                            model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
-  term.can_be_claimed = comes_back(choice, model.data, rows);
+  // Friction that varies along the travel need not come back, but what a series of few waves leaves much of is
+  // something else.
+  constexpr double kNearlyAll = 0.1;
+  term.can_be_claimed = comes_back(choice, model.data, rows) || (friction && choice.left_validate < kNearlyAll);
   terms.push_back(std::move(term));
 }
 
@@ -277,15 +282,16 @@ std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const 
     const double duration_s = rows.t_s.maxCoeff() - rows.t_s.minCoeff();
     for (const double part : {0.2, 1.0}) {
       const double tau = part * duration_s;
-      const VectorXd warmth = 1.0 - (-rows.t_s.array() / tau).exp();
-      terms.push_back(
-          simple("thermal_friction_drift", direction.cwiseProduct(warmth), 0,
-                 [tau](double change, sim::DriveDescription& fitted) {
-                   const double level = coulomb_level(fitted);
-                   return level > 0.0 &&
-                          append(fitted, "thermal_friction_drift",
-                                 {{"coulomb_change", change / level}, {"viscous_change", 0.0}, {"time_constant", tau}});
-                 }));
+      const double cold_s = rows.first_stamp_s;
+      const VectorXd warmth = 1.0 - (-(rows.t_s.array() - cold_s) / tau).exp();
+      terms.push_back(simple("thermal_friction_drift", direction.cwiseProduct(warmth), 0,
+                             [tau, cold_s](double change, sim::DriveDescription& fitted) {
+                               const double level = coulomb_level(fitted);
+                               std::map<std::string, double> drift{
+                                   {"coulomb_change", change / level}, {"viscous_change", 0.0}, {"time_constant", tau}};
+                               if (cold_s != 0.0) drift["cold_start"] = cold_s;
+                               return level > 0.0 && append(fitted, "thermal_friction_drift", drift);
+                             }));
     }
   }
   if (!rows.steady && may_have("input_delay") && may_have("current_loop_lag")) {

@@ -69,6 +69,10 @@ bool MeasurementGate::is_accepted(const LogFault& fault) const {
   });
 }
 
+bool MeasurementGate::any_stops(const std::vector<LogFault>& faults) const {
+  return std::ranges::any_of(faults, [&](const LogFault& fault) { return fault.fatal && !is_accepted(fault); });
+}
+
 std::vector<LogFault> MeasurementGate::check(Record& record) const {
   adapt_to(record, drive_.data);
   if (position_and_speed_swapped(record) && !scaled_copy(record)) {
@@ -143,7 +147,7 @@ void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<R
       if (overlap.rows > 0) note(trainer, judge, overlap, true);
     }
   }
-  if (std::ranges::any_of(faults, [&](const LogFault& fault) { return fault.fatal && !is_accepted(fault); })) return;
+  if (any_stops(faults)) return;
   std::vector<const Record*> by, judged;
   for (const Record& record : training) by.push_back(&record);
   for (const Record& record : validation) judged.push_back(&record);
@@ -190,8 +194,7 @@ Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Re
   for (auto* role : {&training, &validation})
     for (Record& record : *role) std::ranges::move(check(record), std::back_inserter(faults));
   compare_roles(training, validation, faults);
-  if (std::ranges::none_of(faults, [&](const LogFault& fault) { return fault.fatal && !is_accepted(fault); }))
-    share_zero(training, validation, faults);
+  if (!any_stops(faults)) share_zero(training, validation, faults);
   std::string fatal;
   for (LogFault& fault : faults) {
     fault.accepted = fault.fatal && is_accepted(fault);

@@ -32,6 +32,8 @@ class MeasurementGate {
 
  private:
   bool is_accepted(const LogFault& fault) const;
+  /// Whether one of them is fatal and not accepted.
+  bool any_stops(const std::vector<LogFault>& faults) const;
   std::vector<LogFault> check(Record& record) const;
   void share_zero(std::vector<Record>& training, std::vector<Record>& validation, std::vector<LogFault>& faults) const;
   void compare_roles(std::vector<Record>& training, std::vector<Record>& validation,

@@ -11,6 +11,7 @@
 #include "host/identify/plausibility.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/record_origin.hpp"
+#include "sim/catalogue.hpp"
 
 namespace host {
 
@@ -72,6 +73,34 @@ sim::DriveDescription model_from(const sim::DriveDescription& drive, const Rigid
   return model;
 }
 
+/// Mends what no model file may hold, and says so. Levels of which one pushes are an offset beyond friction: half
+/// their difference is friction.
+void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& estimate,
+                         std::vector<std::string>& warnings) {
+  for (sim::EffectEntry& entry : model.effects) {
+    const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+    const auto key = [&](const char* id) { return info.parameter(id)->key(model.data.kind); };
+    if (entry.has("positive") && (entry.at("positive") < 0.0 || entry.at("negative") > 0.0)) {
+      const Estimate level = common_level(*estimate.positive, *estimate.negative);
+      entry.parameters = {{"level", level.value}};
+      entry.ci95 = {{"level", level.ci95}};
+      warnings.push_back(
+          fmt::format("the model has half the difference of {} and {} as the friction of both "
+                      "directions, {} = {:.4g}; their sum stays for constant_torque or dac_offset",
+                      key("positive"), key("negative"), key("level"), std::max(0.0, level.value)));
+    }
+    for (auto& [id, value] : entry.parameters) {
+      const sim::ParameterInfo& parameter = *info.parameter(id);
+      const double bound = std::clamp(value, parameter.lower, parameter.upper);
+      if (value == bound) continue;
+      warnings.push_back(fmt::format("the model has {} = {:g}, the nearest that a drive can have",
+                                     parameter.key(model.data.kind), bound));
+      value = bound;
+      entry.ci95.erase(id);
+    }
+  }
+}
+
 void warn_of_tachometer(Identification& result, bool corrected) {
   if (!result.tachometer) return;
   constexpr double kGainOff = 0.002;   // moves B by several per cent
@@ -106,7 +135,23 @@ struct Attempt {
   RigidEstimate estimate;
   sim::DriveDescription model;
   double relative_error = 0.0;
+  bool beside_travel = false;
 };
+
+/// The estimate beside a curve over the travel, where that takes most of what inertia and friction leave and still
+/// tells inertia from it (a steady swing does not: its acceleration goes with the position).
+std::optional<RigidEstimate> estimate_beside_travel(const Attempt& made) {
+  constexpr double kMostOfIt = 0.5;             // of the norm: three quarters of the square
+  constexpr double kKnown = 0.3;                // of the inertia, half its interval
+  constexpr double kConditionOfAPlainOne = 50;  // as in the excitation check
+  constexpr double kSliding_s = 3.0;            // 30 blocks of 0.1 s for the twelve unknowns
+  if (made.excitation.forward_s + made.excitation.backward_s < kSliding_s) return {};
+  const RigidEstimate found = least_squares_beside_travel(made.motions);
+  if (!(found.relative_residual < kMostOfIt * made.estimate.relative_residual) ||
+      !(found.inertia.half_width() < kKnown * found.inertia.value) || !(found.condition_number < kConditionOfAPlainOne))
+    return {};
+  return found;
+}
 
 }  // namespace
 
@@ -162,6 +207,12 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
     require_motion(made.excitation, drive.data);
     made.estimate = by_samples ? discrete_least_squares(records, drive.data, made.motions.front().deadband, coulomb)
                                : inverse_least_squares(made.motions, coulomb);
+    if (!by_samples && coulomb == Coulomb::estimated && std::ranges::all_of(records, &Record::has_position)) {
+      if (const auto beside = estimate_beside_travel(made)) {
+        made.estimate = *beside;
+        made.beside_travel = true;
+      }
+    }
     require_determined(made.estimate, made.excitation, drive.data);
     made.model = model_from(drive, made.estimate, origin_of(given));
     made.relative_error = relative_error(made.model, records, made.options);
@@ -170,15 +221,14 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   Attempt best = attempt(false);
   const bool positions = std::ranges::all_of(records, &Record::has_position);
   if (corrected && positions) {
-    // A tachometer has errors of its own: it must be clearly better.
-    constexpr double kClearlyBetter = 0.8;
     try {
-      if (Attempt by_speed = attempt(true); by_speed.relative_error < kClearlyBetter * best.relative_error)
+      if (Attempt by_speed = attempt(true); by_speed.relative_error < kClearlyBetterBySpeed * best.relative_error)
         best = std::move(by_speed);
     } catch (const Failure&) {  // the speed channel alone does not determine the drive
     }
   }
   result.by_speed = best.options.by_speed || !positions;
+  result.beside_travel = best.beside_travel;
   result.cutoff_Hz = best.motions.front().cutoff_Hz;
   result.decimation = best.motions.front().decimation;
   result.excitation = best.excitation;
@@ -191,7 +241,12 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
         "the motion was taken from the speed channel: the position differentiates clearly worse (time stamps that "
         "jitter, coarse steps)");
   if (result.tach_noise_variance && tachometer) result.model.data.tach_noise_variance = result.tach_noise_variance;
+  if (result.beside_travel)
+    result.warnings.push_back(
+        "most of the effort beyond inertia and friction goes with the position (gravity on an arm, a spring, cogging): "
+        "it was taken out by a curve along the travel, and is not in the model; axistool diagnose says what it is");
   std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
+  keep_to_the_physics(result.model, result.estimate, result.warnings);
   warn_of_tachometer(result, corrected);
   if (const std::string kinds = dropped_effects(drive); !kinds.empty()) {
     result.warnings.push_back(

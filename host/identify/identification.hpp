@@ -32,6 +32,7 @@ struct Identification {
   RigidEstimate estimate;
   double relative_error = 0.0;  ///< of the inverse model on the same records
   bool by_speed = false;        ///< the motion was taken from the speed channel
+  bool beside_travel = false;   ///< what goes with the position was taken out by a curve along the travel
   double cutoff_Hz = 0.0;       ///< of the zero-phase filter
   std::size_t decimation = 1;
   ExcitationSummary excitation;
@@ -43,7 +44,10 @@ struct Identification {
 /// Identifies from one or several (training) records of the same drive and sampling period. `drive` gives the data
 /// sheet; a base effect that it has in the one-level form keeps that form, other effects are not taken over (a warning
 /// says so). sliding_ls corrects the tachometer by the encoder first, and takes the motion from it where the position
-/// differentiates clearly worse; the paper's methods take the records as they are.
+/// differentiates clearly worse; the paper's methods take the records as they are. Where a curve over the travel takes
+/// most of what inertia and friction leave (gravity on an arm, a spring), the filtered methods estimate beside it.
+/// The model can be read again whatever the records are: a value that no drive has stands there at its bound, and
+/// levels of which one would push as one level for both directions; warnings say so, the estimate stays as it was.
 /// Throws Failure(refused) for want of excitation, Failure(bad_input) for records that do not fit the drive.
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});

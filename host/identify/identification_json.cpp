@@ -19,6 +19,7 @@ nlohmann::json identification_json(const Identification& identification) {
       {"method", method_name(identification.method)},
       {"relative_error", identification.relative_error},
       {"motion_from", identification.by_speed ? "speed" : "position"},
+      {"beside_travel", identification.beside_travel},
       {"parameters", parameters},
       {"condition_number", estimate.condition_number},
       {"filter", {{"cutoff_Hz", identification.cutoff_Hz}, {"decimation", identification.decimation}}},

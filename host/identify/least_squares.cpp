@@ -30,9 +30,11 @@ Regression solve_blocks(const std::vector<NormalEquations>& blocks, Eigen::Index
 
   Eigen::MatrixXd moment = Eigen::MatrixXd::Zero(p, p);
   Eigen::VectorXd projection = Eigen::VectorXd::Zero(p);
+  double square = 0.0;
   for (const NormalEquations& block : blocks) {
     moment += block.moment;
     projection += block.projection;
+    square += block.square;
   }
   const Eigen::VectorXd scale = moment.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > 0.0) || !moment.allFinite()) return result;
@@ -46,6 +48,7 @@ Regression solve_blocks(const std::vector<NormalEquations>& blocks, Eigen::Index
   const Eigen::MatrixXd inverse =
       unscale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(p, p)) * unscale.asDiagonal();
   result.parameters = inverse * projection;
+  result.relative_residual = std::sqrt(std::max(0.0, 1.0 - result.parameters.dot(projection) / square));
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);
   for (const NormalEquations& block : blocks) {
     const Eigen::VectorXd score = block.projection - block.moment * result.parameters;

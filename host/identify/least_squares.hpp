@@ -13,9 +13,10 @@ double student_t_95(double degrees);
 /// What a regression found.
 struct Regression {
   Eigen::VectorXd parameters;
-  Eigen::MatrixXd covariance;     ///< of the parameters, by block sums (see BlockedRegression)
-  double condition_number = 0.0;  ///< of the regressors with columns scaled to unit length; infinite when singular
-  double t_quantile = 0.0;        ///< half-width of a 95 % interval in standard deviations
+  Eigen::MatrixXd covariance;      ///< of the parameters, by block sums (see BlockedRegression)
+  double condition_number = 0.0;   ///< of the regressors with columns scaled to unit length; infinite when singular
+  double t_quantile = 0.0;         ///< half-width of a 95 % interval in standard deviations
+  double relative_residual = 0.0;  ///< norm(y - Phi parameters) / norm(y)
   std::size_t rows = 0;
 };
 
@@ -23,6 +24,7 @@ struct Regression {
 struct NormalEquations {
   Eigen::MatrixXd moment;      ///< Phi'Phi
   Eigen::VectorXd projection;  ///< Phi'y
+  double square = 0.0;         ///< y'y
 };
 
 /// Solves the sum of the blocks for `unknowns` parameters. Covariance: sandwich estimate with the blocks as independent
@@ -43,6 +45,7 @@ class BlockedRegression {
   void add(const Row& phi, double y) {
     moment_.noalias() += phi * phi.transpose();
     projection_.noalias() += phi * y;
+    square_ += y * y;
     ++rows_;
     if (++rows_in_block_ == rows_per_block_) end_block();
   }
@@ -65,6 +68,7 @@ class BlockedRegression {
         moment_(c, c) += rows.col(c).squaredNorm();
         projection_(c) += rows.col(c).dot(rows.col(P));
       }
+      square_ += rows.col(P).squaredNorm();
       rows_ += count;
       rows_in_block_ += count;
       if (rows_in_block_ == rows_per_block_) end_block();
@@ -75,9 +79,10 @@ class BlockedRegression {
   /// Call between records: rows on both sides are not consecutive.
   void end_block() {
     if (rows_in_block_ == 0) return;
-    blocks_.push_back({moment_, projection_});
+    blocks_.push_back({moment_, projection_, square_});
     moment_.setZero();
     projection_.setZero();
+    square_ = 0.0;
     rows_in_block_ = 0;
   }
 
@@ -92,6 +97,7 @@ class BlockedRegression {
   std::size_t rows_ = 0;
   Eigen::Matrix<double, P, P> moment_ = Eigen::Matrix<double, P, P>::Zero();
   Row projection_ = Row::Zero();
+  double square_ = 0.0;
   std::vector<NormalEquations> blocks_;
 };
 

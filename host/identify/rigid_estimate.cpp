@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace host {
 
@@ -35,11 +36,12 @@ RigidEstimate from_list(const std::vector<Estimate>& list, const Regression& reg
   RigidEstimate estimate;
   estimate.inertia = list[0];
   estimate.viscous = list[1];
-  if (list.size() == 4) {
+  if (list.size() >= 4) {
     estimate.positive = list[2];
     estimate.negative = list[3];
   }
   estimate.condition_number = regression.condition_number;
+  estimate.relative_residual = regression.relative_residual;
   estimate.rows = regression.rows;
   return estimate;
 }
@@ -89,17 +91,34 @@ Regression discrete_regression(const std::vector<Record>& records, const sim::Da
   return regression.solve();
 }
 
+constexpr int kTravelTerms = 8;
+
+/// Where the travel of all motions begins and how long it is.
+std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Motion& motion : motions) {
+    const auto [least, most] = std::ranges::minmax(motion.travel);
+    low = std::min(low, least);
+    high = std::max(high, most);
+  }
+  return {low, high - low};
+}
+
+/// Of inertia and viscous friction (P = 2), Coulomb friction (4) and a curve over the travel (4 + kTravelTerms).
 template <int P>
 Regression inverse_regression(const std::vector<Motion>& motions) {
   std::size_t rows = 0;
   for (const Motion& motion : motions) rows += motion.speed.size() / motion.decimation;
+  [[maybe_unused]] const auto [start, length] = travel_of(motions);
   const Motion& first = motions.front();
   BlockedRegression<P> regression(rows_per_block(rows, static_cast<double>(first.decimation) / first.sample_rate_Hz));
   for (const Motion& motion : motions) {
     const std::vector<double> effort = motion.seen(motion.effort), acceleration = motion.seen(motion.acceleration),
                               speed = motion.seen(motion.speed);
     std::vector<double> forward, backward;
-    if constexpr (P == 4) {
+    std::vector<double> travel;
+    if constexpr (P > 4) travel = motion.seen(motion.travel);
+    if constexpr (P >= 4) {
       std::vector<double> sign(motion.speed.size());
       for (std::size_t k = 0; k < sign.size(); ++k) sign[k] = motion.speed[k] > 0.0 ? 1.0 : 0.0;
       forward = motion.seen(sign);
@@ -110,10 +129,13 @@ Regression inverse_regression(const std::vector<Motion>& motions) {
     for (std::size_t k = 0; k < effort.size(); ++k) {
       phi(0) = acceleration[k];
       phi(1) = speed[k];
-      if constexpr (P == 4) {
+      if constexpr (P >= 4) {
         phi(2) = forward[k];
         phi(3) = backward[k];
       }
+      if constexpr (P > 4)
+        for (int n = 1; n <= kTravelTerms; ++n)
+          phi(3 + n) = std::cos(n * std::numbers::pi * (travel[k] - start) / length);
       regression.add(phi, effort[k]);
     }
     regression.end_block();
@@ -134,6 +156,11 @@ RigidEstimate discrete_least_squares(const std::vector<Record>& records, const s
 RigidEstimate inverse_least_squares(const std::vector<Motion>& motions, Coulomb coulomb) {
   const Regression regression =
       coulomb == Coulomb::estimated ? inverse_regression<4>(motions) : inverse_regression<2>(motions);
+  return from_list(map_estimate(regression, [](const Eigen::VectorXd& theta) { return theta; }), regression);
+}
+
+RigidEstimate least_squares_beside_travel(const std::vector<Motion>& motions) {
+  const Regression regression = inverse_regression<4 + kTravelTerms>(motions);
   return from_list(map_estimate(regression, [](const Eigen::VectorXd& theta) { return theta; }), regression);
 }
 

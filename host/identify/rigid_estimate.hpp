@@ -25,6 +25,7 @@ struct RigidEstimate {
   std::optional<Estimate> positive;  ///< Coulomb level forward, > 0, Nm (N); empty when friction was left out
   std::optional<Estimate> negative;  ///< Coulomb level backward, < 0
   double condition_number = 0.0;
+  double relative_residual = 0.0;  ///< of what was regressed, 0 to 1
   std::size_t rows = 0;
 };
 
@@ -39,5 +40,9 @@ RigidEstimate discrete_least_squares(const std::vector<Record>& records, const s
 
 /// T = J dw/dt + B w (+ T+ or T-) regressed on filtered signals; serves every drive that has a position or a speed.
 RigidEstimate inverse_least_squares(const std::vector<Motion>& motions, Coulomb coulomb);
+
+/// The same with Coulomb friction and, beside it, a smooth curve over the travel (a cosine series of four waves at
+/// most): gravity on an arm or a spring would bend inertia and friction otherwise. The curve's mean goes to T+ and T-.
+RigidEstimate least_squares_beside_travel(const std::vector<Motion>& motions);
 
 }  // namespace host

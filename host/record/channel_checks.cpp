@@ -65,6 +65,21 @@ double smallest_step(const std::vector<double>& values) {
   return smallest;
 }
 
+/// The coarsest step that the position can have been counted in: no change is smaller, and no two changes differ by
+/// less. At a steady speed the changes are large all the same, but they differ by single steps.
+double coarsest_step(const std::vector<double>& values) {
+  double coarsest = smallest_step(values);
+  // As many digits as a text holds; what is below is its rounding.
+  constexpr double kRounding = 1e-6;
+  for (std::size_t k = 2; k < values.size(); ++k) {
+    const double change = values[k] - values[k - 1], before = values[k - 1] - values[k - 2];
+    const double difference = std::abs(change - before);
+    if (difference > kRounding * std::max({std::abs(values[k]), std::abs(change), std::abs(before)}))
+      coarsest = std::min(coarsest, difference);
+  }
+  return coarsest;
+}
+
 double largest_step(const std::vector<double>& values) {
   double largest = 0.0;
   for (std::size_t k = 1; k < values.size(); ++k) largest = std::max(largest, std::abs(values[k] - values[k - 1]));
@@ -330,12 +345,13 @@ void check_units(const Record& record, const sim::DataSheet& sheet) {
                      "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
                      where(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
   constexpr double kCoarse = 200.0;  // encoder steps: a unit that is 1000 times too small, and a slow start besides
-  if (smallest_step(record.x) > kCoarse * sheet.encoder_resolution)
+  const double step = coarsest_step(record.x);
+  if (step > kCoarse * sheet.encoder_resolution)
     fail(record, LogFaultKind::wrong_unit, &Record::x,
          fmt::format("{}: a unit cannot be right: the position never changes by less than {:.3g} {}, "
                      "{:.0f} steps of the model's encoder ({:.3g} {}); the numbers look like a smaller unit",
-                     where(record, &Record::x), smallest_step(record.x), unit,
-                     smallest_step(record.x) / sheet.encoder_resolution, sheet.encoder_resolution, unit));
+                     where(record, &Record::x), step, unit, step / sheet.encoder_resolution, sheet.encoder_resolution,
+                     unit));
 }
 
 void require_rate(const Record& record, double lowest_Hz, std::string_view purpose) {

@@ -73,6 +73,8 @@ double example_size(sim::Scale scale, sim::DriveKind kind) {
       return rotary ? 300.0 : 0.3;
     case sim::Scale::duration:
       return 60.0;
+    case sim::Scale::first_stamp:
+      return 0.0;
   }
   return 1.0;
 }

@@ -9,8 +9,9 @@ namespace {
 
 void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double tau = entry.at("time_constant"), b = entry.at("viscous_change"), c = entry.at("coulomb_change");
-  drive.level_factor.push_back([=](double t_s, double) { return 1.0 + c * (1.0 - decay(t_s / tau)); });
-  drive.viscous_factor.push_back([=](double t_s) { return 1.0 + b * (1.0 - decay(t_s / tau)); });
+  const double cold_s = entry.has("cold_start") ? entry.at("cold_start") : 0.0;
+  drive.level_factor.push_back([=](double t_s, double) { return 1.0 + c * (1.0 - decay((t_s - cold_s) / tau)); });
+  drive.viscous_factor.push_back([=](double t_s) { return 1.0 + b * (1.0 - decay((t_s - cold_s) / tau)); });
 }
 
 }  // namespace
@@ -20,7 +21,7 @@ const EffectInfo thermal_friction_drift{
     .kind = "thermal_friction_drift",
     .title = "Friction that drifts as the drive warms up",
     .equation =
-        "B(t) = B (1 + b (1 - exp(-t/tau))), T_coul(t) = T_coul (1 + c (1 - exp(-t/tau))); t: time since the cold "
+        "B(t) = B (1 + b (1 - exp(-(t - t0)/tau))), T_coul(t) = T_coul (1 + c (1 - exp(-(t - t0)/tau))); t0: cold "
         "start",
     .stage = Stage::friction,
     .parameters = {{.id = "viscous_change",
@@ -44,7 +45,16 @@ const EffectInfo thermal_friction_drift{
                     .lower = 0.5,
                     .upper = 1e5,
                     .scale = Scale::duration,
-                    .starts = {0.3, 1.0}}},
+                    .starts = {0.3, 1.0}},
+                   {.id = "cold_start",
+                    .rotary_key = "cold_start_s",
+                    .linear_key = "cold_start_s",
+                    .doc = "t0: when B and T_coul held as they stand, on the clock of the records; absent: 0",
+                    .lower = -1e10,
+                    .upper = 1e10,
+                    .scale = Scale::first_stamp,
+                    .starts = {1.0},
+                    .optional = true}},
     .shows =
         "Residual torque follows the time since the start, with the sign of the motion. It grows with speed where "
         "viscous friction drifts",

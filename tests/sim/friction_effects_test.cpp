@@ -201,6 +201,15 @@ TEST(ThermalFrictionDrift, LevelAndViscosityFollowTheTime) {
   EXPECT_NEAR(std::log(50.0 / run(oil, oil.at(0.0, 50.0), 0.0, 1000, 0.001).w), decay, 1e-4 * decay);
 }
 
+TEST(ThermalFrictionDrift, CountsFromTheColdStart) {
+  const double tau_s = 10.0, c = 0.25, start_s = 1.7e9;  // as a logger counts that has the date
+  const Drive drive(
+      with(coulomb_drive(), "thermal_friction_drift",
+           {{"viscous_change", 0.0}, {"coulomb_change", c}, {"time_constant", tau_s}, {"cold_start", start_s}}));
+  for (const double t_s : {0.0, 5.0, 60.0})
+    expect_breakaway(drive, drive.at(0.0, 0.0), kCoulomb * (1.0 + c * (1.0 - std::exp(-t_s / tau_s))), start_s + t_s);
+}
+
 TEST(LoadDependentFriction, TakesItsShareOfTheMotorTorque) {
   const double share = 0.1;
   const auto level = with(free_mass(), "coulomb", {{"level", kCoulomb}});

@@ -17,6 +17,7 @@
 namespace {
 
 using testing::ElementsAre;
+using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
 double five_orders(const Point& point) {
@@ -194,6 +195,46 @@ TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
   ASSERT_FALSE(screen.empty());
   EXPECT_GT(screen.base.validate, 0.1);
   EXPECT_TRUE(screen.chosen.empty()) << screen.chosen.front().kinds.front();
+}
+
+// The friction of a screw whose preload varies: not once and a half over the travel, so that it never comes back. A
+// period that is a few per cent off leaves a quarter of it.
+TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
+  constexpr double kLength = 30.0;
+  const auto wide = [](double t_s) {
+    const double slow = kTurn * 0.043, wave = kTurn * 0.31;
+    return Point{-18.0 * std::cos(slow * t_s) - 1.0 / wave * std::cos(wave * t_s),
+                 18.0 * slow * std::sin(slow * t_s) + std::sin(wave * t_s),
+                 18.0 * slow * slow * std::cos(slow * t_s) + wave * std::cos(wave * t_s)};
+  };
+  const auto preload = [](const Point& at) {
+    return std::copysign(0.4 * kCoulomb * std::sin(kTurn * at.x / kLength + 1.0), at.w);
+  };
+  const host::Record train = record_of(wide, preload, 0.0, 40.0, 11);
+  const host::Record validate = record_of(wide, preload, 51.0, 80.0, 12);
+  const host::EffortScreen screen =
+      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()));
+  ASSERT_EQ(screen.chosen.size(), 1U);
+  EXPECT_THAT(screen.chosen.front().kinds, ElementsAre("position_dependent_friction"));
+  EXPECT_THAT(screen.tied.front(), IsEmpty()) << "so long a wave is no ripple of a motor";
+  EXPECT_NEAR(screen.best().model.find("position_dependent_friction")->at("period"), kLength, 0.02 * kLength);
+  EXPECT_LT(screen.best().validate, 0.35 * screen.base.validate);
+}
+
+// A pitch that nobody knows, seen over a dozen periods.
+TEST(EffortScreen, FindsThePeriodToAThousandth) {
+  constexpr double kPitch = 2.3;
+  const auto ripple = [](const Point& at) {
+    return 0.012 * std::sin(kTurn * at.x / kPitch) + 0.006 * std::cos(2.0 * kTurn * at.x / kPitch);
+  };
+  const host::Record train = record_of(slow_turning, ripple, 0.0, 20.0, 13);
+  const host::Record validate = record_of(slow_turning, ripple, 23.0, 36.0, 14);
+  sim::DriveDescription slide = motor();
+  const host::EffortScreen screen =
+      host::screen_effort(slide, host::compare_on({&train}, slide), host::compare_on({&validate}, slide));
+  ASSERT_FALSE(screen.chosen.empty());
+  EXPECT_THAT(screen.chosen.front().kinds, ElementsAre("cogging"));
+  EXPECT_NEAR(screen.best().model.find("cogging")->at("period"), kPitch, 1e-3 * kPitch);
 }
 
 // What the effort is in proportion to must not be explained by the effort itself.

@@ -279,6 +279,11 @@ TEST_F(BadRecord, UnitsAgainstTheDataSheet) {
   EXPECT_EQ(message_of(position_only(1.0), check), "no failure");
   EXPECT_THAT(message_of(position_only(0.001), check), AllOf(HasSubstr("line 4, column x_mm"), HasSubstr("encoder")));
   EXPECT_THAT(message_of(position_only(1000.0), check), AllOf(HasSubstr("column x_mm"), HasSubstr("smaller unit")));
+  // Hundreds of counts a row, but not always as many.
+  const std::string steady = std::string(kHeader) + "t_s,u_V,x_mm\n" + rows_of(1000, [](int k, Row r) {
+                               return fmt::format("{},{},{:.3f}", r.t_s, r.u_V, 0.7213 * k);
+                             });
+  EXPECT_EQ(message_of(steady, check), "no failure");
 }
 
 TEST_F(BadRecord, DriveOfTheOtherKind) {
