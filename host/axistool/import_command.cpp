@@ -17,6 +17,7 @@ namespace {
 
 struct Options {
   std::string file, map, drive, output, json;
+  std::vector<std::string> unwrap;
   double resample_s = 0.0;
   bool list = false;
 };
@@ -32,6 +33,7 @@ constexpr const char* kFooter =
     "  axistool import data.mat --list\n"
     "  axistool import data.mat --map t_s=t,x_m=qm,u_V=vir -o record.csv\n"
     "  axistool import scope.csv --map t_s=1,u_V=2*10,x_mm=3*0.00122 --resample 0.001 --drive x -o record.csv\n"
+    "  axistool import angle.csv --unwrap x_mm=6.2831853 -o turns.csv\n"
     "  axistool import jittered.csv --resample 0.001 -o even.csv        (a record keeps its column names)";
 
 void list_contents(const host::Log& log) {
@@ -62,7 +64,7 @@ nlohmann::json describe(const host::Record& record, const std::string& output) {
     document["channels"][std::string(host::column_name(channel, record.kind))] = {{"min", low}, {"max", high}};
   }
   for (const auto& [key, value] : record.header)
-    if (key.starts_with("resampled")) document["notes"][key] = value;
+    if (key.starts_with("resampled") || key.starts_with("unwrapped")) document["notes"][key] = value;
   return document;
 }
 
@@ -84,6 +86,7 @@ void run(const Options& options) {
   if (!options.map.empty()) import.mappings = host::parse_mappings(options.map);
   if (options.resample_s > 0.0) import.resample_period_s = options.resample_s;
   import.drive = options.drive;
+  for (const std::string& text : options.unwrap) import.unwrap.push_back(host::parse_unwrapping(text));
   const host::Record record = host::import_record(log, import);
   host::write_record(record, options.output);
   const nlohmann::json document = describe(record, options.output);
@@ -104,6 +107,11 @@ void add_import(CLI::App& app) {
       ->add_option("--resample", options->resample_s,
                    "make even samples of this period (s); jitter, gaps and method are stated in the record")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--unwrap", options->unwrap,
+                   "COLUMN=RANGE: this column begins again after so much (a counter that runs over, an angle within a "
+                   "turn); the steps back are taken out")
+      ->expected(1);
   command->add_option("--drive", options->drive, "name of the drive, for the record's header");
   CLI::Option* list = command->add_flag("--list", options->list, "show what the log holds, and write nothing");
   CLI::Option* output = add_output(*command, "-o,--output", options->output, "the record to write");

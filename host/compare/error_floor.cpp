@@ -26,6 +26,16 @@ sim::DriveState changed(sim::DriveState state, double w, double x) {
   return state;
 }
 
+/// The drive under a constant torque that carries it about as far within a window as noise of `deviation` a row: after
+/// n rows white noise has added up to a speed of sqrt(n) and a travel of sqrt(n^3/3) of its steps, a constant to n and
+/// n^2/2.
+sim::Drive pushed(sim::DriveDescription model, double deviation, std::size_t rows) {
+  constexpr double kBetween = 1.2;  // 1 for the speed, 4/3 for the travel
+  model.effects.push_back(
+      {"constant_torque", {{"torque", deviation * std::sqrt(kBetween / static_cast<double>(rows))}}, {}, {}});
+  return sim::Drive(model);
+}
+
 double mean_square_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
@@ -34,14 +44,20 @@ double mean_square_difference(const std::vector<double>& a, const std::vector<do
 
 }  // namespace
 
-void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared,
+void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const PreparedRecord& prepared,
                  std::size_t stride) {
-  const double x_noise = data.encoder_resolution * data.encoder_resolution / 12.0;  // eq. (12)
-  const double w_noise = data.tach_noise_variance.value_or(0.0);                    // eq. (46)
+  const sim::Drive drive(model);
+  const double x_noise = model.data.encoder_resolution * model.data.encoder_resolution / 12.0;  // eq. (12)
+  const double w_noise = model.data.tach_noise_variance.value_or(0.0);                          // eq. (46)
   const SmoothedMotion& motion = prepared.motion();
   const std::vector<sim::DriveState> states = restart_states(drive, prepared, stride);
   if (prepared.record->has_position()) floor.x.resize(prepared.windows.size());
   if (prepared.record->has_speed()) floor.w.resize(prepared.windows.size());
+  // A measured effort is not quite what acts.
+  std::vector<sim::Drive> misled;
+  if (prepared.effort_noise > 0.0 && !prepared.windows.empty())
+    for (const double sign : {-1.0, 1.0})
+      misled.push_back(pushed(model, sign * prepared.effort_noise, prepared.windows.front().length));
   Channels nominal, slower, faster;
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
@@ -54,15 +70,25 @@ void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataShee
     const double slant = !stands && speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;
     double x_variance = motion.x_variance[window.begin] - slant * slant * speed_variance;
     double w_variance = 0.0;
-    if (speed_variance > 0.0) {
-      const double deviation = std::sqrt(speed_variance);
-      std::array runs{nominal.run(window, start), slower.run(window, changed(start, -deviation, -slant * deviation)),
-                      faster.run(window, changed(start, deviation, slant * deviation))};
-      run_side_by_side(drive, prepared, runs);
-      for (const Channels* disturbed : {&slower, &faster}) {
+    const auto spread = [&](const Channels& first, const Channels& second) {
+      for (const Channels* disturbed : {&first, &second}) {
         x_variance += 0.5 * mean_square_difference(disturbed->x, nominal.x);
         w_variance += 0.5 * mean_square_difference(disturbed->w, nominal.w);
       }
+    };
+    const double deviation = std::sqrt(std::max(0.0, speed_variance));
+    std::array runs{nominal.run(window, start), slower.run(window, changed(start, -deviation, -slant * deviation)),
+                    faster.run(window, changed(start, deviation, slant * deviation))};
+    if (deviation > 0.0) {
+      run_side_by_side(drive, prepared, runs);
+      spread(slower, faster);
+    }
+    if (!misled.empty()) {
+      if (!(deviation > 0.0)) run_side_by_side(drive, prepared, std::span(runs).first(1));
+      std::array less{slower.run(window, start)}, more{faster.run(window, start)};
+      run_side_by_side(misled[0], prepared, less);
+      run_side_by_side(misled[1], prepared, more);
+      spread(slower, faster);
     }
     // A model that runs away: its error is as bad as can be on any floor.
     if (!std::isfinite(x_variance + w_variance)) {

@@ -1,11 +1,11 @@
-// What the best possible model would leave: sensor noise, quantisation, and the uncertainty of the restart state
-// carried through the model, window by window.
+// What the best possible model would leave: sensor noise, quantisation, and the uncertainty of the restart state and of
+// a measured effort carried through the model, window by window.
 #pragma once
 
 #include <vector>
 
 #include "host/compare/prediction.hpp"
-#include "sim/drive.hpp"
+#include "sim/drive_description.hpp"
 
 namespace host {
 
@@ -16,7 +16,7 @@ struct ErrorFloor {
 };
 
 /// Computes the floors of every `stride`-th window; those of the others stay as they are, 0 where there were none.
-void renew_floor(ErrorFloor& floor, const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared,
+void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const PreparedRecord& prepared,
                  std::size_t stride = 1);
 
 }  // namespace host

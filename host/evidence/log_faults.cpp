@@ -40,10 +40,10 @@ void report_jumps(const Record& record, const PositionJumps& jumps, FaultList& f
   const auto times = [](std::size_t count) { return count == 1 ? std::string() : fmt::format(", {} times", count); };
   if (jumps.wraps > 0)
     faults.add(LogFaultKind::integer_wrap, &Record::x, jumps.first_wrap.t_s, jumps.first_wrap.size,
-               fmt::format("jumps by {:.6g} {} = 2^{} encoder steps at t = {:.4g} s{}: a counter ran over; add 2^{} "
-                           "steps from there on (axistool import) and log with a wider counter",
-                           jumps.first_wrap.size, unit, jumps.wrap_bits, jumps.first_wrap.t_s, times(jumps.wraps),
-                           jumps.wrap_bits));
+               fmt::format("jumps by {:.6g} {} against the motion at t = {:.4g} s{}: a counter or an angle ran over "
+                           "and began again; take that out with axistool import {} --unwrap {}={:.10g} -o …",
+                           jumps.first_wrap.size, unit, jumps.first_wrap.t_s, times(jumps.wraps), file_name(record),
+                           name_in_file(record, &Record::x), jumps.wrap_range));
   if (jumps.new_zeros > 0)
     faults.add(
         LogFaultKind::new_zero, &Record::x, jumps.first_new_zero.t_s, jumps.first_new_zero.size,

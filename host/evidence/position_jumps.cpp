@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include "host/identify/encoder_step.hpp"
@@ -18,10 +20,23 @@ constexpr double kJitter = 3.0;        ///< samples' travel that an unsteady clo
 constexpr int kFewestBits = 8;
 
 /// The power of two that a number of encoder steps is, or 0.
-int wrap_bits(double steps) {
+double counter_range(double steps) {
   const int bits = static_cast<int>(std::lround(std::log2(steps)));
   constexpr double kTolerance = 2.0;  // steps
-  return bits >= kFewestBits && std::abs(steps - std::exp2(bits)) <= kTolerance ? bits : 0;
+  return bits >= kFewestBits && std::abs(steps - std::exp2(bits)) <= kTolerance ? std::exp2(bits) : 0.0;
+}
+
+/// What an angle wraps round at: all new zeros lie as far apart, against the motion, and the position never leaves that
+/// range. A turn of the shaft where it is one; 0 where they are no wraps.
+double angle_range(const Record& record, const std::vector<double>& sizes, double turn) {
+  constexpr std::size_t kFewest = 2;
+  constexpr double kAlike = 0.01;
+  if (sizes.size() < kFewest) return 0.0;
+  const double range = median(sizes);
+  const auto [low, high] = std::ranges::minmax(record.x);
+  const auto alike = [range](double size) { return std::abs(size - range) < kAlike * range; };
+  if (!std::ranges::all_of(sizes, alike) || high - low > (1.0 + kAlike) * range) return 0.0;
+  return record.kind == sim::DriveKind::rotary && alike(turn) ? turn : range;
 }
 
 /// What one step differs from the next by in all but a hundredth of the rows: where no inertia is known, what the drive
@@ -72,6 +87,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
   const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
   // What a step exceeds the steps around it by.
   const auto excess = [&](std::size_t k) { return step(k) - 0.5 * (step(k - 1) + step(k + 1)); };
+  std::vector<double> against_the_motion;  // sizes of new zeros
   for (std::size_t k = 3; k + 2 < record.size(); ++k) {
     const double before = step(k - 1), after = step(k + 1), jump = excess(k);
     if (step(k) == 0.0 && std::abs(before) > impossible && after * before > 0.0 &&
@@ -90,17 +106,26 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
     const bool whole = samples > 0.5 && samples < kMostSamples &&
                        std::abs(samples - std::round(samples)) < kWhole + 3.0 * resolution / std::abs(speed) &&
                        std::abs(before - after) < 0.2 * std::abs(speed);
-    if (const int bits = wrap_bits(std::abs(jump) / resolution); bits > 0 && jump * speed <= 0.0) {
+    if (const double steps = counter_range(std::abs(jump) / resolution); steps > 0.0 && jump * speed <= 0.0) {
       note(jumps.wraps, jumps.first_wrap, 1, record.t_s[k], jump);
-      jumps.wrap_bits = bits;
+      jumps.wrap_range = steps * resolution;
     } else if (whole) {
       note(jumps.dropped, jumps.first_drop, static_cast<std::size_t>(std::lround(samples)), record.t_s[k], jump);
     } else if (catches_up(record.x, k)) {
       note(jumps.late, jumps.first_late, 1, record.t_s[k], jump);
     } else if (std::abs(jump) > kJitter * std::max(std::abs(before), std::abs(after))) {
       note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
+      if (jump * speed <= 0.0) against_the_motion.push_back(std::abs(jump));
     }
     ++k;  // the steps around a jump are no evidence of another
+  }
+  if (against_the_motion.size() == jumps.new_zeros && jumps.wraps == 0) {
+    const double range = angle_range(record, against_the_motion, 2.0 * std::numbers::pi * model.data.lead);
+    if (range > 0.0) {
+      jumps.wraps = std::exchange(jumps.new_zeros, 0);
+      jumps.first_wrap = jumps.first_new_zero;
+      jumps.wrap_range = range;
+    }
   }
   return jumps;
 }

@@ -14,8 +14,8 @@ struct PositionJump {
 };
 
 struct PositionJumps {
-  std::size_t wraps = 0;  ///< jumps by a power of two of encoder steps, against the motion
-  int wrap_bits = 0;
+  std::size_t wraps = 0;    ///< jumps against the motion, by a power of two of encoder steps or always by as much
+  double wrap_range = 0.0;  ///< what it wraps round at, mm or m
   PositionJump first_wrap;
   std::size_t new_zeros = 0;
   PositionJump first_new_zero;

@@ -2,13 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/motion.hpp"
+#include "host/statistics.hpp"
 #include "sim/drive.hpp"
 
 namespace host {
+
+namespace {
+
+/// Standard deviation of what differs from row to row, as noise does and motion does not: the third difference of white
+/// noise has twenty times its variance. At least that of the channel's steps.
+double row_noise(const std::vector<double>& values) {
+  std::vector<double> third, steps;
+  for (std::size_t k = 3; k < values.size(); ++k) {
+    third.push_back(std::abs(values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]));
+    if (const double step = std::abs(values[k] - values[k - 1]); step > 0.0) steps.push_back(step);
+  }
+  if (steps.empty()) return 0.0;
+  constexpr double kMedian = 0.6745;  // of the magnitude of a normal variable, in standard deviations
+  return std::max(median(std::move(third)) / (kMedian * std::sqrt(20.0)), std::ranges::min(steps) / std::sqrt(12.0));
+}
+
+}  // namespace
 
 PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, double window_s) {
   const auto length = static_cast<std::size_t>(std::lround(window_s / record.sample_period_s));
@@ -27,6 +47,7 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
   PreparedRecord prepared{
       &record,
       command_volts(record, base.data),
+      record.u_V.empty() ? row_noise(motor_effort(record, base.data)) : 0.0,
       MotionSmoother(record, base.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"), friction_level),
       {},
       record.sample_period_s,

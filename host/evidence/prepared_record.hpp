@@ -25,6 +25,7 @@ inline constexpr double kWindow_s = 0.1;
 struct PreparedRecord {
   const Record* record;
   std::vector<double> u_V;
+  double effort_noise;  ///< of one row, Nm or N; 0 where the effort is a command, which is known
   MotionSmoother smoother;
   std::vector<Window> windows;
   double period_s;

@@ -78,6 +78,7 @@ sim::DriveDescription model_from(const sim::DriveDescription& drive, const Rigid
 void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& estimate,
                          std::vector<std::string>& warnings) {
   for (sim::EffectEntry& entry : model.effects) {
+    if (entry.kind == "inertia") continue;  // no other value would stand for it
     const sim::EffectInfo& info = *sim::find_effect(entry.kind);
     const auto key = [&](const char* id) { return info.parameter(id)->key(model.data.kind); };
     if (entry.has("positive") && (entry.at("positive") < 0.0 || entry.at("negative") > 0.0)) {

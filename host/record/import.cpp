@@ -12,6 +12,7 @@
 #include "host/nearest_name.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
+#include "host/record/number.hpp"
 #include "host/record/read_record.hpp"
 #include "host/record/resample.hpp"
 #include "host/record/time_axis.hpp"
@@ -99,6 +100,35 @@ class Importer {
     time_ = &*std::ranges::find(sources_, std::string_view("t_s"), [](const Source& s) { return s.mapping->column; });
     if (!time_->mapping->time_source.empty()) fail("t_s cannot have time stamps of its own; remove '@' behind it");
     for (Source& source : sources_) stamp(source);
+    for (const Unwrapping& unwrapping : options_.unwrap) unwrap(unwrapping);
+  }
+
+  /// A step of more than half the range went the other way round.
+  void unwrap(const Unwrapping& unwrapping) {
+    const auto source = std::ranges::find(sources_, std::string_view(unwrapping.column),
+                                          [](const Source& s) { return std::string_view(s.mapping->column); });
+    if (source == sources_.end() || unwrapping.column == "t_s")
+      throw Failure(ExitCode::usage, fmt::format("--unwrap {}: the record gets no such channel", unwrapping.column));
+    std::vector<double>& values = source->stamped.values;
+    const auto [low, high] = std::ranges::minmax(values);
+    constexpr double kRounding = 1.001;
+    if (high - low > kRounding * unwrapping.range)
+      fail(
+          "--unwrap {}={}: the column covers {:.6g}, more than that, so it does not begin again there; give the range "
+          "that it has in the record's unit",
+          unwrapping.column, unwrapping.range, high - low);
+    double turns = 0.0, before = values.front();
+    std::size_t wraps = 0;
+    for (double& value : values) {
+      const double step = value - before;
+      before = value;
+      if (std::abs(step) > 0.5 * unwrapping.range) {
+        turns -= std::copysign(1.0, step);
+        ++wraps;
+      }
+      value += turns * unwrapping.range;
+    }
+    record_.header["unwrapped_" + unwrapping.column] = fmt::format("{} times by {}", wraps, unwrapping.range);
   }
 
   bool has_column(std::string_view name) const {
@@ -272,6 +302,15 @@ class Importer {
 };
 
 }  // namespace
+
+Unwrapping parse_unwrapping(std::string_view text) {
+  const std::size_t sign = text.find('=');
+  const auto range = sign == std::string_view::npos ? std::nullopt : parse_number(text.substr(sign + 1));
+  if (!range || !(*range > 0.0) || !std::isfinite(*range))
+    throw Failure(ExitCode::usage,
+                  fmt::format("--unwrap {}: write COLUMN=RANGE with a range above 0, e.g. x_mm=6.2831853", text));
+  return {std::string(trim_blanks(text.substr(0, sign))), *range};
+}
 
 Record import_record(const Log& log, const ImportOptions& options) { return Importer(log, options).run(); }
 

@@ -11,10 +11,20 @@
 
 namespace host {
 
+/// A column that begins again after `range`, in its own unit: a counter that runs over, an angle within a turn.
+struct Unwrapping {
+  std::string column;
+  double range = 0.0;
+};
+
+/// Of COLUMN=RANGE. Throws Failure(usage).
+Unwrapping parse_unwrapping(std::string_view text);
+
 struct ImportOptions {
   std::vector<Mapping> mappings;            ///< empty: every column keeps its name
   std::optional<double> resample_period_s;  ///< make even samples of this period, and state what was done
   std::string drive;                        ///< name of the drive; empty: as the log says, if it does
+  std::vector<Unwrapping> unwrap;
 };
 
 /// The row number of a log from 0, as if it were a column: for logs without time stamps, `t_s=row*0.001`.
@@ -23,7 +33,8 @@ inline constexpr std::string_view kRowSource = "row";
 /// Makes a record of a log, with the checks of read_record(); the header says where each column came from and, after
 /// resampling, the jitter, the gaps and how values were found between samples.
 /// Throws Failure(bad_input) where variables are missing, lengths differ, values are no numbers, samples are uneven
-/// (naming the jitter and --resample) or the record would not pass its checks.
+/// (naming the jitter and --resample), a column to be unwrapped leaves its range, or the record would not pass its
+/// checks.
 Record import_record(const Log& log, const ImportOptions& options);
 
 }  // namespace host

@@ -10,7 +10,7 @@ struct Row {
 
 /// In the order of LogFaultKind.
 constexpr Row kRows[] = {
-    {"integer_wrap", "jump", "unwrap the counter with axistool import, and log with a wider one"},
+    {"integer_wrap", "jump", "take it out with axistool import --unwrap, and log with a wider counter"},
     {"new_zero", "jump", "cut the record there with axistool cut"},
     {"dropped_samples", "gap",
      "record again, cut the record there with axistool cut, or fill it knowingly with axistool import --resample"},

@@ -10,7 +10,7 @@
 namespace host {
 
 enum class LogFaultKind {
-  integer_wrap,      ///< a counter of n bits ran over
+  integer_wrap,      ///< a counter of n bits ran over, or an angle began again after its turn
   new_zero,          ///< the position jumps by what no axis can move
   dropped_samples,   ///< samples are missing, by their time stamps or by a jump of whole samples' travel
   uneven_clock,      ///< samples come late under steady time stamps, and the next one catches up

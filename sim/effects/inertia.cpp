@@ -21,7 +21,7 @@ const EffectInfo inertia{
                     .rotary_key = "J_kg_m2",
                     .linear_key = "M_kg",
                     .doc = "inertia of everything that moves, seen at the motor",
-                    .lower = 1e-7,
+                    .lower = 1e-11,  // the rotors of the smallest motors have some 5e-10
                     .upper = 1e6,
                     .scale = Scale::inertia,
                     .starts = {1}}},

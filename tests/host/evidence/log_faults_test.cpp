@@ -52,6 +52,20 @@ TEST_F(LogFaults, CounterRunsOver) {
   expect_only(LogFaultKind::integer_wrap, "x_mm", -wrap, 2 * model.data.encoder_resolution);
 }
 
+TEST_F(LogFaults, AnAngleBeginsAgainAfterEachTurn) {
+  const double turn = 2.0 * M_PI * model.data.lead;
+  for (double& x : record.x) x = std::remainder(x, turn);
+  expect_only(LogFaultKind::integer_wrap, "x_mm", -turn, 0.01 * turn);
+}
+
+TEST_F(LogFaults, TwoNewZerosAreNoAngle) {
+  // As far apart, but the axis goes beyond them.
+  for (std::size_t k = 700; k < record.size(); ++k) record.x[k] -= k < 1200 ? 17.3 : 34.6;
+  const auto faults = host::log_faults(record, model);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(faults.front().kind, LogFaultKind::new_zero);
+}
+
 TEST_F(LogFaults, NewZeroAtStandstill) {
   for (std::size_t k = 2300; k < record.size(); ++k) record.x[k] -= 17.3;
   expect_only(LogFaultKind::new_zero, "x_mm", -17.3, 1e-6);

@@ -209,6 +209,27 @@ TEST(ImportTable, BadFieldsAreNamedWhereTheyMatter) {
 
 double jittered(int k) { return 0.001 * k + (k % 3 == 2 ? 0.0002 : 0.0); }
 
+// A step taken the wrong way round, or one range too few, leaves jumps.
+TEST(ImportUnwrap, AnAngleGoesOnBeyondItsTurn) {
+  constexpr double kTurn = 2.0 * M_PI;
+  const auto angle = [](int k) { return 9.0 * std::sin(0.01 * k); };
+  std::string text = "t_s,u_V,x_mm\n";
+  for (int k = 0; k < 1000; ++k)
+    fmt::format_to(std::back_inserter(text), "{:.3f},{:.4f},{:.6f}\n", 0.001 * k, std::cos(0.02 * k),
+                   std::remainder(angle(k), kTurn));
+  host::ImportOptions options;
+  options.unwrap = {host::parse_unwrapping("x_mm=6.283185307")};
+  const host::Record record = host::import_record(host::parse_table(text, "angle.csv"), options);
+  for (int k = 0; k < 1000; ++k) ASSERT_NEAR(record.x[static_cast<std::size_t>(k)], angle(k), 2e-6) << k;
+  EXPECT_THAT(record.header.at("unwrapped_x_mm"), HasSubstr("7 times"));
+  options.unwrap = {{"x_mm", 3.0}};
+  EXPECT_THROW(host::import_record(host::parse_table(text, "angle.csv"), options), host::Failure);
+  options.unwrap = {{"y_mm", kTurn}};
+  EXPECT_THROW(host::import_record(host::parse_table(text, "angle.csv"), options), host::Failure);
+  for (const char* bad : {"x_mm", "x_mm=", "x_mm=0", "x_mm=-1", "x_mm=nan", "x_mm=a"})
+    EXPECT_THROW(host::parse_unwrapping(bad), host::Failure) << bad;
+}
+
 TEST(ImportJitter, IsAnErrorThatNamesItsSizeAndTheRemedy) {
   const host::Log log = host::parse_table(table("t_s,u_V,x_mm\n", ",", jittered), "log.txt");
   EXPECT_THAT(message_of(log, ""), AllOf(HasSubstr("uneven sampling"), HasSubstr("0.2 ms at worst"), HasSubstr("line "),
