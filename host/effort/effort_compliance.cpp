@@ -79,6 +79,19 @@ EffortTerm compliance_term(const EffortRows& rows, const Load& load) {
   };
   term.words = fmt::format("antiresonance {:.3g} Hz{}", load.resonance_Hz,
                            load.friction > 0.0 ? ", friction on both sides" : "");
+  term.neighbours = [&rows, load](double part) {
+    std::vector<EffortTerm> around;
+    // Damping and friction show far less than the frequency.
+    constexpr double kCoarser = 6.0;
+    for (const double sign : {-1.0, 1.0}) {
+      const double factor = std::exp(sign * part), coarse = std::exp(sign * kCoarser * part);
+      around.push_back(compliance_term(rows, {factor * load.resonance_Hz, load.damping, load.friction}));
+      around.push_back(compliance_term(rows, {load.resonance_Hz, coarse * load.damping, load.friction}));
+      if (load.friction > 0.0)
+        around.push_back(compliance_term(rows, {load.resonance_Hz, load.damping, coarse * load.friction}));
+    }
+    return around;
+  };
   return term;
 }
 

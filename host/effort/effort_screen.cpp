@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "host/cancellation.hpp"
 #include "host/compare/chance.hpp"
@@ -293,6 +294,33 @@ std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& scree
   return found;
 }
 
+/// The form that leaves least of the training rows' effort among the neighbours of `term`, and theirs; `model` is what
+/// it makes of the drive.
+EffortTerm closest_form(const Regressor& regressor, const std::vector<EffortTerm>& base,
+                        const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model) {
+  constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // a quarter of what the forms lie apart, to 0.1 %
+  constexpr double kLeastStep = 1e-4;                     // of the error: what a smaller one gains, noise takes
+  std::vector<const EffortTerm*> further;
+  for (const EffortTerm& before : chosen) further.push_back(&before);
+  further.push_back(nullptr);
+  for (double part = kFirstPart; part > kLastPart;) {
+    throw_if_cancelled();
+    bool closer = false;
+    for (EffortTerm& neighbour : term.neighbours(part)) {
+      ScreenedModel tried = model;
+      further.back() = &neighbour;
+      if (!regressor.fit(base, further, tried) || tried.train > (1.0 - kLeastStep) * model.train) continue;
+      tried.words = neighbour.words;
+      model = std::move(tried);
+      term = std::move(neighbour);
+      closer = true;
+      break;
+    }
+    if (!closer) part *= 0.5;
+  }
+  return term;
+}
+
 std::vector<std::vector<const EffortTerm*>> one_by_one(const std::vector<EffortTerm>& terms) {
   std::vector<std::vector<const EffortTerm*>> combinations;
   for (const EffortTerm& term : terms) combinations.push_back({&term});
@@ -341,6 +369,14 @@ bool takes_its_part_at_reversals(const ScreenedModel& after, const ScreenedModel
     const std::optional<double> from = balance_error(before.model, *set), to = balance_error(after.model, *set);
     return from && to && *to < (1.0 - least_gain) * *from;
   });
+}
+
+/// Blocks of half a second that judge.
+std::size_t judging_blocks(const EffortRows& rows) {
+  std::set<std::pair<std::size_t, std::size_t>> blocks;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (rows.judges[k]) blocks.emplace(rows.record[k], rows.block[k]);
+  return blocks.size();
 }
 
 /// What a further effect must take of the error, by what of its square comes back.
@@ -400,6 +436,9 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
   std::vector<EffortTerm> chosen;
   while (screen.chosen.size() < most_steps) {
     if (screen.best().validate * screen.effort_validate < kAboveNoise * screen.rows.noise) break;
+    // Of some hundred forms and pairs one suits a block or two by chance.
+    constexpr std::size_t kFewestToGoOn = 4;
+    if (!chosen.empty() && judging_blocks(screen.rows) < kFewestToGoOn) break;
     const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen, absent);
     std::vector<Tried> found = try_all(regressor, screen, base, chosen, one_by_one(terms));
     screen.steps.emplace_back();
@@ -439,8 +478,13 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
             other.model.factors <= best->model.factors)
           tied.push_back(other.model.kinds.back());
     screen.tied.push_back(std::move(tied));
-    screen.chosen.push_back(best->model);
-    for (const EffortTerm* term : best->terms) chosen.push_back(*term);
+    ScreenedModel taken = best->model;
+    if (best->terms.size() == 1 && best->terms.front()->neighbours)
+      chosen.push_back(closest_form(regressor, base, chosen, *best->terms.front(), taken));
+    else
+      for (const EffortTerm* term : best->terms) chosen.push_back(*term);
+    *std::ranges::find(screen.steps.back(), taken.kinds, &ScreenedModel::kinds) = taken;
+    screen.chosen.push_back(std::move(taken));
   }
   drop_what_others_explain(regressor, base, training, validation, chosen, screen);
   if (screen.chosen.empty()) {

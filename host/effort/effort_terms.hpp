@@ -19,6 +19,9 @@ struct EffortTerm {
   std::function<bool(const Eigen::VectorXd& factors, sim::DriveDescription& model)> write;
   std::string words;           ///< "orders 72, 18 of 6.283 mm"; may be empty
   bool can_be_claimed = true;  ///< false: tells that something goes with the position, and no more
+  /// Forms whose shape differs by this part; empty where the forms that are tried lie close enough. It refers to the
+  /// rows.
+  std::function<std::vector<EffortTerm>(double part)> neighbours{};
 };
 
 /// Adds an effect to a model; false where a parameter is out of the catalogue's bounds.

@@ -105,8 +105,10 @@ void require_determined(const RigidEstimate& estimate, const ExcitationSummary& 
   throw Failure(
       ExitCode::refused,
       fmt::format("the record does not determine the inertia (condition number {:.3g}): the speed changes too "
-                  "little or too seldom. {}.",
-                  estimate.condition_number, better_excitation(summary, data)));
+                  "little or too seldom. {}. Where only steady speeds can be had, write a model by hand with the "
+                  "inertia of the data sheet, held ({}_held = true): axistool diagnose fits friction beside it.",
+                  estimate.condition_number, better_excitation(summary, data),
+                  data.kind == sim::DriveKind::rotary ? "J_kg_m2" : "M_kg"));
 }
 
 std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const ExcitationSummary& summary,

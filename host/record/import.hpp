@@ -24,7 +24,7 @@ struct ImportOptions {
   std::vector<Mapping> mappings;            ///< empty: every column keeps its name
   std::optional<double> resample_period_s;  ///< make even samples of this period, and state what was done
   std::string drive;                        ///< name of the drive; empty: as the log says, if it does
-  std::vector<Unwrapping> unwrap;
+  std::vector<Unwrapping> unwrap{};
 };
 
 /// The row number of a log from 0, as if it were a column: for logs without time stamps, `t_s=row*0.001`.

@@ -26,7 +26,7 @@ const EffectInfo compliance{
                     .rotary_key = "resonance_Hz",
                     .linear_key = "resonance_Hz",
                     .doc = "of both masses on the spring, free to move",
-                    .lower = 5.0,
+                    .lower = 2.0,
                     .upper = 300.0,
                     .starts = {50.0, 130.0}},
                    {.id = "damping_ratio",

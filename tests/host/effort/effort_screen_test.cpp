@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "sim/harmonic.hpp"
@@ -219,6 +221,65 @@ TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
   EXPECT_THAT(screen.tied.front(), IsEmpty()) << "so long a wave is no ripple of a motor";
   EXPECT_NEAR(screen.best().model.find("position_dependent_friction")->at("period"), kLength, 0.02 * kLength);
   EXPECT_LT(screen.best().validate, 0.35 * screen.base.validate);
+}
+
+/// Swings A (1 - cos(2 pi f t)) of several frequencies, from rest, and the load on a damped spring that they shake, in
+/// steps of 0.1 ms.
+class Shaken {
+ public:
+  static constexpr double kAntiresonance_Hz = 3.66, kDamping = 0.05, kLoad = 0.6 * kInertia;
+
+  explicit Shaken(std::vector<std::array<double, 2>> swings) : swings_(std::move(swings)) {}
+
+  host::Record record(unsigned seed) {
+    return record_of(
+        [this](double t_s) {
+          go_to(t_s);
+          return motor_end(t_s);
+        },
+        [this](const Point&) { return kLoad * pull_; }, 0.0, 20.0, seed);
+  }
+
+ private:
+  Point motor_end(double t_s) const {
+    Point sum{0.0, 0.0, 0.0};
+    for (const auto& [amplitude, hertz] : swings_) {
+      const double omega = kTurn * hertz;
+      sum.x += amplitude * (1.0 - std::cos(omega * t_s));
+      sum.w += amplitude * omega * std::sin(omega * t_s);
+      sum.a += amplitude * omega * omega * std::cos(omega * t_s);
+    }
+    return sum;
+  }
+
+  void go_to(double t_s) {
+    constexpr double kStep_s = 1e-4, kOwn = kTurn * kAntiresonance_Hz;
+    for (; now_s_ < t_s; now_s_ += kStep_s) {
+      const Point motor = motor_end(now_s_ + 0.5 * kStep_s);
+      pull_ = kOwn * kOwn * (motor.x - x_) + 2.0 * kDamping * kOwn * (motor.w - w_);
+      w_ += kStep_s * pull_;
+      x_ += kStep_s * w_;
+    }
+  }
+
+  std::vector<std::array<double, 2>> swings_;  ///< amplitude, rad, and frequency, Hz
+  double now_s_ = 0.0, x_ = 0.0, w_ = 0.0, pull_ = 0.0;
+};
+
+// The forms tried first lie 12 % apart.
+TEST(EffortScreen, FindsTheAntiresonanceBetweenTheFormsTriedFirst) {
+  const host::Record train = Shaken({{4.0, 0.31}, {0.8, 0.83}, {0.6, 2.6}, {0.6, 4.9}, {0.3, 7.1}}).record(21);
+  const host::Record validate = Shaken({{3.0, 0.37}, {0.9, 0.71}, {0.7, 2.1}, {0.5, 5.3}, {0.3, 8.3}}).record(22);
+  const host::EffortScreen screen =
+      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()), 1);
+  ASSERT_EQ(screen.chosen.size(), 1U);
+  ASSERT_THAT(screen.chosen.front().kinds, ElementsAre("compliance"));
+  const sim::EffectEntry& found = *screen.best().model.find("compliance");
+  const double share = found.at("load_fraction");
+  EXPECT_NEAR(share, Shaken::kLoad / (kInertia + Shaken::kLoad), 0.02);
+  EXPECT_NEAR(found.at("damping_ratio") * std::sqrt(1.0 - share), Shaken::kDamping, 0.01);
+  EXPECT_NEAR(found.at("resonance") * std::sqrt(1.0 - share), Shaken::kAntiresonance_Hz,
+              0.005 * Shaken::kAntiresonance_Hz);
 }
 
 // A pitch that nobody knows, seen over a dozen periods.
