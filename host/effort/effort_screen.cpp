@@ -9,7 +9,7 @@
 #include <set>
 
 #include "host/cancellation.hpp"
-#include "host/compare/chance.hpp"
+#include "host/effort/effort_regression.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
 
@@ -21,8 +21,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A data sheet that gives no deviation is believed to half its value.
-constexpr double kBelief = 0.5;
 /// An effect earns its place when it takes this part of the error, on training rows, and on the rows that judge.
 constexpr double kLeastTrainGain = 0.05, kLeastGain = 0.1;
 /// A further one must take half of the squared error that a model could take, which is what comes back when a motion is
@@ -42,182 +40,6 @@ constexpr double kLeastGainOfSpring = 0.42;
 constexpr double kAboveNoise = 2.0;
 /// Effects whose errors are so close are not told apart; the simpler one goes before.
 constexpr double kTie = 0.04;
-
-/// What is known of a factor before the fit.
-struct Prior {
-  double value = 0.0;
-  double deviation = 0.0;  ///< 0: nothing is known
-  bool held = false;
-};
-
-/// Regression of the effort of the training rows, or of a part of it.
-class Regressor {
- public:
-  Regressor(const sim::DriveDescription& model, const EffortRows& rows) : Regressor(model, rows, rows.effort) {}
-  Regressor(const sim::DriveDescription& model, const EffortRows& rows, const VectorXd& effort)
-      : model_(model), rows_(rows), effort_(effort) {
-    train_.resize(rows.effort.size());
-    for (Index k = 0; k < train_.size(); ++k) train_(k) = rows.judges[static_cast<std::size_t>(k)] ? 0.0 : 1.0;
-    effort_train_ = root_mean_square(rows, rows.effort, false);
-    effort_validate_ = root_mean_square(rows, rows.effort, true);
-  }
-
-  /// Fits the base and the further terms; false where a further term's factor has no room within physics.
-  bool fit(const std::vector<EffortTerm>& base, const std::vector<const EffortTerm*>& further, ScreenedModel& out,
-           std::vector<std::string>* held = nullptr) const {
-    std::vector<const EffortTerm*> terms;
-    for (const EffortTerm& term : base) terms.push_back(&term);
-    terms.insert(terms.end(), further.begin(), further.end());
-    std::vector<Prior> beliefs;
-    std::vector<int> sign;
-    Index width = 0;
-    for (const EffortTerm* term : terms) width += term->columns.cols();
-    MatrixXd phi(rows_.effort.size(), width);
-    Index at = 0;
-    const bool second_mass =
-        std::ranges::any_of(further, [](const EffortTerm* term) { return term->kind == "compliance"; });
-    for (std::size_t t = 0; t < terms.size(); ++t) {
-      phi.middleCols(at, terms[t]->columns.cols()) = terms[t]->columns;
-      at += terms[t]->columns.cols();
-      for (const int s : terms[t]->sign) {
-        beliefs.push_back(t < base.size() ? belief_of(t, base) : Prior{});
-        // Of two masses nobody knows which one the data sheet means.
-        if (second_mass && t == 0) beliefs.back().deviation = 0.0;
-        sign.push_back(s);
-      }
-    }
-    const MatrixXd seen = train_.asDiagonal() * phi;
-    const MatrixXd moments = seen.transpose() * seen;
-    const VectorXd projection = seen.transpose() * effort_;
-    std::vector<bool> fixed(static_cast<std::size_t>(width));
-    for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = beliefs[c].held;
-    VectorXd theta = solve(moments, projection, beliefs, fixed, 0.0);
-    double variance = effective_variance(phi, theta);
-    for (int round = 0; round < static_cast<int>(width) + 1; ++round) {
-      theta = solve(moments, projection, beliefs, fixed, variance);
-      Index worst = -1;
-      double most = 0.0;
-      for (Index c = 0; c < width; ++c) {
-        const double scale = std::sqrt(std::max(moments(c, c), 1e-300));
-        if (sign[static_cast<std::size_t>(c)] > 0 && !fixed[static_cast<std::size_t>(c)] && -theta(c) * scale > most) {
-          most = -theta(c) * scale;
-          worst = c;
-        }
-      }
-      if (worst < 0) break;
-      fixed[static_cast<std::size_t>(worst)] = true;
-      if (held != nullptr && static_cast<std::size_t>(worst) < base.size())
-        held->push_back(fmt::format("{} would come out negative", base[static_cast<std::size_t>(worst)].kind));
-    }
-    if (!theta.allFinite()) return false;
-    out.residual = effort_ - phi * theta;
-    out.model = model_;
-    out.factors = static_cast<std::size_t>(width);
-    at = 0;
-    for (const EffortTerm* term : terms) {
-      if (!term->write(theta.segment(at, term->columns.cols()), out.model)) return false;
-      at += term->columns.cols();
-    }
-    measure(out);
-    return true;
-  }
-
-  /// That the judging rows' error falls, by a bootstrap over their blocks.
-  double confidence(const ScreenedModel& before, const ScreenedModel& after) const {
-    constexpr double kLinear = 1e12;  // squares as they are
-    return confidence_of_improvement(by_block(before.residual), by_block(after.residual), 1, kLinear);
-  }
-
- private:
-  Prior belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
-    const std::string& kind = base[index].kind;
-    const sim::EffectEntry* entry = model_.find(kind);
-    const char* id = kind == "inertia" ? "J" : kind == "viscous" ? "B" : nullptr;
-    double sign = 1.0;
-    if (kind == "coulomb") {
-      const bool backward = index > 0 && base[index - 1].kind == "coulomb";
-      id = entry->has("level") ? "level" : backward ? "negative" : "positive";
-      sign = backward ? -1.0 : 1.0;
-    }
-    if (id == nullptr) return {};
-    double value = sign * entry->at(id), deviation = kBelief * std::abs(value);
-    if (const auto known = entry->believed.find(id); known != entry->believed.end()) {
-      value = sign * known->second.value;
-      deviation = known->second.deviation;
-    }
-    return {value, deviation, entry->held.contains(id) || (kind == "inertia" && rows_.steady)};
-  }
-
-  VectorXd solve(const MatrixXd& moments, const VectorXd& projection, const std::vector<Prior>& beliefs,
-                 const std::vector<bool>& fixed, double variance) const {
-    MatrixXd a = moments;
-    VectorXd b = projection;
-    for (Index c = 0; c < b.size(); ++c) {
-      const Prior& belief = beliefs[static_cast<std::size_t>(c)];
-      if (fixed[static_cast<std::size_t>(c)]) continue;
-      // A column that is another one's multiple shares its factor with it.
-      constexpr double kTiny = 1e-9;
-      a(c, c) *= 1.0 + kTiny;
-      if (belief.deviation > 0.0) {
-        a(c, c) += variance / (belief.deviation * belief.deviation);
-        b(c) += variance * belief.value / (belief.deviation * belief.deviation);
-      }
-    }
-    for (Index c = 0; c < b.size(); ++c) {
-      if (!fixed[static_cast<std::size_t>(c)]) continue;
-      const double value = beliefs[static_cast<std::size_t>(c)].value;
-      b -= a.col(c) * value;
-      a.row(c).setZero();
-      a.col(c).setZero();
-      a(c, c) = 1.0;
-      b(c) = value;
-    }
-    const VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    return scale.asDiagonal() * (scale.asDiagonal() * a * scale.asDiagonal()).ldlt().solve(scale.asDiagonal() * b);
-  }
-
-  /// Variance of a row's residual as if rows were independent: rows of a block are alike, and count for fewer.
-  double effective_variance(const MatrixXd& phi, const VectorXd& theta) const {
-    const VectorXd residual = train_.asDiagonal() * (effort_ - phi * theta);
-    double squares = 0.0, sums = 0.0, sum = 0.0;
-    for (Index k = 0; k < residual.size(); ++k) {
-      const auto row = static_cast<std::size_t>(k);
-      if (k > 0 && rows_.block[row] != rows_.block[row - 1]) {
-        sums += sum * sum;
-        sum = 0.0;
-      }
-      sum += residual(k);
-      squares += residual(k) * residual(k);
-    }
-    sums += sum * sum;
-    return std::max(squares, sums) / std::max(train_.sum(), 1.0);
-  }
-
-  void measure(ScreenedModel& model) const {
-    model.train = root_mean_square(rows_, model.residual, false) / effort_train_;
-    model.validate = root_mean_square(rows_, model.residual, true) / effort_validate_;
-    model.fast_train = root_mean_square(rows_, model.residual, false, true) / effort_train_;
-    model.fast_validate = root_mean_square(rows_, model.residual, true, true) / effort_validate_;
-  }
-
-  SetError by_block(const VectorXd& residual) const {
-    SetError error;
-    for (Index k = 0; k < residual.size(); ++k) {
-      const auto row = static_cast<std::size_t>(k);
-      if (!rows_.judges[row]) continue;
-      if (error.windows.empty() || error.windows.back().window != rows_.block[row])
-        error.windows.push_back({rows_.record[row], rows_.block[row]});
-      error.windows.back().effort += std::pow(residual(k) / std::max(rows_.noise, 1e-12), 2);
-    }
-    return error;
-  }
-
-  const sim::DriveDescription& model_;
-  const EffortRows& rows_;
-  const VectorXd& effort_;  ///< what is left to explain, one element a row
-  VectorXd train_;
-  double effort_train_, effort_validate_;  ///< RMS of all that the motor gave
-};
 
 double product(const ScreenedModel& model) { return model.train * model.validate; }
 
@@ -270,8 +92,8 @@ void keep(std::vector<Tried>& found, Tried tried) {
   }
 }
 
-std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& screen, const std::vector<EffortTerm>& base,
-                           const std::vector<EffortTerm>& chosen,
+std::vector<Tried> try_all(const EffortRegression& regression, const EffortScreen& screen,
+                           const std::vector<EffortTerm>& base, const std::vector<EffortTerm>& chosen,
                            const std::vector<std::vector<const EffortTerm*>>& combinations) {
   const ScreenedModel& now = screen.best();
   std::vector<Tried> found;
@@ -281,7 +103,7 @@ std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& scree
     for (const EffortTerm& before : chosen) further.push_back(&before);
     further.insert(further.end(), terms.begin(), terms.end());
     Tried tried{{}, terms};
-    if (!regressor.fit(base, further, tried.model)) continue;
+    if (!regression.fit(base, further, tried.model)) continue;
     tried.model.kinds = now.kinds;
     for (const EffortTerm* term : terms) tried.model.kinds.push_back(term->kind);
     tried.model.words = terms.back()->words;
@@ -290,13 +112,13 @@ std::vector<Tried> try_all(const Regressor& regressor, const EffortScreen& scree
   // What differs in the last digits alone keeps the catalogue's order.
   std::ranges::stable_sort(found, {}, [](const Tried& tried) { return std::round(1e6 * product(tried.model)); });
   for (Tried& tried : found)
-    tried.model.confidence = can_be_claimed(tried) ? regressor.confidence(now, tried.model) : 0.0;
+    tried.model.confidence = can_be_claimed(tried) ? regression.confidence(now, tried.model) : 0.0;
   return found;
 }
 
 /// The form that leaves least of the training rows' effort among the neighbours of `term`, and theirs; `model` is what
 /// it makes of the drive.
-EffortTerm closest_form(const Regressor& regressor, const std::vector<EffortTerm>& base,
+EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                         const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model) {
   constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // a quarter of what the forms lie apart, to 0.1 %
   constexpr double kLeastStep = 1e-4;                     // of the error: what a smaller one gains, noise takes
@@ -309,7 +131,7 @@ EffortTerm closest_form(const Regressor& regressor, const std::vector<EffortTerm
     for (EffortTerm& neighbour : term.neighbours(part)) {
       ScreenedModel tried = model;
       further.back() = &neighbour;
-      if (!regressor.fit(base, further, tried) || tried.train > (1.0 - kLeastStep) * model.train) continue;
+      if (!regression.fit(base, further, tried) || tried.train > (1.0 - kLeastStep) * model.train) continue;
       tried.words = neighbour.words;
       model = std::move(tried);
       term = std::move(neighbour);
@@ -391,7 +213,7 @@ bool near(const ScreenedModel& a, const ScreenedModel& best) {
 }
 
 /// An effect that was chosen first may have stood for two that came later: each is tried without.
-void drop_what_others_explain(const Regressor& regressor, const std::vector<EffortTerm>& base,
+void drop_what_others_explain(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                               const RecordSet& training, const RecordSet& validation, std::vector<EffortTerm>& chosen,
                               EffortScreen& screen) {
   for (std::size_t k = 0; chosen.size() > 1 && k + 1 < chosen.size();) {
@@ -399,14 +221,14 @@ void drop_what_others_explain(const Regressor& regressor, const std::vector<Effo
     for (std::size_t n = 0; n < chosen.size(); ++n)
       if (n != k) others.push_back(&chosen[n]);
     ScreenedModel without;
-    if (!regressor.fit(base, others, without) || earns_its_place(screen.best(), without, kLeastGain) ||
+    if (!regression.fit(base, others, without) || earns_its_place(screen.best(), without, kLeastGain) ||
         takes_its_part_at_reversals(screen.best(), without, kLeastGain, training, validation)) {
       ++k;
       continue;
     }
     for (const EffortTerm* term : others) without.kinds.push_back(term->kind);
     without.words = others.back()->words;
-    without.confidence = regressor.confidence(screen.base, without);
+    without.confidence = regression.confidence(screen.base, without);
     chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(k));
     screen.chosen.back() = std::move(without);
     // Steps that held it are none any more.
@@ -423,13 +245,13 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
   if (model.find("inertia") == nullptr || !has_inverse(sim::Drive(model))) return screen;
   screen.rows = effort_rows(model, training, validation);
   if (screen.empty()) return screen;
-  const Regressor regressor(model, screen.rows);
+  const EffortRegression regression(model, screen.rows);
   screen.effort_train = root_mean_square(screen.rows, screen.rows.effort, false);
   screen.effort_validate = root_mean_square(screen.rows, screen.rows.effort, true);
   screen.rows.effort -= standing_effort(model, screen.rows);
   const std::vector<EffortTerm> base = base_terms(model, screen.rows);
   if (!(screen.effort_train > 0.0) || !(screen.effort_validate > 0.0) ||
-      !regressor.fit(base, {}, screen.base, &screen.held))
+      !regression.fit(base, {}, screen.base, &screen.held))
     return {};
   if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
 
@@ -440,7 +262,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     constexpr std::size_t kFewestToGoOn = 4;
     if (!chosen.empty() && judging_blocks(screen.rows) < kFewestToGoOn) break;
     const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen, absent);
-    std::vector<Tried> found = try_all(regressor, screen, base, chosen, one_by_one(terms));
+    std::vector<Tried> found = try_all(regression, screen, base, chosen, one_by_one(terms));
     screen.steps.emplace_back();
     for (const Tried& tried : found) screen.steps.back().push_back(tried.model);
     if (found.empty()) break;
@@ -462,7 +284,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     std::vector<Tried> pairs;
     if (!earns_its_place(best->model, before, least_gain)) {
       // Two at once must take as much as a further one.
-      pairs = try_all(regressor, screen, base, chosen, by_two(terms));
+      pairs = try_all(regression, screen, base, chosen, by_two(terms));
       if (pairs.empty()) break;
       const ScreenedModel& pair = pairs.front().model;
       const bool at_reversals = !chosen.empty() && earns_its_place(pair, before, kLeastGain) &&
@@ -480,18 +302,18 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     screen.tied.push_back(std::move(tied));
     ScreenedModel taken = best->model;
     if (best->terms.size() == 1 && best->terms.front()->neighbours)
-      chosen.push_back(closest_form(regressor, base, chosen, *best->terms.front(), taken));
+      chosen.push_back(closest_form(regression, base, chosen, *best->terms.front(), taken));
     else
       for (const EffortTerm* term : best->terms) chosen.push_back(*term);
     *std::ranges::find(screen.steps.back(), taken.kinds, &ScreenedModel::kinds) = taken;
     screen.chosen.push_back(std::move(taken));
   }
-  drop_what_others_explain(regressor, base, training, validation, chosen, screen);
+  drop_what_others_explain(regression, base, training, validation, chosen, screen);
   if (screen.chosen.empty()) {
     EffortRows swapped = screen.rows;
     swapped.judges.flip();
     ScreenedModel alone;
-    if (Regressor(model, swapped).fit(base, {}, alone)) screen.judge_alone = std::move(alone);
+    if (EffortRegression(model, swapped).fit(base, {}, alone)) screen.judge_alone = std::move(alone);
   }
   screen.repeatable = repeatability(screen.rows, screen.best().residual);
   return screen;
@@ -501,15 +323,15 @@ std::optional<ScreenedModel> refitted_with(const EffortScreen& screen, const Eff
   const ScreenedModel& now = screen.best();
   // What stands beside the term is fitted again where the regression knows all of it.
   const bool whole = screen.chosen.empty() || has_linear_form(now.model);
-  const Regressor regressor(now.model, screen.rows, whole ? screen.rows.effort : now.residual);
+  const EffortRegression regression(now.model, screen.rows, whole ? screen.rows.effort : now.residual);
   ScreenedModel with;
-  if (!regressor.fit(whole ? base_terms(now.model, screen.rows) : std::vector<EffortTerm>{}, {&term}, with)) return {};
+  if (!regression.fit(whole ? base_terms(now.model, screen.rows) : std::vector<EffortTerm>{}, {&term}, with)) return {};
   with.kinds = now.kinds;
   with.kinds.push_back(term.kind);
   with.words = term.words;
   with.train = root_mean_square(screen.rows, with.residual, false) / screen.effort_train;
   with.validate = root_mean_square(screen.rows, with.residual, true) / screen.effort_validate;
-  with.confidence = regressor.confidence(now, with);
+  with.confidence = regression.confidence(now, with);
   return with;
 }
 

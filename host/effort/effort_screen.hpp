@@ -6,23 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "host/effort/effort_regression.hpp"
 #include "host/effort/effort_rows.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/effort/repeatability.hpp"
 
 namespace host {
-
-/// A model whose parameters came from the regression.
-struct ScreenedModel {
-  std::vector<std::string> kinds;  ///< beyond the base, in the order in which they were chosen
-  sim::DriveDescription model;
-  std::string words;                   ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
-  double train = 1.0, validate = 1.0;  ///< RMS residual over RMS effort of the rows; 1 is no better than no model
-  double fast_train = 1.0, fast_validate = 1.0;  ///< the same of the rows away from sticking and slipping
-  double confidence = 0.0;                       ///< against the model that it extends
-  std::size_t factors = 0;
-  Eigen::VectorXd residual;  ///< of every row, Nm or N
-};
 
 struct EffortScreen {
   EffortRows rows;

@@ -35,7 +35,7 @@ NOT_RUN = [
     (r"--response", "needs what bode writes; host/response's tests run it"),
     (r"\bimprove\b", "a minute; host/python's and host/diagnose's tests run it"),
     (r"--method paper", "longer jogs than those that are shipped; host/identify's tests run it"),
-    (r"jittered|scope", "a log of another program; host/record's tests run it"),
+    (r"jittered|scope|angle", "a log of another program; host/record's tests run it"),
     (r"--before-after", "needs what improve writes; host/hil's tests run it"),
     (r"^axistool demo$", "ten seconds; host/demo's tests run it"),
 ]
