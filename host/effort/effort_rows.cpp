@@ -166,6 +166,10 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
     if (builder.columns[0].size() <= kMostRows) {
       EffortRows rows = builder.finish();
       rows.first_stamp_s = first_stamp_s(training);
+      for (const RecordSet* set : {&training, &validation})
+        for (const ComparedRecord& compared : set->records)
+          if (compared.prepared.record->u_V.empty())
+            rows.unknown_order_s = std::max(rows.unknown_order_s, compared.prepared.record->sample_period_s);
       return rows;
     }
     stride *= 1 + builder.columns[0].size() / kMostRows;

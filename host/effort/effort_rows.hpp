@@ -31,6 +31,9 @@ struct EffortRows {
   bool has_position = false;  ///< in every record
   bool steady = true;         ///< the speed hardly changes within the records: no inertia can be found from them
   double lowest_cutoff_Hz = 0.0;
+  /// The longest period of the records whose effort was measured: nobody knows when within a row each channel was read.
+  /// A command is known to act from its row on.
+  double unknown_order_s = 0.0;
   double first_stamp_s = 0.0;  ///< of the training records
   double noise = 0.0;          ///< RMS effort that the sensor's own noise makes through the model's inertia, Nm or N
 
