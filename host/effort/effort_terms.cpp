@@ -260,14 +260,15 @@ std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const 
   if (may_have("nonlinear_viscous"))
     for (const double part : {0.05, 0.08, 0.12, 0.2, 0.4}) {
       const double saturation = part * top;
+      const int flattening = may_have("stribeck") ? 1 : 0;  // what falls with speed is called so
       terms.push_back(simple(
-          "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), 0,
+          "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), flattening,
           [saturation](double coefficient, sim::DriveDescription& fitted) {
             return append(fitted, "nonlinear_viscous", {{"coefficient", coefficient}, {"saturation", saturation}});
           }));
     }
   if (may_have("stribeck") && coulomb != nullptr)
-    for (const double part : {0.02, 0.05, 0.1, 0.2}) terms.push_back(stribeck_term(model, rows, part * top));
+    for (const double part : {0.02, 0.05, 0.08, 0.12, 0.2}) terms.push_back(stribeck_term(model, rows, part * top));
   if (may_have("load_dependent_friction"))
     terms.push_back(simple("load_dependent_friction", direction.cwiseProduct(explained.cwiseAbs()), 1,
                            [](double share, sim::DriveDescription& fitted) {

@@ -150,6 +150,16 @@ class LoggedMachines(unittest.TestCase):
         self.assertEqual(diagnosis["verdict"]["effects"], ["cogging"])
         self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 2.0)
 
+    def test_an_arm_whose_friction_falls_with_speed(self) -> None:
+        self.sheet(1.0, 2.0 * math.pi / 40000, 0.002)
+        arm = Machine(0.1, lambda w, q: 0.6 + 0.5 * math.exp(-abs(w) / 0.15) + 0.2 * abs(w), lambda q: -2.0 * math.sin(q))
+        for name, seed in (("train", 21), ("judge", 22)):
+            path = moves(seed, 7500, 0.002, 2.0, 2.0)
+            self.write(name, arm.run(follow(path, 80.0, 6.0, 15.0), 0.002, 7500), 0.02)
+        self.identified()
+        # A curve that flattens fits as well where it may rise towards rest, which is Stribeck friction.
+        self.assertEqual(sorted(self.diagnosed()["verdict"]["effects"]), ["cogging", "stribeck"])
+
     def test_a_vertical_axis_heavier_than_its_friction(self) -> None:
         self.sheet(0.8, 0.001, 0.004)
         axis = Machine(0.003, lambda w, q: 0.5 + 0.006 * abs(w), lambda q: -0.8)
