@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace host {
 
@@ -96,11 +97,11 @@ constexpr int kTravelTerms = 8;
 /// Where the travel of all motions begins and how long it is.
 std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
   double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const Motion& motion : motions) {
-    const auto [least, most] = std::ranges::minmax(motion.travel);
-    low = std::min(low, least);
-    high = std::max(high, most);
-  }
+  for (const Motion& motion : motions)
+    for (const double x : motion.travel) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
   return {low, high - low};
 }
 
@@ -109,7 +110,8 @@ template <int P>
 Regression inverse_regression(const std::vector<Motion>& motions) {
   std::size_t rows = 0;
   for (const Motion& motion : motions) rows += motion.speed.size() / motion.decimation;
-  [[maybe_unused]] const auto [start, length] = travel_of(motions);
+  std::pair<double, double> whole_travel;
+  if constexpr (P > 4) whole_travel = travel_of(motions);
   const Motion& first = motions.front();
   BlockedRegression<P> regression(rows_per_block(rows, static_cast<double>(first.decimation) / first.sample_rate_Hz));
   for (const Motion& motion : motions) {
@@ -135,7 +137,7 @@ Regression inverse_regression(const std::vector<Motion>& motions) {
       }
       if constexpr (P > 4)
         for (int n = 1; n <= kTravelTerms; ++n)
-          phi(3 + n) = std::cos(n * std::numbers::pi * (travel[k] - start) / length);
+          phi(3 + n) = std::cos(n * std::numbers::pi * (travel[k] - whole_travel.first) / whole_travel.second);
       regression.add(phi, effort[k]);
     }
     regression.end_block();
