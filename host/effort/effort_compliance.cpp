@@ -104,7 +104,10 @@ void append_compliance(const sim::DriveDescription& model, const EffortRows& row
   std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
   const sim::Drive drive(base);
   const double usual = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia;
-  for (double resonance_Hz = kLowest_Hz; resonance_Hz < kShareOfCutoff * rows.lowest_cutoff_Hz; resonance_Hz *= kStep) {
+  const double span = std::log(kShareOfCutoff * rows.lowest_cutoff_Hz / kLowest_Hz);
+  const auto frequencies = static_cast<int>(std::ceil(span / std::log(kStep)));
+  for (int k = 0; k < frequencies; ++k) {
+    const double resonance_Hz = kLowest_Hz * std::pow(kStep, k);
     throw_if_cancelled();
     for (const double damping : {0.02, 0.1, 0.3}) terms.push_back(compliance_term(rows, {resonance_Hz, damping, 0.0}));
     if (usual > 0.0)

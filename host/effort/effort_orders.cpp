@@ -51,7 +51,7 @@ struct Selection {
 OrderChoice select(const EffortRows& rows, const MatrixXd& base, const VectorXd& weight, double period, int most) {
   std::vector<double> all;
   for (int order = 1; order <= most; ++order) all.push_back(order);
-  MatrixXd columns(rows.x.size(), base.cols() + 2 * most + 1);
+  MatrixXd columns(rows.x.size(), base.cols() + 2 * Index{most} + 1);
   columns << base, order_columns(rows, weight, period, all), rows.effort;
   MatrixXd train = columns, judge = columns;
   for (Index k = 0; k < columns.rows(); ++k)
@@ -74,7 +74,7 @@ OrderChoice select(const EffortRows& rows, const MatrixXd& base, const VectorXd&
     double most_gain = kLeastGain * train_left;
     for (int order = 1; order <= most; ++order) {
       if (out[static_cast<std::size_t>(order)]) continue;
-      const Index c = base.cols() + 2 * (order - 1);
+      const Index c = base.cols() + 2 * (Index{order} - 1);
       const double cc = selection.train(c, c), ss = selection.train(c + 1, c + 1), cs = selection.train(c, c + 1);
       const double determinant = cc * ss - cs * cs;
       // What hardly stands out of the others' span gets its size from noise.
@@ -90,7 +90,7 @@ OrderChoice select(const EffortRows& rows, const MatrixXd& base, const VectorXd&
     if (best == 0) break;
     out[static_cast<std::size_t>(best)] = true;
     Selection further = selection;
-    const Index c = base.cols() + 2 * (best - 1);
+    const Index c = base.cols() + 2 * (Index{best} - 1);
     for (const Index k : {c, c + 1}) {
       sweep(further.train, k);
       further.taken.push_back(k);
