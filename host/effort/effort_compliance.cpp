@@ -105,7 +105,8 @@ void append_compliance(const sim::DriveDescription& model, const EffortRows& row
   const sim::Drive drive(base);
   const double usual = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia;
   const double span = std::log(kShareOfCutoff * rows.lowest_cutoff_Hz / kLowest_Hz);
-  const auto frequencies = static_cast<int>(std::ceil(span / std::log(kStep)));
+  constexpr double kMost = 100.0;  // up to 90 kHz
+  const auto frequencies = static_cast<int>(std::ceil(std::clamp(span / std::log(kStep), 0.0, kMost)));
   for (int k = 0; k < frequencies; ++k) {
     const double resonance_Hz = kLowest_Hz * std::pow(kStep, k);
     throw_if_cancelled();

@@ -20,10 +20,11 @@ namespace {
 double row_noise(const std::vector<double>& values) {
   std::vector<double> third, steps;
   for (std::size_t k = 3; k < values.size(); ++k) {
-    third.push_back(std::abs(values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]));
+    const double change = std::abs(values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]);
+    if (std::isfinite(change)) third.push_back(change);
     if (const double step = std::abs(values[k] - values[k - 1]); step > 0.0) steps.push_back(step);
   }
-  if (steps.empty()) return 0.0;
+  if (steps.empty() || third.empty()) return 0.0;
   constexpr double kMedian = 0.6745;  // of the magnitude of a normal variable, in standard deviations
   return std::max(median(std::move(third)) / (kMedian * std::sqrt(20.0)), std::ranges::min(steps) / std::sqrt(12.0));
 }
