@@ -255,12 +255,13 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     return {};
   if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
 
+  // Of some hundred forms and pairs one suits a block or two by chance.
+  constexpr std::size_t kFewestToGoOn = 4;
+  const bool enough_to_go_on = judging_blocks(screen.rows) >= kFewestToGoOn;
   std::vector<EffortTerm> chosen;
   while (screen.chosen.size() < most_steps) {
     if (screen.best().validate * screen.effort_validate < kAboveNoise * screen.rows.noise) break;
-    // Of some hundred forms and pairs one suits a block or two by chance.
-    constexpr std::size_t kFewestToGoOn = 4;
-    if (!chosen.empty() && judging_blocks(screen.rows) < kFewestToGoOn) break;
+    if (!chosen.empty() && !enough_to_go_on) break;
     const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen, absent);
     std::vector<Tried> found = try_all(regression, screen, base, chosen, one_by_one(terms));
     screen.steps.emplace_back();
