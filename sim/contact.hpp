@@ -47,8 +47,10 @@ struct PlainContact {
   PlainContact(const Drive& drive, const DriveMotion&, double /*t_s*/, double /*x*/, double /*motor*/)
       : sides(drive.curves()) {}
 
-  FrictionPoint sliding(int side, double speed) const { return dry(side, speed) + viscous(side, speed); }
-  FrictionPoint dry(int side, double speed) const {
+  [[gnu::always_inline]] FrictionPoint sliding(int side, double speed) const {
+    return dry(side, speed) + viscous(side, speed);
+  }
+  [[gnu::always_inline]] FrictionPoint dry(int side, double speed) const {
     const SlidingCurve& curve = sides[static_cast<std::size_t>(side)];
     if constexpr (!kStribeck) return {curve.coulomb, 0.0};
     return curve.dry(speed);
@@ -90,7 +92,7 @@ struct RichContact {
         level(product(drive.level_factor, t_s, x)),
         viscosity(product(drive.viscous_factor, t_s)),
         carried(drive.transmitted_share * std::abs(motor)) {
-    for (const auto& further : drive.friction_along_position) carried += further(x);
+    for (const auto& further : drive.further_level) carried += further(t_s, x);
     for (const auto& further : drive.friction_after_reversal) carried += further(std::abs(x - motion.turned_x));
   }
 

@@ -10,7 +10,8 @@ namespace sim {
 
 /// Coordinates that a free curve may go over.
 inline constexpr std::string_view kCurveCoordinates[] = {
-    "speed", "position", "friction_along_position", "travel_since_reversal", "time", "current", "phase"};
+    "speed",   "position", "friction_along_position", "travel_since_reversal", "time", "friction_over_time",
+    "current", "phase"};
 
 /// Straight between knots, level beyond the first and the last; over "phase" it comes back instead, and the distance
 /// from the first knot to the last, whose values are the same, is its period.

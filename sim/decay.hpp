@@ -26,7 +26,7 @@ constexpr auto kValues = [] {
 
 /// exp(-z) for any z, within 1e-11 relative for 0 <= z < 37 and 0 beyond: the nearest value of the table times four
 /// terms of the series, whose first missing one is (1/64)^5/120.
-inline double decay(double z) {
+[[gnu::always_inline]] inline double decay(double z) {
   using decay_table::kEnd, decay_table::kPerUnit, decay_table::kValues;
   if (!(z < kEnd)) return z >= kEnd ? 0.0 : z;  // not a number stays so
   if (z < 0.0) return std::exp(-z);

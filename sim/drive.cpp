@@ -39,23 +39,22 @@ void Drive::settle() {
   }
   const bool stribeck =
       std::ranges::any_of(friction, [](const FrictionSide& side) { return side.omega1 > 0.0 || side.omega2 > 0.0; });
-  const bool rich = !level_factor.empty() || !viscous_factor.empty() || !friction_along_position.empty() ||
+  const bool rich = !level_factor.empty() || !viscous_factor.empty() || !further_level.empty() ||
                     !friction_after_reversal.empty() || transmitted_share != 0.0 || friction_memory_s > 0.0 ||
                     dwell_gain > 0.0;
-  contact_form_ = rich                        ? ContactForm::rich
-                  : !sliding_friction.empty() ? ContactForm::bent
-                  : stribeck                  ? ContactForm::stribeck
-                                              : ContactForm::coulomb;
   bare_ = !rich && current_lag_s <= 0.0 && tach_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
           load_effort.empty();
   one_mass_ = !bristles && !second_mass;
   straight_command_ = command.empty() && effort_limit.empty();
   remembers_ = current_lag_s > 0.0 || tach_lag_s > 0.0 || friction_memory_s > 0.0 || !friction_after_reversal.empty();
-  plain_ = bare_ && one_mass_ && straight_command_ && delay_s <= 0.0;
   // The mean of a sine over an eighth of its period is within 2.5 % of its middle value.
   constexpr double kPeriodShare = 0.125;
   parts_per_s_ = 1.0 / max_step_s;
   parts_per_travel_ = 1.0 / (kPeriodShare * finest_period);
+  step_ = rich                        ? cheapest_step<RichContact>()
+          : !sliding_friction.empty() ? cheapest_step<BentContact>()
+          : stribeck                  ? cheapest_step<PlainContact<true>>()
+                                      : cheapest_step<PlainContact<false>>();
 }
 
 double Drive::memory_s() const {
@@ -146,17 +145,19 @@ void Drive::note_reversal(DriveMotion& motion, double x, double w) const {
   motion.heading = w > 0.0 ? 1.0 : -1.0;
 }
 
-int Drive::parts_of(double duration_s, double w) const {
+[[gnu::always_inline]] inline int Drive::parts_of(double duration_s, double w) const {
   // What passes several periods in a sixth of the interval averages out whatever is done.
   constexpr double kMostParts = 6.0;
-  const double by_travel = std::min(std::abs(w) * lead * duration_s * parts_per_travel_, kMostParts);
-  const double wanted = std::max(duration_s * parts_per_s_, by_travel) - 1e-9;
+  double wanted = duration_s * parts_per_s_;
+  if (parts_per_travel_ > 0.0)
+    wanted = std::max(wanted, std::min(std::abs(w) * lead * duration_s * parts_per_travel_, kMostParts));
+  wanted -= 1e-9;
   const int whole = static_cast<int>(wanted);
   return whole < wanted ? whole + 1 : std::max(whole, 1);
 }
 
 template <typename Contact>
-void Drive::hold(DriveMotion& motion, double u_V, double t_s, double duration_s) const {
+void Drive::hold(DriveState& motion, double u_V, double t_s, double duration_s) const {
   const int parts = parts_of(duration_s, motion.w);
   const double part_s = parts == 1 ? duration_s : duration_s / parts;
   if (remembers_ || !effort_limit.empty()) {
@@ -187,19 +188,32 @@ double Drive::limiting_speed(const DriveMotion& motion, double u_V, double t_s, 
 }
 
 template <typename Contact>
-void Drive::step_on(DriveState& state, double u_V, double t_s, double duration_s) const {
-  if (plain_) {
-    SlidingMass mass{state.x, state.w, mobility_, lead};
-    Contact contact(*this, state, t_s, state.x, 0.0);
-    slide(mass, effort_per_volt * u_V, duration_s, contact);
-    state.x = mass.x;
-    state.w = state.tach = mass.w;
-    return;
-  }
-  if (delay_s <= 0.0) {
-    hold<Contact>(state, u_V, t_s, duration_s);
-    return;
-  }
+void Drive::one_mass_directly(DriveState& state, double u_V, double t_s, double duration_s) const {
+  SlidingMass mass{state.x, state.w, mobility_, lead};
+  Contact contact(*this, state, t_s, state.x, 0.0);
+  slide(mass, effort_per_volt * u_V, duration_s, contact);
+  state.x = mass.x;
+  state.w = state.tach = mass.w;
+}
+
+template <typename Contact>
+void Drive::two_masses_directly(DriveState& state, double u_V, double t_s, double duration_s) const {
+  Contact contact(*this, state, t_s, state.x, 0.0);
+  const int parts = parts_of(duration_s, state.w);
+  move_two_masses(*coupling_, lead, state, effort_per_volt * u_V, duration_s / parts, parts, contact);
+  state.tach = state.w;
+}
+
+template <typename Contact>
+void Drive::on_bristles_directly(DriveState& state, double u_V, double t_s, double duration_s) const {
+  Contact contact(*this, state, t_s, state.x, 0.0);
+  const int parts = parts_of(duration_s, state.w);
+  move_on_bristles(*bristles, mobility_, lead, state, effort_per_volt * u_V, duration_s / parts, parts, contact);
+  state.tach = state.w;
+}
+
+template <typename Contact>
+void Drive::delay(DriveState& state, double u_V, double t_s, double duration_s) const {
   const std::size_t whole = whole_periods_of_delay(duration_s);
   const double rest_s = std::min(delay_s - static_cast<double>(whole) * duration_s, duration_s);
   const double older = state.past_u_V[whole], newer = whole == 0 ? u_V : state.past_u_V[whole - 1];
@@ -217,17 +231,12 @@ void Drive::step_on(DriveState& state, double u_V, double t_s, double duration_s
   remember_command(state, u_V, whole);
 }
 
-void Drive::step(DriveState& state, double u_V, double t_s, double duration_s) const {
-  switch (contact_form_) {
-    case ContactForm::coulomb:
-      return step_on<PlainContact<false>>(state, u_V, t_s, duration_s);
-    case ContactForm::stribeck:
-      return step_on<PlainContact<true>>(state, u_V, t_s, duration_s);
-    case ContactForm::bent:
-      return step_on<BentContact>(state, u_V, t_s, duration_s);
-    case ContactForm::rich:
-      return step_on<RichContact>(state, u_V, t_s, duration_s);
-  }
+template <typename Contact>
+Drive::Step Drive::cheapest_step() const {
+  if (delay_s > 0.0) return &Drive::delay<Contact>;
+  if (!bare_ || !straight_command_) return &Drive::hold<Contact>;
+  if (one_mass_) return &Drive::one_mass_directly<Contact>;
+  return coupling_ ? &Drive::two_masses_directly<Contact> : &Drive::on_bristles_directly<Contact>;
 }
 
 std::size_t Drive::whole_periods_of_delay(double period_s) const {

@@ -81,7 +81,9 @@ class Drive {
   DriveState at(double x, double w) const;
 
   /// Advances by `duration_s` with `u_V` held; `t_s` is the time at the start of the interval.
-  void step(DriveState& state, double u_V, double t_s, double duration_s) const;
+  void step(DriveState& state, double u_V, double t_s, double duration_s) const {
+    (this->*step_)(state, u_V, t_s, duration_s);
+  }
 
   /// Lets the hidden states follow a motion that is known, from the state's to (x1, w1). Returns the mean effort that
   /// reaches the drive's inertia before friction is taken off, Nm or N.
@@ -131,7 +133,7 @@ class Drive {
   std::vector<std::function<double(double t_s)>> viscous_factor;
   /// Further friction of a direction (0 forward, 1 backward) at speed >= 0.
   std::vector<std::function<FrictionPoint(int side, double speed)>> sliding_friction;
-  std::vector<std::function<double(double x)>> friction_along_position;  ///< further friction level, Nm or N
+  std::vector<std::function<double(double t_s, double x)>> further_level;  ///< of friction, Nm or N
   /// Further friction level by the travel since the last reversal, mm or m.
   std::vector<std::function<double(double travelled)>> friction_after_reversal;
   double transmitted_share = 0.0;  ///< friction per transmitted effort
@@ -152,8 +154,7 @@ class Drive {
   double finest_period = std::numeric_limits<double>::infinity();
 
  private:
-  /// What the contact asks of the friction law; the cheapest form that the effects allow is simulated.
-  enum class ContactForm { coulomb, stribeck, bent, rich };
+  using Step = void (Drive::*)(DriveState&, double u_V, double t_s, double duration_s) const;
 
   void settle();
   double tach_ripple_at(double x) const;
@@ -161,9 +162,17 @@ class Drive {
   double deliver(DriveMotion& motion, double u_V, double w, double duration_s) const;
   int parts_of(double duration_s, double w) const;
   template <typename Contact>
-  void step_on(DriveState& state, double u_V, double t_s, double duration_s) const;
+  Step cheapest_step() const;
   template <typename Contact>
-  void hold(DriveMotion& motion, double u_V, double t_s, double duration_s) const;
+  void one_mass_directly(DriveState& state, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void two_masses_directly(DriveState& state, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void on_bristles_directly(DriveState& state, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void delay(DriveState& state, double u_V, double t_s, double duration_s) const;
+  template <typename Contact>
+  void hold(DriveState& state, double u_V, double t_s, double duration_s) const;
   template <typename Contact>
   void push(DriveMotion& motion, double effort, double t_s, double duration_s) const;
   template <typename Contact>
@@ -179,13 +188,12 @@ class Drive {
   std::size_t whole_periods_of_delay(double period_s) const;
   void remember_command(DriveState& state, double u_V, std::size_t whole) const;
 
+  Step step_ = nullptr;                   ///< the cheapest that the effects allow
   double mobility_ = 0.0;                 ///< 1/inertia
   std::array<SlidingCurve, 2> curves_{};  ///< of `friction`
-  ContactForm contact_form_ = ContactForm::rich;
   bool one_mass_ = false;
   bool straight_command_ = false;  ///< effort in proportion to the command
   bool remembers_ = false;         ///< something but the masses and their contact remembers
-  bool plain_ = false;             ///< nothing acts but inertia and the friction of its contact
   bool bare_ = false;              ///< the command's effort acts alone, and on nothing but masses and their contact
   double parts_per_s_ = 0.0;       ///< that the masses need at least
   double parts_per_travel_ = 0.0;  ///< per mm or m

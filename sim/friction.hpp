@@ -20,7 +20,7 @@ inline FrictionPoint stribeck_curve(const FrictionSide& side, double breakaway, 
   return {breakaway * fading + side.coulomb * (1.0 - rising), slope};
 }
 
-inline FrictionPoint SlidingCurve::dry(double speed, double breakaway_factor) const {
+[[gnu::always_inline]] inline FrictionPoint SlidingCurve::dry(double speed, double breakaway_factor) const {
   const double fading = rate1 > 0.0 ? decay(speed * rate1) : 0.0;
   const double rising = rate1 == rate2 ? fading : (rate2 > 0.0 ? decay(speed * rate2) : 0.0);
   const double all_static = breakaway_factor * breakaway;
@@ -96,7 +96,7 @@ template <typename Contact>
 /// The step linearises friction at its start and solves the linear equation exactly (order 2; exact where friction is
 /// Coulomb and viscous). Bounded: a contact can stop and start at most a few times in a step.
 template <typename Contact>
-inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& contact) {
+[[gnu::always_inline]] inline void slide(SlidingMass& mass, double effort, double duration_s, Contact& contact) {
   const double direction = mass.w > 0.0 ? 1.0 : -1.0, speed = std::abs(mass.w);
   if (speed > 0.0) {
     const SmoothStep step(direction * effort, contact.sliding(direction > 0.0 ? 0 : 1, speed), mass.mobility);
@@ -135,28 +135,24 @@ inline bool slide_through_change(SlidingMass& mass, double before, double after,
 class LinearisedContact {
  public:
   template <typename Contact>
-  LinearisedContact(double w, double mobility, double duration_s, const Contact& contact)
-      : direction_(w > 0.0 ? 1.0 : -1.0), mobility_(mobility) {
+  [[gnu::always_inline]] LinearisedContact(double w, double mobility, double duration_s, const Contact& contact)
+      : direction_(w > 0.0 ? 1.0 : (w < 0.0 ? -1.0 : 0.0)) {
     const double speed = std::abs(w);
     const FrictionPoint friction = contact.sliding(w > 0.0 ? 0 : 1, speed);
-    slope_ = friction.slope;
-    at_rest_ = friction.effort - slope_ * speed;
-    phi1_s_ = duration_s * exponential_factors(-slope_ * mobility * duration_s).phi1;
+    kick_ = mobility * duration_s * exponential_factors(-friction.slope * mobility * duration_s).phi1;
+    kept_ = 1.0 - kick_ * friction.slope;
+    lost_ = direction_ * kick_ * (friction.effort - friction.slope * speed);
   }
 
-  /// The speed after a step under a constant effort; false, with `w` as it was, where the mass rests or comes to rest.
-  bool moves(double& w, double effort) const {
-    const double speed = direction_ * w;
-    const double end = speed + phi1_s_ * mobility_ * (direction_ * effort - at_rest_ - slope_ * speed);
-    if (!(speed > 0.0 && end > 0.0)) return false;
-    w = direction_ * end;
-    return true;
-  }
+  /// The speed after a step under a constant effort.
+  double after(double w, double effort) const { return kept_ * w + (kick_ * effort - lost_); }
+  /// Whether the mass still slides in its direction with such a speed at the end of a step; never from rest.
+  bool holds_for(double end) const { return direction_ * end > 0.0; }
 
  private:
-  double direction_, mobility_;
-  double slope_, at_rest_;  ///< friction = at_rest + slope * speed, in the direction of motion
-  double phi1_s_;
+  double direction_;
+  double kick_;         ///< speed per effort
+  double kept_, lost_;  ///< of the speed: its part, and what Coulomb friction takes
 };
 
 }  // namespace sim

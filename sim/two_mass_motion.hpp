@@ -32,72 +32,96 @@ struct PartOfContact {
 };
 
 /// A mass without friction.
-class FreeMass {
- public:
-  FreeMass(double w, double kick) : w_(w), kick_(kick) {}
-  double w() const { return w_; }
-  void step(double effort) { w_ += kick_ * effort; }
+struct FreeMass {
+  double w, kick;
 
- private:
-  double w_, kick_;
+  double after(double effort) const { return w + kick * effort; }
+  bool gets_to(double /*end*/) const { return true; }
 };
 
-/// The speed of one of the masses through the short steps of a sample.
-template <typename Contact>
-class RubbingMass {
- public:
-  RubbingMass(double w, double mobility, double duration_s, Contact& contact)
-      : w_(w), mobility_(mobility), duration_s_(duration_s), contact_(contact), sliding_(linearised()) {}
+/// A mass that slides on in its direction, by friction linearised once.
+struct GlidingMass {
+  double w;
+  LinearisedContact contact;
 
-  double w() const { return w_; }
-  void step(double effort) {
-    if (sliding_.moves(w_, effort)) return;
-    SlidingMass mass{0.0, w_, mobility_, 0.0};
-    slide(mass, effort, duration_s_, contact_);
-    w_ = mass.w;
-    if (w_ != 0.0) sliding_ = linearised();
+  double after(double effort) const { return contact.after(w, effort); }
+  bool gets_to(double end) const { return contact.holds_for(end); }
+};
+
+/// A mass with its stops and starts.
+template <typename Contact>
+struct RubbingMass {
+  double w, mobility, duration_s;
+  Contact contact;
+
+  double after(double effort) {
+    SlidingMass mass{0.0, w, mobility, 0.0};
+    slide(mass, effort, duration_s, contact);
+    return mass.w;
   }
-
- private:
-  LinearisedContact linearised() const { return {w_, mobility_, duration_s_, contact_}; }
-
-  double w_, mobility_, duration_s_;
-  Contact& contact_;
-  LinearisedContact sliding_;
+  bool gets_to(double /*end*/) const { return true; }
 };
 
-/// Moves both for `parts` steps of `duration_s` each under a constant effort.
+/// Moves both under a constant effort for `parts` steps of `duration_s` each, or fewer where one of them does not get
+/// to its end. Returns the steps done.
+template <typename Motor, typename Load>
+[[gnu::always_inline]] inline int move_coupled(const Coupling& coupling, double lead, DriveMotion& motion,
+                                               double effort, double duration_s, int parts, Motor motor, Load load) {
+  // The twist half a step ahead, speeds over the whole step: symplectic, order 2 for the spring.
+  const double half_s = 0.5 * duration_s;
+  double twist = (motion.x - motion.load_x) * coupling.per_lead;
+  double motor_speeds = 0.0, load_speeds = 0.0;
+  int done = 0;
+  for (; done < parts; ++done) {
+    const double twist_rate = motor.w - load.w, ahead = twist + half_s * twist_rate;
+    const double spring = coupling.effort(ahead, twist_rate);
+    const double load_w = load.after(spring), motor_w = motor.after(effort - spring);
+    if (!load.gets_to(load_w) || !motor.gets_to(motor_w)) break;
+    twist = ahead + half_s * (motor_w - load_w);
+    motor_speeds += motor.w + motor_w;
+    load_speeds += load.w + load_w;
+    load.w = load_w;
+    motor.w = motor_w;
+  }
+  motion.x += lead * half_s * motor_speeds;
+  motion.load_x += lead * half_s * load_speeds;
+  motion.w = motor.w;
+  motion.load_w = load.w;
+  return done;
+}
+
+/// The same with all stops and starts, the contact's friction on the sides where it acts.
 template <typename Contact>
-inline void move_two_masses(const Coupling& coupling, double lead, DriveMotion& motion, double effort,
-                            double duration_s, int parts, Contact& contact) {
-  // Positions half a step ahead, speeds over the whole step: symplectic, order 2 for the spring.
-  const double half_way = 0.5 * duration_s * lead;
-  double x = motion.x, load_x = motion.load_x;
-  const auto go = [&](auto& motor, auto& load) {
-    for (int part = 0; part < parts; ++part) {
-      x += half_way * motor.w();
-      load_x += half_way * load.w();
-      const double spring = coupling.effort((x - load_x) * coupling.per_lead, motor.w() - load.w());
-      load.step(spring);
-      motor.step(effort - spring);
-      x += half_way * motor.w();
-      load_x += half_way * load.w();
-    }
-    motion.w = motor.w();
-    motion.load_w = load.w();
-  };
+[[gnu::noinline]] void move_coupled_through_stops(const Coupling& coupling, double lead, DriveMotion& motion,
+                                                  double effort, double duration_s, int parts, Contact& contact) {
+  using Part = PartOfContact<Contact>;
+  const RubbingMass<Part> load{motion.load_w, coupling.load_mobility, duration_s, {contact, coupling.load_friction}};
   if (coupling.load_friction < 1.0) {
-    PartOfContact<Contact> on_load{contact, coupling.load_friction}, on_motor{contact, 1.0 - coupling.load_friction};
-    RubbingMass motor(motion.w, coupling.motor_mobility, duration_s, on_motor);
-    RubbingMass load(motion.load_w, coupling.load_mobility, duration_s, on_load);
-    go(motor, load);
+    const RubbingMass<Part> motor{
+        motion.w, coupling.motor_mobility, duration_s, {contact, 1.0 - coupling.load_friction}};
+    move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
   } else {
-    FreeMass motor(motion.w, duration_s * coupling.motor_mobility);
-    RubbingMass load(motion.load_w, coupling.load_mobility, duration_s, contact);
-    go(motor, load);
+    const FreeMass motor{motion.w, duration_s * coupling.motor_mobility};
+    move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
   }
-  motion.x = x;
-  motion.load_x = load_x;
+}
+
+template <typename Contact>
+[[gnu::always_inline]] inline void move_two_masses(const Coupling& coupling, double lead, DriveMotion& motion,
+                                                   double effort, double duration_s, int parts, Contact& contact) {
+  int done = 0;
+  if (coupling.load_friction == 1.0 && motion.load_w != 0.0) {
+    const GlidingMass load{motion.load_w, {motion.load_w, coupling.load_mobility, duration_s, contact}};
+    const FreeMass motor{motion.w, duration_s * coupling.motor_mobility};
+    done = move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
+  } else if (motion.load_w != 0.0 && motion.w != 0.0) {
+    using Part = PartOfContact<Contact>;
+    const Part on_load{contact, coupling.load_friction}, on_motor{contact, 1.0 - coupling.load_friction};
+    const GlidingMass load{motion.load_w, {motion.load_w, coupling.load_mobility, duration_s, on_load}};
+    const GlidingMass motor{motion.w, {motion.w, coupling.motor_mobility, duration_s, on_motor}};
+    done = move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
+  }
+  if (done < parts) move_coupled_through_stops(coupling, lead, motion, effort, duration_s, parts - done, contact);
 }
 
 }  // namespace sim

@@ -60,7 +60,10 @@ std::optional<sim::DriveDescription> base_of_both(const Diagnosis& diagnosis) {
 }
 
 Objection base_is_open(const Diagnosis& diagnosis, const sim::DriveDescription& base) {
-  const std::vector<std::string> moved = moved_parameters(diagnosis.base, base);
+  std::vector<std::string> moved;
+  for (const sim::EffectEntry& entry : diagnosis.base.effects)
+    if (const sim::EffectEntry* other = base.find(entry.kind); other != nullptr && has_moved(entry, *other))
+      moved.push_back(entry.kind);
   return {
       Status::insufficient_data,
       fmt::format("The error on validation data is {:.2f} times the floor, but fitted to both sets together the base "

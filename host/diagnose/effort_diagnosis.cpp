@@ -97,15 +97,38 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
 
 /// Errors of the forward prediction that are so near to each other say nothing.
 constexpr double kHardly = 0.98;
+/// What takes less than half of their square is no confirmation.
+constexpr double kHalfOfTheSquare = 0.71;
 
 /// What the forward prediction says to the effects that the regression chose.
 std::string confirmed(const SetError& before, const SetError& after) {
-  const char* said = after.combined < kHardly * before.combined ? "falls, which confirms it"
+  const char* said = after.combined < kHalfOfTheSquare * before.combined ? "falls, which confirms it"
+                     : after.combined < kHardly * before.combined        ? "falls a little"
                      : after.combined > before.combined / kHardly
                          ? "rises: it does not confirm that, so record more of the motion in which it shows"
                          : "stays as it was";
   return fmt::format(" Predicted forward from the command, the error {} ({:.3g} -> {:.3g} times the floor).", said,
                      before.combined, after.combined);
+}
+
+/// A spring of the right softness stands for a gap too, as long as the motion is of one size; but it hardly predicts
+/// that motion. Where it does not take half of the squared error forward, it may be either.
+void doubt_the_spring(Diagnosis& diagnosis, const SetError& before, const SetError& after,
+                      const std::vector<std::string>& absent) {
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  const std::string gap = "backlash";
+  if (verdict.status != Status::missing || verdict.effects != std::vector<std::string>{"compliance"} ||
+      after.combined < kHalfOfTheSquare * before.combined || std::ranges::find(absent, gap) != absent.end())
+    return;
+  verdict.status = Status::ambiguous;
+  verdict.effects.push_back(gap);
+  verdict.alternatives = {verdict.effects};
+  for (JudgedCandidate& candidate : diagnosis.candidates)
+    if (candidate.kinds.front() == "compliance") {
+      candidate.probability *= 0.5;
+      verdict.probability_other += candidate.probability;
+    }
+  verdict.explanation += " A gap, for which a spring can stand, is as likely.";
 }
 
 /// Over windows so short that the position shows a force before it adds up to a drift; a second mass, whose state no
@@ -136,12 +159,16 @@ bool is_contradicted(const EffortScreen& screen, const std::vector<const Record*
 
 /// Channels predicted forward.
 void append_channels(const EffortScreen& screen, const std::vector<const Record*>& training,
-                     const std::vector<const Record*>& validation, Diagnosis& diagnosis) {
+                     const std::vector<const Record*>& validation, const std::vector<std::string>& absent,
+                     Diagnosis& diagnosis) {
   const PreparedSets sets = predicted_forward(diagnosis.best, training, validation);
   const sim::Drive base(diagnosis.base), best(diagnosis.best);
   const SetError before_train = error_of(base, sets.training), after_train = error_of(best, sets.training);
   const SetError before = error_of(base, sets.validation), after = error_of(best, sets.validation);
-  if (!screen.chosen.empty() && !screen.rows.steady) diagnosis.verdict.explanation += confirmed(before, after);
+  if (!screen.chosen.empty() && !screen.rows.steady) {
+    diagnosis.verdict.explanation += confirmed(before, after);
+    doubt_the_spring(diagnosis, before, after, absent);
+  }
   const auto append = [&](std::vector<double> Record::*channel, double SetError::*rms, double SetError::*floor) {
     diagnosis.channels.push_back({std::string(column_name(channel, diagnosis.base.data.kind)), before_train.*rms,
                                   before.*rms, after_train.*rms, after.*rms, after_train.*floor, after.*floor});
@@ -221,7 +248,7 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   diagnosis.where = error_regions(diagnosis.base, diagnosis.validation);
   diagnosis.verdict = verdict_of(*screen, model);
   assign_probabilities(diagnosis);
-  append_channels(*screen, training, validation, diagnosis);
+  append_channels(*screen, training, validation, sets.absent, diagnosis);
   diagnosis.screen = std::move(screen);
   return diagnosis;
 }
@@ -269,9 +296,13 @@ void name_coordinate(Diagnosis& diagnosis) {
   if (!diagnosis.screen || diagnosis.screen->empty() || speed_channel_alone_fails(diagnosis)) return;
   const EffortScreen& screen = *diagnosis.screen;
   if (differs_between_records(screen, verdict)) return;
+  std::optional<FreeCurveFit> curve = fit_free_curve(screen);
   // Anything in proportion to the effort explains the effort: a curve over it is drawn where the predictions ask for
-  // it.
-  const std::optional<FreeCurveFit> curve = fit_free_curve(screen, verdict.coordinate == "current" ? "current" : "");
+  // it, and has to beat the others.
+  if (verdict.coordinate == "current")
+    if (std::optional<FreeCurveFit> over_current = fit_free_curve(screen, "current");
+        over_current && (!curve || over_current->model.validate < curve->model.validate))
+      curve = std::move(over_current);
   if (!curve) return;
   const double ratio = curve->model.validate / screen.best().validate, share = 1.0 - ratio * ratio;
   if (share < kLeastShare) return;
@@ -282,8 +313,9 @@ void name_coordinate(Diagnosis& diagnosis) {
   if (curve->period > 0.0)
     verdict.explanation += fmt::format(" It repeats every {:.4g} {}.", curve->period,
                                        screen.base.model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
-  const std::string coordinate =
-      curve->over == "friction_along_position" || curve->over == "phase" ? "position" : curve->over;
+  const std::string coordinate = curve->over == "friction_along_position" || curve->over == "phase" ? "position"
+                                 : curve->over == "friction_over_time"                              ? "time"
+                                                                                                    : curve->over;
   const auto along = [&](const std::string& name) {
     return std::ranges::find(diagnosis.residual.dependences, name, &ResidualDependence::coordinate);
   };

@@ -162,17 +162,19 @@ std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis
 
 }  // namespace
 
+bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after) {
+  return std::ranges::any_of(before.parameters, [&](const auto& parameter) {
+    const auto& [id, value] = parameter;
+    return std::abs(after.at(id) - value) > kMoved * std::abs(value);
+  });
+}
+
 std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base) {
   std::vector<std::string> moved;
   for (const char* kind : {"inertia", "viscous", "coulomb"}) {
     const sim::EffectEntry* before = given.find(kind);
     const sim::EffectEntry* after = base.find(kind);
-    if (before == nullptr || after == nullptr) continue;
-    const bool off = std::ranges::any_of(before->parameters, [&](const auto& parameter) {
-      const auto& [id, value] = parameter;
-      return std::abs(after->at(id) - value) > kMoved * std::abs(value);
-    });
-    if (off) moved.emplace_back(kind);
+    if (before != nullptr && after != nullptr && has_moved(*before, *after)) moved.emplace_back(kind);
   }
   return moved;
 }

@@ -8,6 +8,9 @@ namespace host {
 /// A combined error up to which nothing is left to explain: a perfect model gives about 1.
 inline constexpr double kExplained = 1.25;
 
+/// Whether a re-fit moved a parameter of an effect by more than a twentieth.
+bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after);
+
 /// Kinds of the base of which a re-fit moved a parameter by more than a twentieth.
 std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base);
 

@@ -69,6 +69,7 @@ std::optional<Coordinate> coordinate_of(const EffortScreen& screen, std::string_
   if (over == "speed") return Coordinate{rows.w, one};
   const VectorXd direction = rows.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
   if (over == "time") return Coordinate{rows.t_s, one};
+  if (over == "friction_over_time") return Coordinate{rows.t_s, direction};
   if (over == "current") return Coordinate{rows.effort, one};
   if (!rows.has_position) return {};
   if (over == "position") return Coordinate{rows.x, one};

@@ -26,7 +26,7 @@ double friction_magnitude(const sim::Drive& drive, double t_s, double travel, do
   for (const auto& factor : drive.viscous_factor) viscous *= factor(t_s);
   double friction = level + viscous;
   for (const auto& further : drive.sliding_friction) friction += further(static_cast<int>(side), magnitude).effort;
-  for (const auto& further : drive.friction_along_position) friction += further(travel);
+  for (const auto& further : drive.further_level) friction += further(t_s, travel);
   return friction + drive.transmitted_share * std::abs(motor_effort);
 }
 

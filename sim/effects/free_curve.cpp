@@ -17,7 +17,9 @@ void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
       return FrictionPoint{sign * curve(sign * speed), curve.slope(sign * speed)};
     });
   } else if (entry.over == "friction_along_position") {
-    drive.friction_along_position.push_back(curve);
+    drive.further_level.push_back([curve](double, double x) { return curve(x); });
+  } else if (entry.over == "friction_over_time") {
+    drive.further_level.push_back([curve](double t_s, double) { return curve(t_s); });
   } else if (entry.over == "travel_since_reversal") {
     drive.friction_after_reversal.push_back(curve);
   } else if (entry.over == "current") {
@@ -37,9 +39,9 @@ const EffectInfo free_curve{
     .title = "A curve without a formula",
     .equation =
         "T_motor = ... + f(q), f straight between its knots and level beyond them; q: speed, position, "
-        "friction_along_position, travel_since_reversal, time, current (the motor's torque) or phase (the position "
-        "within a period, which goes from the first knot to the last). Over speed, along the position and since a "
-        "reversal f is friction",
+        "friction_along_position, travel_since_reversal, time, friction_over_time, current (the motor's torque) or "
+        "phase (the position within a period, which goes from the first knot to the last). Over speed, since a "
+        "reversal and where it is called so f is friction",
     .stage = Stage::load,
     .curve = true,
     .parameters = {{.id = "knot",

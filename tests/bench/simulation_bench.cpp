@@ -57,22 +57,21 @@ void predict(benchmark::State& state, const sim::DriveDescription& description) 
   const sim::Drive drive(description);
   const std::vector<double> u_V = command_with_reversals();
   const std::size_t length = u_V.size() / kTogether;
-  int reversals = 0;
-  for (auto _ : state) {
+  const auto simulate = [&](auto&& see) {
     std::array<sim::DriveState, kTogether> motions;
     motions.fill(drive.at(0.0, 0.0));
-    reversals = 0;
-    for (std::size_t k = 0; k < length; ++k) {
+    for (std::size_t k = 0; k < length; ++k)
       for (std::size_t run = 0; run < kTogether; ++run) {
-        sim::DriveState& motion = motions[run];
-        const double before = motion.w;
-        drive.step(motion, u_V[run * length + k], kSamplePeriod_s * static_cast<double>(k), kSamplePeriod_s);
-        reversals += before * motion.w < 0.0 || (motion.w == 0.0 && before != 0.0);
+        const double before = motions[run].w;
+        drive.step(motions[run], u_V[run * length + k], kSamplePeriod_s * static_cast<double>(k), kSamplePeriod_s);
+        see(before, motions[run].w);
       }
-    }
-    benchmark::DoNotOptimize(motions.back().x);
-  }
-  state.counters["stops"] = reversals;
+    return motions.back().x;
+  };
+  for (auto _ : state) benchmark::DoNotOptimize(simulate([](double, double) {}));
+  int stops = 0;
+  simulate([&](double before, double after) { stops += before * after < 0.0 || (after == 0.0 && before != 0.0); });
+  state.counters["stops"] = stops;
   report(state, static_cast<double>(length * kTogether) * kSamplePeriod_s);
 }
 

@@ -107,6 +107,20 @@ TEST(FreeCurve, FrictionAlongThePositionHoldsBothWays) {
   }
 }
 
+TEST(FreeCurve, FrictionOverTimeHoldsBothWaysAndChangesWithIt) {
+  const auto drive = Drive(with_curve(coulomb_drive(), "friction_over_time",
+                                      {{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 10.0}, {"value_1", 0.5}}));
+  for (const double way : {-1.0, 1.0})
+    for (const double t_s : {0.0, 4.0, 20.0}) {
+      const double level = kCoulomb + 0.05 * std::min(t_s, 10.0);
+      sim::DriveState state = drive.at(0.0, 0.0);
+      drive.step(state, way * (level - 1e-6), t_s, 0.001);
+      EXPECT_EQ(state.w, 0.0) << t_s;
+      drive.step(state, way * (level + 1e-6), t_s, 0.001);
+      EXPECT_GT(way * state.w, 0.0) << t_s;
+    }
+}
+
 TEST(FreeCurve, OverPhaseComesBackWithItsPeriod) {
   const auto drive = Drive(with_curve(
       coulomb_drive(), "phase",
