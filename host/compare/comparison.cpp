@@ -121,7 +121,7 @@ void renew_floors(RecordSet& set, const sim::DriveDescription& reference) {
   std::vector<double> squares;
   if (set.measure == Measure::motion)
     for (ComparedRecord& compared : set.records)
-      renew_floor(compared.floor, reference, compared.prepared, set.stride);
+      renew_floor(compared.floor, reference, drive, compared.prepared, set.stride);
   for (const WindowScore& score : error_of(drive, set).windows)
     for (const double square : {score.x, score.w, score.effort})
       if (square > 0.0) squares.push_back(square);

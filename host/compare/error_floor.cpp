@@ -44,9 +44,8 @@ double mean_square_difference(const std::vector<double>& a, const std::vector<do
 
 }  // namespace
 
-void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const PreparedRecord& prepared,
-                 std::size_t stride) {
-  const sim::Drive drive(model);
+void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const sim::Drive& drive,
+                 const PreparedRecord& prepared, std::size_t stride) {
   const double x_noise = model.data.encoder_resolution * model.data.encoder_resolution / 12.0;  // eq. (12)
   const double w_noise = model.data.tach_noise_variance.value_or(0.0);                          // eq. (46)
   const SmoothedMotion& motion = prepared.motion();

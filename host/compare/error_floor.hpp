@@ -16,7 +16,8 @@ struct ErrorFloor {
 };
 
 /// Computes the floors of every `stride`-th window; those of the others stay as they are, 0 where there were none.
-void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const PreparedRecord& prepared,
-                 std::size_t stride = 1);
+/// `drive` is the model's.
+void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const sim::Drive& drive,
+                 const PreparedRecord& prepared, std::size_t stride);
 
 }  // namespace host

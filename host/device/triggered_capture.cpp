@@ -14,7 +14,7 @@
 #include "firmware/app/parameters/axis_values.hpp"
 #include "host/device/quantity.hpp"
 #include "host/exit_codes.hpp"
-#include "host/record/number.hpp"
+#include "host/number.hpp"
 
 namespace host {
 

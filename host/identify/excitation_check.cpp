@@ -116,7 +116,6 @@ std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const Exc
   // At the paper's Ku = 5 friction takes 47 % (x) and 57 % (y) of the motor's effort, at 7.5 it takes 32 % and 38 %.
   constexpr double kDominantShare = 0.4;
   constexpr double kWideInterval = 0.05;
-  constexpr double kPoorCondition = 50.0;  // a relative error of 2 % in the signals may then pass unattenuated
   std::vector<std::string> warnings;
   if (estimate.positive && estimate.negative) {
     const double friction = std::max(estimate.positive->value, -estimate.negative->value);

@@ -142,14 +142,13 @@ struct Attempt {
 /// The estimate beside a curve over the travel, where that takes most of what inertia and friction leave and still
 /// tells inertia from it (a steady swing does not: its acceleration goes with the position).
 std::optional<RigidEstimate> estimate_beside_travel(const Attempt& made) {
-  constexpr double kMostOfIt = 0.5;             // of the norm: three quarters of the square
-  constexpr double kKnown = 0.3;                // of the inertia, half its interval
-  constexpr double kConditionOfAPlainOne = 50;  // as in the excitation check
-  constexpr double kSliding_s = 3.0;            // 30 blocks of 0.1 s for the twelve unknowns
+  constexpr double kMostOfIt = 0.5;   // of the norm: three quarters of the square
+  constexpr double kKnown = 0.3;      // of the inertia, half its interval
+  constexpr double kSliding_s = 3.0;  // 30 blocks of 0.1 s for the twelve unknowns
   if (made.excitation.forward_s + made.excitation.backward_s < kSliding_s) return {};
   const RigidEstimate found = least_squares_beside_travel(made.motions);
   if (!(found.relative_residual < kMostOfIt * made.estimate.relative_residual) ||
-      !(found.inertia.half_width() < kKnown * found.inertia.value) || !(found.condition_number < kConditionOfAPlainOne))
+      !(found.inertia.half_width() < kKnown * found.inertia.value) || !(found.condition_number < kPoorCondition))
     return {};
   return found;
 }

@@ -46,9 +46,9 @@ struct Identification {
 /// says so). sliding_ls corrects the tachometer by the encoder first, and takes the motion from it where the position
 /// differentiates clearly worse; the paper's methods take the records as they are. Where a curve over the travel takes
 /// most of what inertia and friction leave (gravity on an arm, a spring), the filtered methods estimate beside it.
-/// The model can be read again: friction that no drive has stands there at its bound, and levels of which one would push
-/// as one level for both directions; warnings say so, the estimate stays as it was.
-/// Throws Failure(refused) for want of excitation, Failure(bad_input) for records that do not fit the drive.
+/// The model can be read again: friction that no drive has stands there at its bound, and levels of which one would
+/// push as one level for both directions; warnings say so, the estimate stays as it was. Throws Failure(refused) for
+/// want of excitation, Failure(bad_input) for records that do not fit the drive.
 Identification identify_drive(const Measurements& measured, const sim::DriveDescription& drive,
                               IdentificationMethod method, const MotionOptions& options = {});
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
 #include <optional>
 #include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/number.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -35,12 +35,6 @@ std::vector<std::pair<sim::EffectEntry*, std::string>> found(sim::DriveDescripti
   return all;
 }
 
-std::optional<double> number_in(std::string_view text) {
-  double number = 0.0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && rest == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
-
 }  // namespace
 
 sim::DriveDescription with_knowledge(sim::DriveDescription model, const std::vector<std::string>& held,
@@ -48,13 +42,10 @@ sim::DriveDescription with_knowledge(sim::DriveDescription model, const std::vec
   for (const std::string& name : held)
     for (const auto& [entry, id] : found(model, name, "--hold")) entry->held.insert(id);
   for (const std::string& text : believed) {
-    const std::size_t sign = text.find('=');
-    const auto deviation =
-        sign == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(sign + 1));
-    if (!deviation || !(*deviation > 0.0))
-      throw Failure(ExitCode::usage, fmt::format("--prior {}: write KEY=DEVIATION, e.g. J_kg_m2=1e-4", text));
-    for (const auto& [entry, id] : found(model, text.substr(0, sign), "--prior"))
-      entry->believed[id] = {entry->at(id), *deviation};
+    const std::optional<NamedNumber> prior = parse_named_number(text);
+    if (!prior) throw Failure(ExitCode::usage, fmt::format("--prior {}: write KEY=DEVIATION, e.g. J_kg_m2=1e-4", text));
+    for (const auto& [entry, id] : found(model, prior->name, "--prior"))
+      entry->believed[id] = {entry->at(id), prior->value};
   }
   return model;
 }

@@ -2,6 +2,7 @@
 // files in the project's formats; the package gives them types.
 #include <glog/logging.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include "host/exit_codes.hpp"
 #include "host/python/bindings.hpp"
@@ -37,9 +38,10 @@ host::RecordColumns read_columns(const std::string& path) {
 
 /// As `axistool import` does.
 host::RecordColumns import_columns(const std::string& path, const std::string& map, std::optional<double> resample_s,
-                                   const std::string& drive) {
-  const host::ImportOptions options{map.empty() ? std::vector<host::Mapping>{} : host::parse_mappings(map), resample_s,
-                                    drive};
+                                   const std::string& drive, const std::vector<std::string>& unwrap) {
+  host::ImportOptions options{map.empty() ? std::vector<host::Mapping>{} : host::parse_mappings(map), resample_s,
+                              drive};
+  for (const std::string& column : unwrap) options.unwrap.push_back(host::parse_unwrapping(column));
   return host::columns_of(host::import_record(host::read_log(path), options));
 }
 
@@ -50,10 +52,10 @@ void bind_records(py::module_& module) {
     return to_python(result_of(py::none(), "read", [&](const auto&) { return read_columns(path); }));
   });
   module.def("import_record", [](const std::string& path, const std::string& map, const py::object& resample_s,
-                                 const std::string& drive) {
+                                 const std::string& drive, const std::vector<std::string>& unwrap) {
     const auto period_s = resample_s.is_none() ? std::nullopt : std::optional(resample_s.cast<double>());
-    return to_python(
-        result_of(py::none(), "import", [&](const auto&) { return import_columns(path, map, period_s, drive); }));
+    return to_python(result_of(py::none(), "import",
+                               [&](const auto&) { return import_columns(path, map, period_s, drive, unwrap); }));
   });
   module.def("checked", [](const py::object& given) {
     return to_python(host::columns_of(RecordSource(given, "the record").read()));

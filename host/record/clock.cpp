@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "host/record/number.hpp"
+#include "host/number.hpp"
 
 namespace host {
 

@@ -9,8 +9,8 @@
 
 #include "host/exit_codes.hpp"
 #include "host/nearest_name.hpp"
+#include "host/number.hpp"
 #include "host/record/columns.hpp"
-#include "host/record/number.hpp"
 #include "host/record/read_record.hpp"
 #include "host/record/resample.hpp"
 #include "host/record/table_layout.hpp"

@@ -10,9 +10,9 @@
 
 #include "host/exit_codes.hpp"
 #include "host/nearest_name.hpp"
+#include "host/number.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
-#include "host/record/number.hpp"
 #include "host/record/read_record.hpp"
 #include "host/record/resample.hpp"
 #include "host/record/time_axis.hpp"
@@ -304,12 +304,11 @@ class Importer {
 }  // namespace
 
 Unwrapping parse_unwrapping(std::string_view text) {
-  const std::size_t sign = text.find('=');
-  const auto range = sign == std::string_view::npos ? std::nullopt : parse_number(text.substr(sign + 1));
-  if (!range || !(*range > 0.0) || !std::isfinite(*range))
+  const std::optional<NamedNumber> column = parse_named_number(text);
+  if (!column)
     throw Failure(ExitCode::usage,
                   fmt::format("--unwrap {}: write COLUMN=RANGE with a range above 0, e.g. x_mm=6.2831853", text));
-  return {std::string(trim_blanks(text.substr(0, sign))), *range};
+  return {column->name, column->value};
 }
 
 Record import_record(const Log& log, const ImportOptions& options) { return Importer(log, options).run(); }

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "host/exit_codes.hpp"
-#include "host/record/number.hpp"
+#include "host/number.hpp"
 
 namespace host {
 

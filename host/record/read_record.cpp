@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "host/exit_codes.hpp"
+#include "host/number.hpp"
 #include "host/read_file.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/log_fault.hpp"
-#include "host/record/number.hpp"
 #include "host/record/text_encoding.hpp"
 #include "host/record/time_axis.hpp"
 

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "host/exit_codes.hpp"
+#include "host/number.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/log_fault.hpp"
-#include "host/record/number.hpp"
 #include "host/record/read_record.hpp"
 #include "host/record/time_axis.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "host/number.hpp"
 #include "host/record/clock.hpp"
-#include "host/record/number.hpp"
 
 namespace host {
 

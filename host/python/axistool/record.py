@@ -35,10 +35,19 @@ class Record:
 
     @classmethod
     def from_log(
-        cls, path: str | os.PathLike[str], map: str = "", resample_s: float | None = None, drive: str = ""
+        cls,
+        path: str | os.PathLike[str],
+        map: str = "",
+        resample_s: float | None = None,
+        drive: str = "",
+        unwrap: Mapping[str, float] | None = None,
     ) -> Record:
-        """Of a .mat or .npy file or any table, as `axistool import`: map="t_s=t_ms*0.001,u_V=cmd,x_mm=#3"."""
-        columns, header = _host.import_record(os.fspath(path), map, resample_s, drive)
+        """Of a .mat or .npy file or any table, as `axistool import`: map="t_s=t_ms*0.001,u_V=cmd,x_mm=#3".
+
+        unwrap: columns that begin again after so much, {"x_mm": 6.2831853} for an angle within its turn.
+        """
+        ranges = [f"{column}={turn!r}" for column, turn in (unwrap or {}).items()]
+        columns, header = _host.import_record(os.fspath(path), map, resample_s, drive, ranges)
         return cls(columns, header)
 
     def checked(self) -> Record:

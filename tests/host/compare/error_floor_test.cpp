@@ -20,7 +20,7 @@ TEST(ErrorFloor, OfAModelThatRunsAwayIsANumber) {
       {"compliance", {{"resonance", 60.0}, {"damping_ratio", 0.02}, {"load_fraction", 0.5}}, {}, {}});
   const host::PreparedRecord prepared = host::prepare(record, model);
   host::ErrorFloor floor;
-  host::renew_floor(floor, model, prepared, 1);
+  host::renew_floor(floor, model, sim::Drive(model), prepared, 1);
   ASSERT_EQ(floor.x.size(), prepared.windows.size());
   for (const double value : floor.x) EXPECT_TRUE(std::isfinite(value) && value > 0.0) << value;
 }

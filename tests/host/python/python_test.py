@@ -130,6 +130,15 @@ class BothWays(unittest.TestCase):
         np.testing.assert_array_equal(record["u_V"], np.sin(t))
         self.assertEqual(record.header["drive"], "x")
 
+    def test_an_angle_within_its_turn_is_unwrapped(self) -> None:
+        angle = np.linspace(0.0, 30.0, 200)
+        with tempfile.TemporaryDirectory() as folder:
+            np.save(Path(folder) / "log.npy", np.column_stack([0.01 * np.arange(200), angle, angle % 6.25]))
+            record = axistool.Record.from_log(
+                Path(folder) / "log.npy", "t_s=#1,u_V=#2,x_mm=#3", drive="x", unwrap={"x_mm": 6.25}
+            )
+        np.testing.assert_allclose(record["x_mm"], angle, atol=1e-9)
+
     def test_a_record_keeps_every_bit(self) -> None:
         t = np.arange(50) * 0.001
         values = np.random.default_rng(1).standard_normal(50) / 3

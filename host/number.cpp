@@ -1,10 +1,18 @@
-#include "host/record/number.hpp"
+#include "host/number.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace host {
+
+std::optional<NamedNumber> parse_named_number(std::string_view text) {
+  const std::size_t sign = text.find('=');
+  if (sign == std::string_view::npos) return {};
+  const std::optional<double> value = parse_number(text.substr(sign + 1));
+  if (!value || !(*value > 0.0) || !std::isfinite(*value)) return {};
+  return NamedNumber{std::string(trim_blanks(text.substr(0, sign))), *value};
+}
 
 double last_digit_of(std::string_view number) {
   constexpr std::array kPowers = {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace host {
@@ -23,6 +24,14 @@ inline std::optional<double> parse_number(std::string_view text) {
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
+
+struct NamedNumber {
+  std::string name;
+  double value;
+};
+
+/// NAME=NUMBER as options take it, finite and above 0; empty when it is not that.
+std::optional<NamedNumber> parse_named_number(std::string_view text);
 
 /// The weight of the last digit of a number in text: 0.001 for "12.500", 10 for "3e1".
 double last_digit_of(std::string_view number);
