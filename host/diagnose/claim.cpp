@@ -36,7 +36,8 @@ bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   const auto on = [&](double before, double after) {
     return before > kSomething && after < (1.0 - kLeastGain) * before && explained_share(before, after) >= least;
   };
-  return on(candidate.before, candidate.after) && on(diagnosis.before_train, candidate.train_after);
+  return on(candidate.before, candidate.after) && (on(diagnosis.before_train, candidate.train_after) ||
+                                                   on(diagnosis.before_train_robust, candidate.train_after_robust));
 }
 
 }  // namespace
@@ -44,6 +45,11 @@ bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
 double explained_share(double before, double after) {
   const double there_is = before * before - kComplete * kComplete;
   return there_is > 0.0 ? std::clamp((before * before - after * after) / there_is, 0.0, 1.0) : 0.0;
+}
+
+double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  return std::max(explained_share(diagnosis.before_train, candidate.train_after),
+                  explained_share(diagnosis.before_train_robust, candidate.train_after_robust));
 }
 
 std::size_t parameters_of(const JudgedCandidate& candidate) {
@@ -79,7 +85,7 @@ Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis&
   if (!gains(candidate, diagnosis)) return Reservation::no_gain;
   if (!candidate.on_bound.empty()) return Reservation::on_bound;
   if (!diagnosis.rough && (explained_share(candidate.before, candidate.after) < 1.0 - kMostLeft ||
-                           explained_share(diagnosis.before_train, candidate.train_after) < 1.0 - kMostLeft))
+                           explained_in_training(candidate, diagnosis) < 1.0 - kMostLeft))
     return Reservation::leaves_much;
   if (candidate.luck > kMostLuck || candidate.confidence < (diagnosis.rough ? kLeastRoughConfidence : kLeastConfidence))
     return Reservation::luck;

@@ -21,6 +21,10 @@ inline constexpr double kLeastGain = 0.05;
 /// Part of what there is to explain, before^2 - kComplete^2, that is gone, 0..1. 0 where there was nothing.
 double explained_share(double before, double after);
 
+/// That share of the training data, with or without the weight of the windows in which a breakaway or an impact comes a
+/// moment late: no model hits their instant.
+double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
+
 /// That a candidate adds to the base.
 std::size_t parameters_of(const JudgedCandidate& candidate);
 

@@ -36,9 +36,10 @@ struct JudgedCandidate {
   double before = 0.0;  ///< combined
   double after = 0.0;
   double train_after = 0.0;
-  double confidence = 0.0;   ///< that the improvement is no luck, 0..1
-  double luck = 1.0;         ///< probability that the best of all that were tried gains as much by chance, 0..1
-  double probability = 0.0;  ///< of this mechanism given these records, 0..1
+  double train_after_robust = 0.0;  ///< SetError::robust; 0 where the effort was judged
+  double confidence = 0.0;          ///< that the improvement is no luck, 0..1
+  double luck = 1.0;                ///< probability that the best of all that were tried gains as much by chance, 0..1
+  double probability = 0.0;         ///< of this mechanism given these records, 0..1
   sim::DriveDescription model;
   std::vector<std::string> on_bound = {};  ///< parameters that ran to the end of their range
 };
@@ -67,6 +68,7 @@ struct Diagnosis : PreparedSets {
   std::vector<ChannelError> channels;
   double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
+  double before_train_robust = 0.0;                  ///< SetError::robust; 0 where the effort was judged
   double after_train = 0.0, after_validate = 0.0;    ///< combined, with the effects of the verdict
   std::vector<ErrorRegion> where;                    ///< of the base re-fitted, on all records
   ResidualTests residual;                            ///< of `best`: what depends on what in the effort that it leaves

@@ -76,6 +76,10 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
       if (screen.tied[step].empty()) continue;
       std::vector<std::string> group = {screen.chosen[step].kinds.back()};
       group.insert(group.end(), screen.tied[step].begin(), screen.tied[step].end());
+      if (group.back() == "backlash" && screen.hardening)
+        verdict.explanation +=
+            fmt::format(" Its frequency is {:.0f} % higher where it pulls {:.1f} times as much, as behind a gap.",
+                        100.0 * (screen.hardening->frequency_ratio - 1.0), screen.hardening->pull_ratio);
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
       if (screen.chosen.size() == 1) {
         verdict.status = Status::ambiguous;
@@ -111,26 +115,6 @@ std::string confirmed(const SetError& before, const SetError& after) {
                      before.combined, after.combined);
 }
 
-/// A spring of the right softness stands for a gap too, as long as the motion is of one size; but it hardly predicts
-/// that motion. Where it does not take half of the squared error forward, it may be either.
-void doubt_the_spring(Diagnosis& diagnosis, const SetError& before, const SetError& after,
-                      const std::vector<std::string>& absent) {
-  DiagnosisVerdict& verdict = diagnosis.verdict;
-  const std::string gap = "backlash";
-  if (verdict.status != Status::missing || verdict.effects != std::vector<std::string>{"compliance"} ||
-      after.combined < kHalfOfTheSquare * before.combined || std::ranges::find(absent, gap) != absent.end())
-    return;
-  verdict.status = Status::ambiguous;
-  verdict.effects.push_back(gap);
-  verdict.alternatives = {verdict.effects};
-  for (JudgedCandidate& candidate : diagnosis.candidates)
-    if (candidate.kinds.front() == "compliance") {
-      candidate.probability *= 0.5;
-      verdict.probability_other += candidate.probability;
-    }
-  verdict.explanation += " A gap, for which a spring can stand, is as likely.";
-}
-
 /// Over windows so short that the position shows a force before it adds up to a drift; a second mass, whose state no
 /// sensor shows at a restart, needs the usual ones.
 PreparedSets predicted_forward(const sim::DriveDescription& best, const std::vector<const Record*>& training,
@@ -157,18 +141,24 @@ bool is_contradicted(const EffortScreen& screen, const std::vector<const Record*
   return error(screen.best()) > error(screen.base) / kHardly;
 }
 
+/// No form of a gap was fitted that could have its half of the spring's probability.
+void share_with_the_gap(const EffortScreen& screen, Diagnosis& diagnosis) {
+  if (!screen.hardening || !screen.hardening->shows_a_gap()) return;
+  for (JudgedCandidate& candidate : diagnosis.candidates)
+    if (std::ranges::find(candidate.kinds, "compliance") != candidate.kinds.end()) {
+      candidate.probability *= 0.5;
+      diagnosis.verdict.probability_other += candidate.probability;
+    }
+}
+
 /// Channels predicted forward.
 void append_channels(const EffortScreen& screen, const std::vector<const Record*>& training,
-                     const std::vector<const Record*>& validation, const std::vector<std::string>& absent,
-                     Diagnosis& diagnosis) {
+                     const std::vector<const Record*>& validation, Diagnosis& diagnosis) {
   const PreparedSets sets = predicted_forward(diagnosis.best, training, validation);
   const sim::Drive base(diagnosis.base), best(diagnosis.best);
   const SetError before_train = error_of(base, sets.training), after_train = error_of(best, sets.training);
   const SetError before = error_of(base, sets.validation), after = error_of(best, sets.validation);
-  if (!screen.chosen.empty() && !screen.rows.steady) {
-    diagnosis.verdict.explanation += confirmed(before, after);
-    doubt_the_spring(diagnosis, before, after, absent);
-  }
+  if (!screen.chosen.empty() && !screen.rows.steady) diagnosis.verdict.explanation += confirmed(before, after);
   const auto append = [&](std::vector<double> Record::*channel, double SetError::*rms, double SetError::*floor) {
     diagnosis.channels.push_back({std::string(column_name(channel, diagnosis.base.data.kind)), before_train.*rms,
                                   before.*rms, after_train.*rms, after.*rms, after_train.*floor, after.*floor});
@@ -248,7 +238,8 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   diagnosis.where = error_regions(diagnosis.base, diagnosis.validation);
   diagnosis.verdict = verdict_of(*screen, model);
   assign_probabilities(diagnosis);
-  append_channels(*screen, training, validation, sets.absent, diagnosis);
+  append_channels(*screen, training, validation, diagnosis);
+  share_with_the_gap(*screen, diagnosis);
   diagnosis.screen = std::move(screen);
   return diagnosis;
 }
@@ -339,12 +330,16 @@ nlohmann::json effort_screen_json(const EffortScreen& screen) {
   nlohmann::json steps = nlohmann::json::array();
   for (const ScreenedModel& step : screen.chosen)
     steps.push_back({{"kinds", step.kinds}, {"words", step.words}, {"relative_error", relative(step)}});
+  nlohmann::json hardening;  // null where no spring was found
+  if (screen.hardening)
+    hardening = {{"frequency_ratio", screen.hardening->frequency_ratio}, {"pull_ratio", screen.hardening->pull_ratio}};
   return {{"rows", screen.rows.size()},
           {"motion_from", screen.rows.by_speed ? "speed" : "position"},
           {"inertia_shows", !screen.rows.steady},
           {"lowest_cutoff_Hz", screen.rows.lowest_cutoff_Hz},
           {"relative_error", {{"before", relative(screen.base)}, {"after", relative(screen.best())}}},
           {"steps", std::move(steps)},
+          {"spring_hardening", std::move(hardening)},
           {"held", screen.held}};
 }
 

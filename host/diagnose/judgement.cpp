@@ -48,7 +48,9 @@ JudgedCandidate judge_candidate(const Candidate& candidate, const RecordSet& tra
   judged.kinds = candidate.kinds;
   judged.before = before.combined;
   judged.after = after.combined;
-  judged.train_after = error_of(drive, training).combined;
+  const SetError train_after = error_of(drive, training);
+  judged.train_after = train_after.combined;
+  judged.train_after_robust = train_after.robust;
   judged.confidence =
       confidence_of_improvement(before, after, windows_in(kBlock_s, validation), validation.common_square);
   judged.luck =
@@ -76,7 +78,9 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
     for (const Candidate& candidate : *list)
       diagnosis.candidates.push_back(judge_candidate(candidate, training, validation, before, diagnosis.tried));
   std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
-  diagnosis.before_train = error_of(sim::Drive(diagnosis.base), training).combined;
+  const SetError before_train = error_of(sim::Drive(diagnosis.base), training);
+  diagnosis.before_train = before_train.combined;
+  diagnosis.before_train_robust = before_train.robust;
   diagnosis.before_validate = before.combined;
   diagnosis.given_train = error_of(sim::Drive(given), training).combined;
   diagnosis.given_validate = error_of(sim::Drive(given), validation).combined;

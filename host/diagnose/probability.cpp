@@ -56,8 +56,8 @@ void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   }
   const JudgedCandidate* best =
       &diagnosis.candidates[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
-  const double unexplained = 1.0 - std::min(explained_share(best->before, best->after),
-                                            explained_share(diagnosis.before_train, best->train_after));
+  const double unexplained =
+      1.0 - std::min(explained_share(best->before, best->after), explained_in_training(*best, diagnosis));
   constexpr double kLeastPart = 0.01;
   const double other =
       scale.lapse +

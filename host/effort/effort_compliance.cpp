@@ -53,13 +53,19 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
 
 EffortTerm compliance_term(const EffortRows& rows, const Load& load) {
   EffortTerm term{"compliance", pull_of(rows, load), {1}, {}, {}};
+  // A load that its friction holds is a hysteresis (a cable chain, a seal), whatever mass it has.
+  constexpr double kHeld = 0.7;  // of the RMS pull
+  const double pull = std::sqrt(term.columns.squaredNorm() / static_cast<double>(term.columns.rows()));
+  const bool held = load.friction > kHeld * pull;
   // Frequency and damping with the motor held become those of both masses, free to move.
-  term.write = [load](const VectorXd& factors, sim::DriveDescription& fitted) {
+  term.write = [load, held](const VectorXd& factors, sim::DriveDescription& fitted) {
     sim::EffectEntry& inertia = *fitted.find("inertia");
     const double whole = inertia.at("J") + factors(0), share = factors(0) / whole;
-    if (!(share > 0.0) || !(share < 1.0)) return false;
-    inertia.parameters["J"] = whole;
+    if (held || !(share > 0.0) || !(share < 1.0)) return false;
     const double ratio = 1.0 / std::sqrt(1.0 - share), on_load = load.friction * factors(0);
+    constexpr double kSwings = 0.71;  // with more damping nothing resounds, and a spring stands for something else
+    if (load.damping * ratio > kSwings) return false;
+    inertia.parameters["J"] = whole;
     double part = 0.0;
     if (sim::EffectEntry* coulomb = fitted.find("coulomb"); coulomb != nullptr && on_load > 0.0) {
       // The regression's level is the motor's own; the model's is that of both.
@@ -91,6 +97,9 @@ EffortTerm compliance_term(const EffortRows& rows, const Load& load) {
         around.push_back(compliance_term(rows, {load.resonance_Hz, load.damping, coarse * load.friction}));
     }
     return around;
+  };
+  term.at_frequency = [&rows, load](double factor) {
+    return compliance_term(rows, {factor * load.resonance_Hz, load.damping, load.friction});
   };
   return term;
 }

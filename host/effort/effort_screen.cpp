@@ -302,9 +302,14 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
           tied.push_back(other.model.kinds.back());
     screen.tied.push_back(std::move(tied));
     ScreenedModel taken = best->model;
-    if (best->terms.size() == 1 && best->terms.front()->neighbours)
-      chosen.push_back(closest_form(regression, base, chosen, *best->terms.front(), taken));
-    else
+    if (best->terms.size() == 1 && best->terms.front()->neighbours) {
+      EffortTerm closest = closest_form(regression, base, chosen, *best->terms.front(), taken);
+      if (closest.at_frequency && std::ranges::find(absent, "backlash") == absent.end()) {
+        screen.hardening = spring_hardening(model, screen.rows, base, chosen, closest);
+        if (screen.hardening && screen.hardening->shows_a_gap()) screen.tied.back().emplace_back("backlash");
+      }
+      chosen.push_back(std::move(closest));
+    } else
       for (const EffortTerm* term : best->terms) chosen.push_back(*term);
     *std::ranges::find(screen.steps.back(), taken.kinds, &ScreenedModel::kinds) = taken;
     screen.chosen.push_back(std::move(taken));

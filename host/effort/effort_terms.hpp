@@ -22,6 +22,8 @@ struct EffortTerm {
   /// Forms whose shape differs by this part; empty where the forms that are tried lie close enough. It refers to the
   /// rows.
   std::function<std::vector<EffortTerm>(double part)> neighbours{};
+  /// The same form with its frequency so many times as high; empty where it has none. It refers to the rows.
+  std::function<EffortTerm(double factor)> at_frequency{};
 };
 
 /// Adds an effect to a model; false where a parameter is out of the catalogue's bounds.

@@ -100,6 +100,22 @@ TEST(Presliding, TravelBeforeSlipFollowsTheBristle) {
   }
 }
 
+TEST(Presliding, AMassSwingsOnItsBristlesAsOnASpring) {
+  // At half a radian a step, the longest: a scheme of order 2 alone would be out of step after twenty radians.
+  const double sigma0 = 2500.0, sigma1 = 0.2, z0 = 1e-7;
+  const Drive drive(with(coulomb_drive(), "presliding", {{"sigma0", sigma0}, {"sigma1", sigma1}}));
+  const double omega = std::sqrt(sigma0 / kInertia), fading = 0.5 * (sigma1 + kViscous) / kInertia;
+  const double swings = std::sqrt(omega * omega - fading * fading);
+  DriveState state = drive.at(0.0, 0.0);
+  state.bristle = z0;
+  for (int k = 1; k <= 50; ++k) {
+    drive.step(state, 0.0, 0.0, 0.001);
+    const double t_s = 0.001 * k;
+    const double z = z0 * std::exp(-fading * t_s) * (std::cos(swings * t_s) + fading / swings * std::sin(swings * t_s));
+    ASSERT_NEAR(state.bristle, z, 0.03 * z0) << k;
+  }
+}
+
 TEST(Presliding, UnloadingReturnsTheElasticPartOnly) {
   const double sigma0 = 800.0, g = kCoulomb;
   const Drive drive(with(coulomb_drive(), "presliding", {{"sigma0", sigma0}, {"sigma1", 2.0}}));
