@@ -143,7 +143,10 @@ bool is_contradicted(const EffortScreen& screen, const std::vector<const Record*
 
 /// No form of a gap was fitted that could have its half of the spring's probability.
 void share_with_the_gap(const EffortScreen& screen, Diagnosis& diagnosis) {
-  if (!screen.hardening || !screen.hardening->shows_a_gap()) return;
+  const auto holds_the_gap = [](const std::vector<std::string>& group) {
+    return std::ranges::count(group, "backlash") > 0;
+  };
+  if (std::ranges::none_of(screen.tied, holds_the_gap)) return;
   for (JudgedCandidate& candidate : diagnosis.candidates)
     if (std::ranges::find(candidate.kinds, "compliance") != candidate.kinds.end()) {
       candidate.probability *= 0.5;

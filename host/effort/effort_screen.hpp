@@ -22,7 +22,7 @@ struct EffortScreen {
   std::vector<ScreenedModel> chosen;              ///< one a step that earned its place
   std::vector<std::vector<std::string>> tied;     ///< of each chosen: kinds that these rows do not tell from it
   bool contradicted = false;                      ///< what had been chosen, by the motion predicted forward
-  std::optional<SpringHardening> hardening;       ///< of the spring among the chosen
+  std::optional<SpringHardening> hardening;       ///< of the spring that was chosen last
   std::optional<Repeatability> repeatable;        ///< of the best model's residual, where a motion was repeated
   std::optional<ScreenedModel> judge_alone;       ///< the base fitted to the judging rows, its `train` of these
   std::vector<std::string> held;                  ///< base parameters that stayed as given, and why, in words

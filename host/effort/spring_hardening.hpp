@@ -15,8 +15,8 @@ struct SpringHardening {
   double frequency_ratio;  ///< of the frequencies that suit either half best
   double pull_ratio;       ///< of the RMS pulls
 
-  /// A spring has one frequency. Behind a gap it rises with the motion (describing function: Gelb, Vander Velde,
-  /// "Multiple-Input Describing Functions", 1968, section 2.3), until the gap is small beside it.
+  /// A spring has one frequency. Behind a gap, whose stiffness on average is that of a dead zone (describing function),
+  /// it rises with the motion until the gap is small beside it.
   bool shows_a_gap() const;
 };
 
