@@ -80,7 +80,7 @@ std::optional<SpringHardening> spring_hardening(const sim::DriveDescription& mod
   for (const std::size_t half : {0U, 1U}) {
     const auto least = std::ranges::min_element(errors[half]);
     const auto at = least - errors[half].begin();
-    if (at == 0 || at == 2 * kSteps || !std::isfinite(least[-1]) || !std::isfinite(least[1])) return {};
+    if (at == 0 || least + 1 == errors[half].end() || !std::isfinite(least[-1]) || !std::isfinite(least[1])) return {};
     frequency[half] = foot_of({least[-1], least[0], least[1]}, kStep * static_cast<double>(at - kSteps), kStep);
   }
   return SpringHardening{std::exp(frequency[1] - frequency[0]),
