@@ -63,17 +63,18 @@ std::optional<SpringHardening> spring_hardening(const sim::DriveDescription& mod
   }
   if (count[0] == 0.0 || count[1] == 0.0) return {};
 
+  const std::array regressions{EffortRegression(model, halves[0]), EffortRegression(model, halves[1])};
+  std::vector<const EffortTerm*> further;
+  for (const EffortTerm& term : beside) further.push_back(&term);
+  further.push_back(nullptr);
   std::array<std::vector<double>, 2> errors;
   for (int n = -kSteps; n <= kSteps; ++n) {
     throw_if_cancelled();
     const EffortTerm moved = spring.at_frequency(std::exp(kStep * n));
-    std::vector<const EffortTerm*> further;
-    for (const EffortTerm& term : beside) further.push_back(&term);
-    further.push_back(&moved);
+    further.back() = &moved;
     for (const std::size_t half : {0U, 1U}) {
       ScreenedModel tried;
-      const bool fits = EffortRegression(model, halves[half]).fit(base, further, tried);
-      errors[half].push_back(fits ? tried.train : HUGE_VAL);
+      errors[half].push_back(regressions[half].fit(base, further, tried) ? tried.train : HUGE_VAL);
     }
   }
   std::array<double, 2> frequency{};
