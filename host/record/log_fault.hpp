@@ -43,8 +43,8 @@ struct LogFault {
   std::string channel;  ///< column in the file
   std::string record;   ///< path
   double t_s = 0.0;     ///< where it shows first
-  double size =
-      0.0;  ///< of the jump or between the zeros, mm or m; times too large; s too late; number of samples; s in common
+  /// Of the jump or between the zeros, mm or m; times too large; s too late; number of samples; s in common.
+  double size = 0.0;
   std::string message;    ///< what, where, and what mends it
   bool fatal = true;      ///< with it any answer would be meaningless
   bool accepted = false;  ///< fatal, but the user knows better
