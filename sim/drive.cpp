@@ -44,7 +44,6 @@ void Drive::settle() {
                     dwell_gain > 0.0;
   bare_ = !rich && current_lag_s <= 0.0 && tach_lag_s <= 0.0 && effort_limit.empty() && effort_factor.empty() &&
           load_effort.empty();
-  one_mass_ = !bristles && !second_mass;
   straight_command_ = command.empty() && effort_limit.empty();
   remembers_ = current_lag_s > 0.0 || tach_lag_s > 0.0 || friction_memory_s > 0.0 || !friction_after_reversal.empty();
   // The mean of a sine over an eighth of its period is within 2.5 % of its middle value.
@@ -103,12 +102,12 @@ void Drive::filter_tach(DriveMotion& motion, double w_before, double duration_s)
       motion.w - tach_lag_s * slope + (motion.tach - w_before + tach_lag_s * slope) * decay(duration_s / tach_lag_s);
 }
 
-template <typename Contact>
+template <Drive::Mechanics kMechanics, typename Contact>
 [[gnu::always_inline]] inline void Drive::move_masses(DriveMotion& motion, double effort, double duration_s, int parts,
                                                       Contact& contact) const {
-  if (coupling_) {
+  if constexpr (kMechanics == Mechanics::two_masses) {
     move_two_masses(*coupling_, lead, motion, effort, duration_s, parts, contact);
-  } else if (bristles) {
+  } else if constexpr (kMechanics == Mechanics::bristles) {
     move_on_bristles(*bristles, mobility_, lead, motion, effort, duration_s, parts, contact);
   } else {
     SlidingMass mass{motion.x, motion.w, mobility_, lead};
@@ -118,7 +117,7 @@ template <typename Contact>
   }
 }
 
-template <typename Contact>
+template <Drive::Mechanics kMechanics, typename Contact>
 [[gnu::always_inline]] inline void Drive::push(DriveMotion& motion, double effort, double t_s,
                                                double duration_s) const {
   const double middle_x = motion.x + 0.5 * duration_s * lead * motion.w;
@@ -126,13 +125,13 @@ template <typename Contact>
   double net = motor;
   for (const auto& load : load_effort) net += load(t_s, middle_x);
   Contact contact(*this, motion, t_s, middle_x, motor);
-  move_masses(motion, net, duration_s, 1, contact);
+  move_masses<kMechanics>(motion, net, duration_s, 1, contact);
 }
 
-template <typename Contact>
+template <Drive::Mechanics kMechanics, typename Contact>
 void Drive::move(DriveMotion& motion, double effort, double t_s, double duration_s) const {
   const double w_before = motion.w;
-  push<Contact>(motion, effort, t_s, duration_s);
+  push<kMechanics, Contact>(motion, effort, t_s, duration_s);
   if (friction_memory_s > 0.0)
     lag_mean(motion.friction_speed, 0.5 * std::abs(w_before + motion.w), friction_memory_s, duration_s);
   note_reversal(motion, motion.x, motion.w);
@@ -156,87 +155,76 @@ void Drive::note_reversal(DriveMotion& motion, double x, double w) const {
   return whole < wanted ? whole + 1 : std::max(whole, 1);
 }
 
-template <typename Contact>
-void Drive::hold(DriveState& motion, double u_V, double t_s, double duration_s) const {
-  const int parts = parts_of(duration_s, motion.w);
+template <Drive::Mechanics kMechanics, typename Contact>
+void Drive::hold(DriveState& state, double u_V, double t_s, double duration_s) const {
+  const int parts = parts_of(duration_s, state.w);
   const double part_s = parts == 1 ? duration_s : duration_s / parts;
   if (remembers_ || !effort_limit.empty()) {
     for (int part = 0; part < parts; ++part) {
       const double at_s = t_s + part * part_s;
-      const double w = limiting_speed<Contact>(motion, u_V, at_s, part_s);
-      move<Contact>(motion, deliver(motion, u_V, w, part_s), at_s, part_s);
+      const double w = limiting_speed<kMechanics, Contact>(state, u_V, at_s, part_s);
+      move<kMechanics, Contact>(state, deliver(state, u_V, w, part_s), at_s, part_s);
     }
     return;
   }
-  const double effort = command_effort(u_V, motion.w);
+  const double effort = command_effort(u_V, state.w);
   if (bare_) {
-    Contact contact(*this, motion, t_s, motion.x, 0.0);
-    move_masses(motion, effort, part_s, parts, contact);
+    Contact contact(*this, state, t_s, state.x, 0.0);
+    move_masses<kMechanics>(state, effort, part_s, parts, contact);
   } else {
-    for (int part = 0; part < parts; ++part) push<Contact>(motion, effort, t_s + part * part_s, part_s);
+    for (int part = 0; part < parts; ++part) push<kMechanics, Contact>(state, effort, t_s + part * part_s, part_s);
   }
-  motion.tach = motion.w;
+  state.tach = state.w;
 }
 
-template <typename Contact>
+template <Drive::Mechanics kMechanics, typename Contact>
 double Drive::limiting_speed(const DriveMotion& motion, double u_V, double t_s, double duration_s) const {
   // A limit that moves with the speed is taken at the middle of the step, found by a trial: order 2.
   if (effort_limit.empty() || command_effort(u_V, motion.w) == command_effort(u_V, 0.0)) return motion.w;
   DriveMotion trial = motion;
-  move<Contact>(trial, deliver(trial, u_V, motion.w, duration_s), t_s, duration_s);
+  move<kMechanics, Contact>(trial, deliver(trial, u_V, motion.w, duration_s), t_s, duration_s);
   return 0.5 * (motion.w + trial.w);
 }
 
-template <typename Contact>
-void Drive::one_mass_directly(DriveState& state, double u_V, double t_s, double duration_s) const {
-  SlidingMass mass{state.x, state.w, mobility_, lead};
+template <Drive::Mechanics kMechanics, typename Contact>
+void Drive::directly(DriveState& state, double u_V, double t_s, double duration_s) const {
   Contact contact(*this, state, t_s, state.x, 0.0);
-  slide(mass, effort_per_volt * u_V, duration_s, contact);
-  state.x = mass.x;
-  state.w = state.tach = mass.w;
-}
-
-template <typename Contact>
-void Drive::two_masses_directly(DriveState& state, double u_V, double t_s, double duration_s) const {
-  Contact contact(*this, state, t_s, state.x, 0.0);
-  const int parts = parts_of(duration_s, state.w);
-  move_two_masses(*coupling_, lead, state, effort_per_volt * u_V, duration_s / parts, parts, contact);
+  const int parts = kMechanics == Mechanics::one_mass ? 1 : parts_of(duration_s, state.w);
+  move_masses<kMechanics>(state, effort_per_volt * u_V, duration_s / parts, parts, contact);
   state.tach = state.w;
 }
 
-template <typename Contact>
-void Drive::on_bristles_directly(DriveState& state, double u_V, double t_s, double duration_s) const {
-  Contact contact(*this, state, t_s, state.x, 0.0);
-  const int parts = parts_of(duration_s, state.w);
-  move_on_bristles(*bristles, mobility_, lead, state, effort_per_volt * u_V, duration_s / parts, parts, contact);
-  state.tach = state.w;
-}
-
-template <typename Contact>
+template <Drive::Mechanics kMechanics, typename Contact>
 void Drive::delay(DriveState& state, double u_V, double t_s, double duration_s) const {
   const std::size_t whole = whole_periods_of_delay(duration_s);
   const double rest_s = std::min(delay_s - static_cast<double>(whole) * duration_s, duration_s);
   const double older = state.past_u_V[whole], newer = whole == 0 ? u_V : state.past_u_V[whole - 1];
   bool moved = false;
-  if (bare_ && one_mass_) {
-    SlidingMass mass{state.x, state.w, mobility_, lead};
-    Contact contact(*this, state, t_s, state.x, 0.0);
-    moved = slide_through_change(mass, command_effort(older, state.w), command_effort(newer, state.w), rest_s,
-                                 duration_s, contact);
-    state.x = mass.x;
-    state.w = state.tach = mass.w;
-  }
-  if (!moved && rest_s > 0.0) hold<Contact>(state, older, t_s, rest_s);
-  if (!moved && rest_s < duration_s) hold<Contact>(state, newer, t_s + rest_s, duration_s - rest_s);
+  if constexpr (kMechanics == Mechanics::one_mass)
+    if (bare_) {
+      SlidingMass mass{state.x, state.w, mobility_, lead};
+      Contact contact(*this, state, t_s, state.x, 0.0);
+      moved = slide_through_change(mass, command_effort(older, state.w), command_effort(newer, state.w), rest_s,
+                                   duration_s, contact);
+      state.x = mass.x;
+      state.w = state.tach = mass.w;
+    }
+  if (!moved && rest_s > 0.0) hold<kMechanics, Contact>(state, older, t_s, rest_s);
+  if (!moved && rest_s < duration_s) hold<kMechanics, Contact>(state, newer, t_s + rest_s, duration_s - rest_s);
   remember_command(state, u_V, whole);
+}
+
+template <Drive::Mechanics kMechanics, typename Contact>
+Drive::Step Drive::cheapest_step_of() const {
+  if (delay_s > 0.0) return &Drive::delay<kMechanics, Contact>;
+  return bare_ && straight_command_ ? &Drive::directly<kMechanics, Contact> : &Drive::hold<kMechanics, Contact>;
 }
 
 template <typename Contact>
 Drive::Step Drive::cheapest_step() const {
-  if (delay_s > 0.0) return &Drive::delay<Contact>;
-  if (!bare_ || !straight_command_) return &Drive::hold<Contact>;
-  if (one_mass_) return &Drive::one_mass_directly<Contact>;
-  return coupling_ ? &Drive::two_masses_directly<Contact> : &Drive::on_bristles_directly<Contact>;
+  if (coupling_) return cheapest_step_of<Mechanics::two_masses, Contact>();
+  if (bristles) return cheapest_step_of<Mechanics::bristles, Contact>();
+  return cheapest_step_of<Mechanics::one_mass, Contact>();
 }
 
 std::size_t Drive::whole_periods_of_delay(double period_s) const {

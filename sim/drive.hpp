@@ -155,6 +155,7 @@ class Drive {
 
  private:
   using Step = void (Drive::*)(DriveState&, double u_V, double t_s, double duration_s) const;
+  enum class Mechanics { one_mass, two_masses, bristles };
 
   void settle();
   double tach_ripple_at(double x) const;
@@ -163,23 +164,21 @@ class Drive {
   int parts_of(double duration_s, double w) const;
   template <typename Contact>
   Step cheapest_step() const;
-  template <typename Contact>
-  void one_mass_directly(DriveState& state, double u_V, double t_s, double duration_s) const;
-  template <typename Contact>
-  void two_masses_directly(DriveState& state, double u_V, double t_s, double duration_s) const;
-  template <typename Contact>
-  void on_bristles_directly(DriveState& state, double u_V, double t_s, double duration_s) const;
-  template <typename Contact>
+  template <Mechanics kMechanics, typename Contact>
+  Step cheapest_step_of() const;
+  template <Mechanics kMechanics, typename Contact>
+  void directly(DriveState& state, double u_V, double t_s, double duration_s) const;
+  template <Mechanics kMechanics, typename Contact>
   void delay(DriveState& state, double u_V, double t_s, double duration_s) const;
-  template <typename Contact>
+  template <Mechanics kMechanics, typename Contact>
   void hold(DriveState& state, double u_V, double t_s, double duration_s) const;
-  template <typename Contact>
+  template <Mechanics kMechanics, typename Contact>
   void push(DriveMotion& motion, double effort, double t_s, double duration_s) const;
-  template <typename Contact>
+  template <Mechanics kMechanics, typename Contact>
   void move(DriveMotion& motion, double effort, double t_s, double duration_s) const;
-  template <typename Contact>
+  template <Mechanics kMechanics, typename Contact>
   void move_masses(DriveMotion& motion, double effort, double duration_s, int parts, Contact& contact) const;
-  template <typename Contact>
+  template <Mechanics kMechanics, typename Contact>
   double limiting_speed(const DriveMotion& motion, double u_V, double t_s, double duration_s) const;
   void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;
   void follow_rest(DriveMotion& motion, double w0, double w1, double effort, double duration_s) const;
@@ -191,9 +190,8 @@ class Drive {
   Step step_ = nullptr;                   ///< the cheapest that the effects allow
   double mobility_ = 0.0;                 ///< 1/inertia
   std::array<SlidingCurve, 2> curves_{};  ///< of `friction`
-  bool one_mass_ = false;
-  bool straight_command_ = false;  ///< effort in proportion to the command
-  bool remembers_ = false;         ///< something but the masses and their contact remembers
+  bool straight_command_ = false;         ///< effort in proportion to the command
+  bool remembers_ = false;                ///< something but the masses and their contact remembers
   bool bare_ = false;              ///< the command's effort acts alone, and on nothing but masses and their contact
   double parts_per_s_ = 0.0;       ///< that the masses need at least
   double parts_per_travel_ = 0.0;  ///< per mm or m
