@@ -45,7 +45,7 @@ double mean_of(const std::vector<double>& values, std::size_t row, std::size_t s
   return sum / static_cast<double>(step);
 }
 
-enum class Beyond { motion, speed_channel };
+enum class Beyond { motion, motion_with_turns, speed_channel };
 
 /// Appends the averages of one record.
 void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared, std::size_t index,
@@ -72,15 +72,18 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       return at;
     };
     for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
-      if (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0) continue;
+      if (what != Beyond::motion_with_turns &&
+          (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0))
+        continue;
       const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
       const double slope = 0.5 * (beyond(row + step) - beyond(row - step));
       const double acceleration = by_position ? bend / (step_s * step_s * drive.lead) : slope / step_s;
       out.record.push_back(index);
       out.slot.push_back(row / step);
       out.window.push_back(first_window + place);
-      out.missing.push_back(what == Beyond::motion ? drive.inertia * acceleration
-                                                   : mean_of(record.w, row, step) - drive.tachometer(motion_at(row)));
+      out.missing.push_back(what == Beyond::speed_channel
+                                ? mean_of(record.w, row, step) - drive.tachometer(motion_at(row))
+                                : drive.inertia * acceleration);
       out.t_s.push_back(record.t_s[row] - record.t_s.front());
       out.x.push_back(motion.x[row]);
       out.w.push_back(motion.w[row]);
@@ -134,6 +137,10 @@ ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set
 
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set) {
   return residual(model, set, Beyond::motion);
+}
+
+ResidualEffort residual_effort_with_turns(const sim::DriveDescription& model, const RecordSet& set) {
+  return residual(model, set, Beyond::motion_with_turns);
 }
 
 ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set) {

@@ -77,6 +77,7 @@ nlohmann::json residual_json(const ResidualTests& tests) {
                            {"where", dependence.where}});
   return {{"rms", tests.rms},
           {"dependences", std::move(dependences)},
+          {"near_reversals", tests.near_reversals},
           {"autocorrelation", correlation_json(tests.with_itself)},
           {"correlation_with_command", correlation_json(tests.with_command)}};
 }

@@ -57,6 +57,20 @@ TEST(ResidualTests, AHardSpotIsNamedByItsPositionAlthoughItTurnsWithTheDirection
   EXPECT_GT(share_on(tests, "position"), 0.1);
 }
 
+TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
+  constexpr double kFades_mm = 0.3;
+  double turned = 0.0, before = 0.0, last_x = 0.0;
+  const auto fading = tests_of(record_with([&](double, double x, double w) {
+    if (w * before < 0.0) turned = last_x;
+    if (w != 0.0) before = w;
+    last_x = x;
+    return -0.5 * std::copysign(std::exp(-std::abs(x - turned) / kFades_mm), w);
+  }));
+  EXPECT_GT(fading.near_reversals, 0.6);
+  const auto at_speed = tests_of(record_with([](double, double, double w) { return 0.004 * w * std::abs(w) / 10.0; }));
+  EXPECT_LT(at_speed.near_reversals, 0.35);  // a quarter, were it spread evenly
+}
+
 TEST(ResidualTests, TheAutocorrelationBeginsAtOneAndHasABound) {
   const auto tests = tests_of(record_with([](double t_s, double, double) { return 0.1 * std::sin(30.0 * t_s); }));
   ASSERT_FALSE(tests.with_itself.value.empty());
