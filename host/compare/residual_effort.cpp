@@ -45,7 +45,7 @@ double mean_of(const std::vector<double>& values, std::size_t row, std::size_t s
   return sum / static_cast<double>(step);
 }
 
-enum class Beyond { motion, motion_with_turns, speed_channel };
+enum class Beyond { motion, speed_channel };
 
 /// Appends the averages of one record.
 void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared, std::size_t index,
@@ -72,9 +72,8 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       return at;
     };
     for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
-      if (what != Beyond::motion_with_turns &&
-          (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0))
-        continue;
+      // Where the axis stands or turns over the smoother rounds off what happens.
+      if (motion.standing[row] || motion.w[row - step] * motion.w[row + step] <= 0.0) continue;
       const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
       const double slope = 0.5 * (beyond(row + step) - beyond(row - step));
       const double acceleration = by_position ? bend / (step_s * step_s * drive.lead) : slope / step_s;
@@ -137,10 +136,6 @@ ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set
 
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set) {
   return residual(model, set, Beyond::motion);
-}
-
-ResidualEffort residual_effort_with_turns(const sim::DriveDescription& model, const RecordSet& set) {
-  return residual(model, set, Beyond::motion_with_turns);
 }
 
 ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set) {

@@ -25,9 +25,6 @@ struct ResidualEffort {
 /// there for any model: bristles, gaps and second masses move as they do in a prediction.
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set);
 
-/// The same with the samples in which the axis stands or turns over, where the smoother rounds off what happens.
-ResidualEffort residual_effort_with_turns(const sim::DriveDescription& model, const RecordSet& set);
-
 /// What the speed channel reads beyond the smoothed motion that the position shows, rad/s or m/s, in the place of the
 /// effort; empty where a record lacks one of the two.
 ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set);

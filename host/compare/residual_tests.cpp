@@ -306,20 +306,21 @@ Values time_in_all(const ResidualEffort& samples) {
   return result;
 }
 
-void look_near_reversals(const std::array<ResidualEffort, 2>& sets, const sim::DataSheet& data, ResidualTests& tests) {
+void look_near_reversals(const std::array<const ResidualEffort*, 2>& sets, const sim::DataSheet& data,
+                         ResidualTests& tests) {
   constexpr double kNearest = 0.25;  // of the samples
   Values travelled;
   double all = 0.0, near = 0.0;
-  for (const ResidualEffort& samples : sets)
-    for (const double travel : samples.since_reversal) travelled.push_back(std::abs(travel));
+  for (const ResidualEffort* samples : sets)
+    for (const double travel : samples->since_reversal) travelled.push_back(std::abs(travel));
   if (travelled.size() < kFewestSamples) return;
   const auto edge = travelled.begin() + static_cast<long>(kNearest * static_cast<double>(travelled.size()));
   std::ranges::nth_element(travelled, edge);
-  for (const ResidualEffort& samples : sets)
-    for (std::size_t k = 0; k < samples.missing.size(); ++k) {
-      const double square = samples.missing[k] * samples.missing[k];
+  for (const ResidualEffort* samples : sets)
+    for (std::size_t k = 0; k < samples->missing.size(); ++k) {
+      const double square = samples->missing[k] * samples->missing[k];
       all += square;
-      if (std::abs(samples.since_reversal[k]) <= *edge) near += square;
+      if (std::abs(samples->since_reversal[k]) <= *edge) near += square;
     }
   tests.near_reversals = all > 0.0 ? near / all : 0.0;
   tests.where_near_reversals = fmt::format("within {} mm of a reversal",
@@ -396,11 +397,9 @@ ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& 
 ResidualTests test_residuals(const sim::DriveDescription& model, const RecordSet& training,
                              const RecordSet& validation) {
   const bool has_position = training.records.front().prepared.record->has_position();
-  ResidualTests tests =
-      test(Half(residual_effort(model, training)), Half(residual_effort(model, validation)), model.data, has_position);
-  if (has_position)
-    look_near_reversals({residual_effort_with_turns(model, training), residual_effort_with_turns(model, validation)},
-                        model.data, tests);
+  const Half first(residual_effort(model, training)), second(residual_effort(model, validation));
+  ResidualTests tests = test(first, second, model.data, has_position);
+  if (has_position) look_near_reversals({&first.samples, &second.samples}, model.data, tests);
   return tests;
 }
 

@@ -38,8 +38,8 @@ struct ResidualTests {
   Correlation with_command;                     ///< of the residual with earlier and later commands
   double constant = 0.0;                        ///< share that a constant takes, with the motion's sign or without
   double rms = 0.0;                             ///< of the residual effort on validation data, Nm or N
-  /// Part of the squared residual of all data, turning points included, in the quarter of the samples that follows a
-  /// reversal most closely. What takes micrometres has no curve over the travel at 5 ms, but it has this place.
+  /// Part of the squared residual of all data in the quarter of the samples that follows a reversal most closely. What
+  /// takes micrometres has no curve over the travel at 5 ms, but it has this place.
   double near_reversals = 0.0;
   std::string where_near_reversals;  ///< to follow "most"
 };

@@ -147,9 +147,9 @@ Trace strongest_trace(const Diagnosis& diagnosis, const ResidualTests& of_motion
     most = weight;
     best = &dependence;
   }
-  // Of 27 machines with something that the catalogue lacked, half of it lies there with bristles, and with friction
-  // that grows in rests, which its own coordinate tells. Of the others at most 0.45.
-  constexpr double kWeak = 0.05, kNearReversals = 0.5;
+  // Of 27 machines with something that the catalogue lacked, bristles leave 0.87 of it there, friction that grows in
+  // rests, which its own coordinate tells, 0.75, the others at most 0.58.
+  constexpr double kWeak = 0.05, kNearReversals = 0.65;
   if (most < kWeak && tests.near_reversals > kNearReversals)
     return {"travel_since_reversal", tests.where_near_reversals};
   if (best != nullptr && tests.constant > kConstant * most)

@@ -57,8 +57,9 @@ TEST(ResidualTests, AHardSpotIsNamedByItsPositionAlthoughItTurnsWithTheDirection
   EXPECT_GT(share_on(tests, "position"), 0.1);
 }
 
+/// Catches samples at rest among those that judge: there nothing fades.
 TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
-  constexpr double kFades_mm = 0.3;
+  constexpr double kFades_mm = 0.03;
   double turned = 0.0, before = 0.0, last_x = 0.0;
   const auto fading = tests_of(record_with([&](double, double x, double w) {
     if (w * before < 0.0) turned = last_x;
@@ -66,7 +67,7 @@ TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
     last_x = x;
     return -0.5 * std::copysign(std::exp(-std::abs(x - turned) / kFades_mm), w);
   }));
-  EXPECT_GT(fading.near_reversals, 0.6);
+  EXPECT_GT(fading.near_reversals, 0.65);  // 0.54 where the axis stands counted too
   const auto at_speed = tests_of(record_with([](double, double, double w) { return 0.004 * w * std::abs(w) / 10.0; }));
   EXPECT_LT(at_speed.near_reversals, 0.35);  // a quarter, were it spread evenly
 }
