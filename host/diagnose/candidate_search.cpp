@@ -115,8 +115,8 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
 /// search without slopes first.
 constexpr std::size_t kMostStarts = 6;
 constexpr std::size_t kBestOfScan = 2;
-/// What a start may leave of the base's error, before any fit, to go on. A second mass that is a little off is worse than
-/// none: the starts that found a gap on top of asymmetric friction began at 1.17 and ended at 0.7.
+/// What a start may leave of the base's error, before any fit, to go on. A second mass that is a little off is worse
+/// than none: the starts that found a gap on top of asymmetric friction began at 1.17 and ended at 0.7.
 constexpr double kWorstOfScan = 1.25;
 
 /// What is left of the base's error at a start, unfitted.
