@@ -139,8 +139,9 @@ std::optional<Disagreement> rigid_disagreement(const std::vector<const Record*>&
     const double doubt = own->doubt(here) + rest.doubt(there);
     const bool another_load = left < kRigid && off > std::max(kLoad, doubt);
     // All of the effort grew by the factor by which the inertia did, which is no accident.
-    const bool all_of_it = left < kRigid && std::abs(scale - 1.0) > std::max(kScale, 2.0 * left) &&
-                           std::abs(inertia / scale - 1.0) < kAlike && off > kLeastKnown * doubt;
+    const bool by_one_factor = std::abs(inertia / scale - 1.0) < kAlike;
+    const bool all_of_it = left < kRigid && std::abs(scale - 1.0) > std::max(kScale, 2.0 * left) && by_one_factor &&
+                           off > kLeastKnown * doubt;
     const bool another_scale = all_of_it || (left < kStillRigid && off > kScale && friction_too);
     if ((!another_load && !another_scale) || off < kStandsOut * spread(judged[r])) continue;
     if (worst && std::abs(worst->factor - 1.0) >= off) continue;

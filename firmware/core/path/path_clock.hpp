@@ -14,7 +14,7 @@ namespace path_clock {
 /// 1 / f^2 of a number of headroom, 2^-32.
 inline constexpr std::array<std::uint32_t, kHeadrooms.size()> kInverseSquares = [] {
   std::array<std::uint32_t, kHeadrooms.size()> all{};
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::size_t i = 0; i != all.size(); ++i)
     all[i] = static_cast<std::uint32_t>(4294967296.0 / (kHeadrooms[i] * kHeadrooms[i]));
   return all;
 }();
