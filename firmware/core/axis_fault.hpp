@@ -39,6 +39,7 @@ enum class AxisFault : std::uint8_t {
   homing_travel_exceeded = 29,
   amplifier_not_ready = 30,
   index_mismatch = 31,
+  moved_while_starting = 32,
 };
 
 }  // namespace firmware

@@ -21,9 +21,12 @@ struct AxisDefects {
   bool motor_reversed = false;         ///< its leads are swapped
   bool dac_stuck = false;              ///< stays at dac_stuck_code
   std::int32_t dac_stuck_code = 0;
-  bool dac_unhealthy = false;  ///< its registers, read back, are not as they were set
-  bool blocked = false;        ///< nothing moves
-  bool drive_faulted = false;  ///< the amplifier gives no current, and says so
+  bool dac_unhealthy = false;         ///< its registers, read back, are not as they were set
+  bool blocked = false;               ///< nothing moves
+  bool drive_faulted = false;         ///< the amplifier gives no current, and says so
+  bool unready = false;               ///< the amplifier's ready contact is open, or its wire is
+  bool brake_stuck = false;           ///< it does not let go
+  std::int32_t amplifier_offset = 0;  ///< codes that it adds to its command while it drives
   bool positive_end_reached = false;
   bool negative_end_reached = false;
 };
@@ -32,7 +35,7 @@ struct AxisDefects {
 class FaultyAxis {
  public:
   FaultyAxis(sim::Plant& plant, const AxisWiring& wiring, std::uint64_t seed)
-      : plant_(plant), sound_(plant, wiring), noise_(seed) {}
+      : plant_(plant), sound_(plant, wiring), brake_(plant, wiring.brake), wiring_(wiring), noise_(seed) {}
   FaultyAxis(const FaultyAxis&) = delete;
   FaultyAxis& operator=(const FaultyAxis&) = delete;
 
@@ -81,7 +84,7 @@ class FaultyAxis {
     bool write(std::int32_t code) {
       commanded_ = code;
       const AxisDefects& d = axis_.defects;
-      const std::int32_t put_out = d.dac_stuck ? d.dac_stuck_code : code;
+      const std::int32_t put_out = (d.dac_stuck ? d.dac_stuck_code : code) + d.amplifier_offset;
       return axis_.sound_.dac().write(d.motor_reversed ? -put_out : put_out);
     }
     bool is_healthy() const { return !axis_.defects.dac_unhealthy; }
@@ -100,14 +103,24 @@ class FaultyAxis {
       apply();
     }
     bool is_faulted() { return axis_.defects.drive_faulted; }
-    bool is_ready() const { return axis_.sound_.drive_enable().is_ready(); }
-    void release_brake(bool released) { axis_.sound_.drive_enable().release_brake(released); }
+    bool is_ready() const { return drives() && on_for_s_ >= axis_.wiring_.ready_after_s && !axis_.defects.unready; }
+    void release_brake(bool released) {
+      is_brake_released_ = released;
+      apply();
+    }
     bool is_on() const { return is_on_; }
-    void apply() { axis_.sound_.drive_enable().set(is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted); }
+    /// The stop relay takes the brake's current as it takes the enable.
+    void apply() {
+      axis_.sound_.drive_enable().set(drives());
+      axis_.brake_.set_released(is_brake_released_ && axis_.is_powered_ && !axis_.defects.brake_stuck);
+    }
+    void pass(double duration_s) { on_for_s_ = drives() ? on_for_s_ + duration_s : 0.0; }
 
    private:
+    bool drives() const { return is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted; }
     FaultyAxis& axis_;
-    bool is_on_ = false;
+    bool is_on_ = false, is_brake_released_ = false;
+    double on_for_s_ = 0.0;
   };
 
   class Limits {
@@ -139,10 +152,12 @@ class FaultyAxis {
   /// Lets the machine run, with the defects that act on it.
   void advance(double duration_s) {
     enable_.apply();
-    if (defects.dac_stuck) dac_.write(dac_.commanded());
+    if (defects.dac_stuck || defects.amplifier_offset != 0) dac_.write(dac_.commanded());
     const double x = plant_.truth().x, w = plant_.truth().w;
     plant_.advance(duration_s);
     if (defects.blocked) block(x, w, duration_s);
+    brake_.act(x, w, duration_s);
+    enable_.pass(duration_s);
   }
 
  private:
@@ -157,6 +172,8 @@ class FaultyAxis {
 
   sim::Plant& plant_;
   SimulatedAxis sound_;
+  SimulatedBrake brake_;
+  AxisWiring wiring_;
   std::mt19937_64 noise_;
   bool is_powered_ = true;
   Encoder encoder_{*this};

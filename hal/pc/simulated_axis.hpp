@@ -8,6 +8,7 @@
 
 #include "hal/axis_hal.hpp"
 #include "hal/limit_inputs.hpp"
+#include "hal/pc/simulated_brake.hpp"
 #include "sim/plant.hpp"
 
 namespace hal::pc {
@@ -22,6 +23,8 @@ struct AxisWiring {
   double home = std::numeric_limits<double>::quiet_NaN();  ///< home switch: actuated at and beyond it; NaN: none
   double index_spacing = 0.0;  ///< travel from one index pulse to the next, mm (m); 0: none is wired
   double index_offset = 0.0;   ///< travel at which one of them lies
+  double ready_after_s = 0.0;  ///< of a FaultyAxis: from the enable, at which it drives, until the amplifier says so
+  BrakeWiring brake{};         ///< of a FaultyAxis
 };
 
 /// Satisfies AxisHal; limits() satisfies LimitInputs. The plant is the caller's, who also lets its time pass.

@@ -19,20 +19,37 @@ using firmware::SupervisorState;
 
 using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 
-MachineAxes design_paper_axes(bool tachometer) {
+/// A brake of twice what the paper's motor needs against friction: Nm. 20 Nm stop it from 250 mm/s in 9 mm.
+constexpr double kBrake_Nm = 20.0;
+
+MachineAxes design_paper_axes(bool tachometer, bool under_weight) {
   MachineAxes made;
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
     made[i].drive = *paper_drive(kAxisNames[i]);
     if (!tachometer) made[i].drive.data.tach_noise_variance.reset();
-    made[i].parameters = contouring_parameters(made[i].drive, {.friction = true, .cancellation = false});
+    made[i].parameters = contouring_parameters(made[i].drive, {.friction = true, .cancellation = under_weight});
   }
   return made;
 }
 
 MachineAxes paper_axes(const FaultTrial& trial) {
-  static const std::array<MachineAxes, 2> designed{design_paper_axes(false), design_paper_axes(true)};
-  MachineAxes axes = designed[trial.tachometer ? 1 : 0];
-  for (MachineAxis& axis : axes) axis.parameters.acceleration_limit = static_cast<float>(trial.acceleration_mm_s2);
+  static const std::array<MachineAxes, 4> designed{design_paper_axes(false, false), design_paper_axes(true, false),
+                                                   design_paper_axes(false, true), design_paper_axes(true, true)};
+  MachineAxes axes = designed[(trial.tachometer ? 1u : 0u) + (trial.weight_Nm != 0.0 ? 2u : 0u)];
+  for (MachineAxis& axis : axes) {
+    axis.parameters.acceleration_limit = static_cast<float>(trial.acceleration_mm_s2);
+    axis.parameters.sequence = {.ready_input = trial.start.ready_input,
+                                .brake_fitted = trial.start.brake,
+                                .amplifier_wait = trial.start.ready_ms,
+                                .brake_release = kTrialBrake_ms,
+                                .brake_application = kTrialBrake_ms};
+    axis.wiring.ready_after_s = 0.5e-3 * trial.start.ready_ms;
+    const double inertia_kg_m2 = axis.drive.effects.front().at("J");
+    if (trial.start.brake) axis.wiring.brake.deceleration = kBrake_Nm / inertia_kg_m2;
+    if (trial.weight_Nm != 0.0)
+      axis.drive.effects.push_back(
+          {.kind = "constant_torque", .parameters = {{"torque", trial.weight_Nm}}, .ci95 = {}, .from = {}});
+  }
   return axes;
 }
 
@@ -43,10 +60,13 @@ class Trial {
   TrialOutcome run() {
     prepare();
     for (int k = 0; k < trial_.sample; ++k) step();
+    if (trial_.motion == TrialMotion::stopping) {
+      machine_.axes()[trial_.first.axis].disable();
+      for (int k = 0; k < trial_.since_disable; ++k) step();
+    }
     apply(trial_.first);
     injected_at_ = machine_.samples();
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) injected_at_mm_[i] = machine_.plant(i).truth().x;
-    if (trial_.motion == TrialMotion::stopping) machine_.axes()[trial_.first.axis].disable();
     const int longest = 4000 + 3 * stretch();
     for (int k = 0; k < longest && !is_over(); ++k) {
       if (k == trial_.delay && trial_.second.injection != nullptr) {
@@ -69,7 +89,8 @@ class Trial {
     for (int k = 0; k <= firmware::kSelfTestSamples; ++k) machine_.step();
     if (trial_.motion == TrialMotion::ready) return;
     enable();
-    machine_.step();
+    if (trial_.motion == TrialMotion::starting) return;
+    for (int k = 0; k < 1 + trial_.start.ready_ms + 2 * kTrialBrake_ms && !all_enabled(); ++k) machine_.step();
     switch (trial_.motion) {
       case TrialMotion::jog:
       case TrialMotion::stopping:
@@ -89,6 +110,11 @@ class Trial {
     }
   }
 
+  bool all_enabled() {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
+      if (axes()[i].state() != SupervisorState::enabled) return false;
+    return true;
+  }
   void enable() {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) axes()[i].enable();
   }
@@ -106,6 +132,7 @@ class Trial {
   void keep_moving(int k) {
     constexpr int kPatience = 1000;
     const bool path_runs = place_ < path_.size();
+    if (trial_.motion == TrialMotion::starting && !all_enabled() && k < kPatience) return;
     if (path_runs || (trial_.motion == TrialMotion::move && k < kPatience)) return;
     if (trial_.motion == TrialMotion::stopping && k < kPatience / 2) return;
     enable();
@@ -202,15 +229,20 @@ std::string FaultTrial::text() const {
   };
   std::string faults = named(first);
   if (second.injection != nullptr) faults += fmt::format(", {} samples later {}", delay, named(second));
-  return fmt::format("{}, {} at {:g} mm/s ({:g} mm/s^2, {} tachometer), sample {}, seed {}", faults,
-                     kTrialMotions[static_cast<std::size_t>(motion)], speed_mm_s, acceleration_mm_s2,
-                     tachometer ? "with" : "without", sample, seed);
+  return fmt::format(
+      "{}, {} at {:g} mm/s ({:g} mm/s^2, {} tachometer, {} ms until {}, {} brake, {:g} Nm of weight), sample {}{}, "
+      "seed {}",
+      faults, kTrialMotions[static_cast<std::size_t>(motion)], speed_mm_s, acceleration_mm_s2,
+      tachometer ? "with" : "without", start.ready_ms, start.ready_input ? "late" : "ready",
+      start.brake ? "with" : "without", weight_Nm, sample,
+      motion == TrialMotion::stopping ? fmt::format(" and {}", since_disable) : "", seed);
 }
 
-StatedStop stated_stop(double speed_mm_s, double acceleration_mm_s2) {
-  const double jerk_time_s = acceleration_mm_s2 / ReferenceLimits{}.jerk;
-  const double ramp_s = speed_mm_s / acceleration_mm_s2 + jerk_time_s;
-  return {speed_mm_s * ramp_s / 2.0 + kStatedExtra_mm, ramp_s + kStatedExtra_s};
+StatedStop stated_stop(const FaultTrial& trial, double speed_mm_s) {
+  const double jerk_time_s = trial.acceleration_mm_s2 / ReferenceLimits{}.jerk;
+  const double ramp_s = speed_mm_s / trial.acceleration_mm_s2 + jerk_time_s;
+  const double brake_s = trial.start.brake ? 1e-3 * kTrialBrake_ms : 0.0;
+  return {speed_mm_s * ramp_s / 2.0 + kStatedExtra_mm, ramp_s + kStatedExtra_s + brake_s};
 }
 
 TrialOutcome run_trial(const FaultTrial& trial) { return Trial(trial).run(); }
@@ -232,10 +264,21 @@ std::string fault_page() {
       "|---|---|---|---|---|---|\n",
       kStatedExtra_mm, kStatedExtra_s);
   for (const InjectionInfo& info : injections()) {
-    for (const TrialMotion motion : {TrialMotion::standing, TrialMotion::jog}) {
+    for (const TrialMotion motion : {TrialMotion::starting, TrialMotion::standing, TrialMotion::jog}) {
       if (info.kind == "motor_reversed" && motion == TrialMotion::jog) continue;  // nobody swaps leads in motion
-      const TrialOutcome outcome =
-          run_trial({.first = {&info, 0, info.usual}, .second = {}, .motion = motion, .speed_mm_s = 250.0});
+      const bool is_start = motion == TrialMotion::starting;
+      if (is_start ? info.kind != "dac_stuck" && info.needs == InjectionInfo::Needs::nothing
+                   : info.needs == InjectionInfo::Needs::open_loop)
+        continue;
+      const TrialStart start{.ready_ms = is_start || info.needs == InjectionInfo::Needs::ready_input ? 500 : 0,
+                             .ready_input = info.needs == InjectionInfo::Needs::ready_input,
+                             .brake = info.needs == InjectionInfo::Needs::brake};
+      const TrialOutcome outcome = run_trial({.first = {&info, 0, info.usual},
+                                              .second = {},
+                                              .motion = motion,
+                                              .sample = is_start ? 100 : 300,
+                                              .speed_mm_s = 250.0,
+                                              .start = start});
       page += fmt::format("| {} | {} | `{}` | {:.0f} | {:.0f} | {:.1f} |\n", info.what,
                           kTrialMotions[static_cast<std::size_t>(motion)], firmware::fault_info(outcome.fault).name,
                           1e3 * outcome.reaction_s, 1e3 * outcome.stop_s, outcome.distance_mm);

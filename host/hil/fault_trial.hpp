@@ -10,9 +10,17 @@
 namespace host {
 
 /// What the machine is doing when it happens.
-enum class TrialMotion { self_test, ready, standing, jog, move, circle, stopping };
-inline constexpr std::array<std::string_view, 7> kTrialMotions{"self-test", "ready",  "standing", "jog",
-                                                               "move",      "circle", "stopping"};
+enum class TrialMotion { self_test, ready, starting, standing, jog, move, circle, stopping };
+inline constexpr std::array<std::string_view, 8> kTrialMotions{"self-test", "ready", "starting", "standing",
+                                                               "jog",       "move",  "circle",   "stopping"};
+
+/// What an axis waits for between its enable and motion, and at its end.
+struct TrialStart {
+  int ready_ms = 0;          ///< amplifier.ready_time; the amplifier drives at once, and says so after half of it
+  bool ready_input = false;  ///< the contact is wired
+  bool brake = false;        ///< one is fitted
+};
+inline constexpr int kTrialBrake_ms = 50;  ///< to release and to apply
 
 struct TrialInjection {
   const InjectionInfo* injection = nullptr;
@@ -25,10 +33,13 @@ struct FaultTrial {
   TrialInjection second;  ///< without an injection: one fault alone
   int delay = 0;          ///< samples from the first to the second
   TrialMotion motion = TrialMotion::jog;
-  int sample = 300;                    ///< of the injection, since the motion began
+  int sample = 300;                    ///< of the injection, since the motion began; starting: since the enable
+  int since_disable = 0;               ///< stopping: samples from the disable to the injection
   double speed_mm_s = 100.0;           ///< of jogs, with its sign
   bool tachometer = true;              ///< both axes have one
   double acceleration_mm_s2 = 2000.0;  ///< the references' limit
+  TrialStart start{};
+  double weight_Nm = 0.0;  ///< what pulls on both motors; not 0: a brake is fitted
   std::uint64_t seed = 1;
 
   std::string text() const;
@@ -59,7 +70,7 @@ struct StatedStop {
   double distance_mm;
   double time_s;
 };
-StatedStop stated_stop(double speed_mm_s, double acceleration_mm_s2);
+StatedStop stated_stop(const FaultTrial& trial, double speed_mm_s);
 inline constexpr double kStatedExtra_mm = 30.0;
 inline constexpr double kStatedExtra_s = 0.4;
 

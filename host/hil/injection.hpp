@@ -17,6 +17,8 @@ struct InjectionInfo {
   double usual = 0.0;     ///< value where a scenario gives none
   double least = 0.0;     ///< smallest magnitude that must be found
   bool of_board = false;  ///< concerns both axes
+  /// Shows only with what a machine may lack, or only then: see FaultTrial.
+  enum class Needs { nothing, ready_input, brake, open_loop } needs = Needs::nothing;
   /// The faults that name this cause.
   std::vector<firmware::AxisFault> named_by;
   void (*apply)(Machine& machine, std::size_t axis, double value);

@@ -78,6 +78,43 @@ TEST_F(Sequence, AnAmplifierThatNeverBecomesReadyIsAFault) {
   EXPECT_FALSE(is_closed(axis));
 }
 
+/// A converter stuck at 10 V, and an amplifier with an offset, drive the axis while nothing holds it.
+TEST_F(Sequence, AnAxisThatMovesBeforeTheLoopClosesIsLetGoWithinAFewCounts) {
+  for (const double offset_V : {10.0, -10.0, 0.4, 0.01}) {
+    auto p = parameters(false, false);
+    p.sequence.amplifier_wait = 10'000;
+    DrivenAxis axis(p);
+    axis.amplifier_offset_V = offset_V;
+    for (int k = 0; k < 12'000 && axis.axis.state() == SupervisorState::starting; ++k) run(axis, 1);
+    EXPECT_EQ(axis.axis.fault(), AxisFault::moved_while_starting) << offset_V;
+    EXPECT_FALSE(lines(axis).on);
+    EXPECT_LT(std::abs(axis.at_mm()), std::abs(offset_V) > 1.0 ? 0.1 : 0.03) << offset_V;
+  }
+}
+
+TEST_F(Sequence, AnAxisThatTremblesByACountStarts) {
+  DrivenAxis axis(parameters(false, false));
+  for (int k = 0; k < kWait + 2; ++k) {
+    axis.io.encoder().reading.counts += k % 2 == 0 ? 1u : -1u;
+    axis.axis.step();
+  }
+  EXPECT_EQ(axis.axis.state(), SupervisorState::enabled);
+}
+
+TEST_F(Sequence, AStopBeforeTheLoopClosesDropsTheEnableAtOnce) {
+  DrivenAxis axis(parameters(false, true));
+  run(axis, kWait / 2);
+  ASSERT_TRUE(axis.axis.disable());
+  run(axis, 1);
+  EXPECT_EQ(axis.axis.state(), SupervisorState::ready);
+  EXPECT_FALSE(lines(axis).on);
+  DrivenAxis other(parameters(false, true));
+  run(other, kWait / 2);
+  other.step(AxisFault::other_axis_stopped);
+  EXPECT_EQ(other.axis.state(), SupervisorState::fault);
+  EXPECT_FALSE(lines(other).on);
+}
+
 TEST_F(Sequence, TheBrakeHoldsBeforeTheEnableDrops) {
   DrivenAxis axis(parameters(true, true));
   run_until_enabled(axis);

@@ -32,7 +32,8 @@ class DrivenAxis {
   void run_on(int periods) {
     for (int k = 0; k < periods; ++k) {
       const PaperAxis& drive = kPaperX;
-      const double u_V = io.dac().code * kDacResolution_V;
+      const double offset_V = io.drive_enable().on ? amplifier_offset_V : 0.0;
+      const double u_V = io.dac().code * kDacResolution_V + offset_V;
       x_mm_ += drive.Ad12 * w_rad_s_ + drive.Bd1 * u_V;
       w_rad_s_ = drive.Ad22 * w_rad_s_ + drive.Bd2 * u_V;
     }
@@ -41,6 +42,7 @@ class DrivenAxis {
     io.tachometer().reading.code = static_cast<std::int32_t>(std::lround(64.0 * w_rad_s_));
   }
   double at_mm() const { return x_mm_; }
+  double amplifier_offset_V = 0.0;  ///< or what a stuck converter puts out beside its word; while enabled
 
   firmware::boards::ValueAxis io;
   firmware::SupervisedAxis<float, firmware::boards::ValueAxis> axis{io};

@@ -61,7 +61,8 @@ TEST(FaultTable, NumbersAreFrozen) {
                                      "homing_index_not_found",
                                      "homing_travel_exceeded",
                                      "amplifier_not_ready",
-                                     "index_mismatch"};
+                                     "index_mismatch",
+                                     "moved_while_starting"};
   int number = 0;
   for (const char* name : kFrozen) {
     const auto& info = firmware::fault_info(static_cast<AxisFault>(number));

@@ -115,6 +115,13 @@ inline constexpr std::array kOthers = std::to_array<FaultInfo>({
      .cause = "the amplifier did not become ready after its enable, or was ready no longer, or its wire is broken",
      .remedy = "read the amplifier's own display; check the ready contact and its wire; check amplifier.ready_time",
      .reaction = FaultReaction::drop_enable},
+    {.fault = AxisFault::moved_while_starting,
+     .name = "moved_while_starting",
+     .cause = "the encoder moved while the amplifier had its enable and no loop was closed: the amplifier's offset, a "
+              "D/A output that is stuck, a brake that does not hold, or noise on the encoder",
+     .remedy =
+         "trim the amplifier's offset; measure the D/A output at 0 V; check the brake; check the encoder's shield",
+     .reaction = FaultReaction::drop_enable},
 });
 
 inline constexpr std::size_t kCount = [] {

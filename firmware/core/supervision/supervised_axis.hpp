@@ -13,6 +13,8 @@
 #include "firmware/core/supervision/drive_sequence.hpp"
 #include "firmware/core/supervision/fault_table.hpp"
 #include "firmware/core/supervision/index_monitor.hpp"
+#include "firmware/core/supervision/standstill.hpp"
+#include "firmware/core/supervision/stop_end.hpp"
 #include "firmware/core/supervision/supervised_check.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 
@@ -61,7 +63,7 @@ class SupervisedAxis {
   constexpr void excite(Scalar volts) { axis_.excite(volts); }
   /// Ready, and the encoder has stood for a while: a loop that closes on a moving axis would jerk it to a stop.
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands(); }
-  constexpr bool stands() const { return still_samples_ >= kStandingSamples; }
+  constexpr bool stands() const { return standstill_.stands(); }
   /// Slows down, then drops the enable.
   constexpr bool disable() { return is_enabled_or_starting() && request(SupervisorEvent::disable_request); }
   /// Forgets fault and capture; the self-test decides what comes next.
@@ -205,8 +207,6 @@ class SupervisedAxis {
  private:
   static constexpr bool kHasIndex =
       hal::IndexedEncoder<std::remove_reference_t<decltype(std::declval<Hal&>().encoder())>>;
-  static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
-  static constexpr std::int32_t kStandingSamples = 20;
   static constexpr std::int32_t kIndexSamples = 16;  ///< from one look at the index to the next
 
   constexpr Refusal take(const AxisParameters<Scalar>& parameters) {
@@ -224,7 +224,8 @@ class SupervisedAxis {
     const Increment sharpest =
         limits.acceleration < kMostMotion / 8 ? 8 * limits.acceleration : kMostMotion;  // corners
     largest_change_ = static_cast<std::uint32_t>(sharpest >> 32) + 2;
-    longest_stop_ = longest_ramp(limits) + kLongestSettling;
+    stop_end_.configure(limits);
+    standstill_.configure(monitors_.travel().play());
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
     advance_by(SupervisorEvent::configured);
@@ -236,17 +237,6 @@ class SupervisedAxis {
     if (!is_homed()) return;
     const TravelMonitor<Scalar>& travel = monitors_.travel();
     axis_.keep_inside(travel.min_counts() + travel.play(), travel.max_counts() - travel.play());
-  }
-
-  /// Within the play of a loop that holds its place, an axis stands.
-  constexpr void watch_standstill(const AxisTelemetry<Scalar>& seen) {
-    const std::int64_t way = seen.encoder_counts - still_at_;
-    const std::int64_t play = monitors_.travel().play();
-    ++still_samples_;
-    if (still_samples_ > kStandingSamples) still_samples_ = kStandingSamples;
-    if (way <= play && way >= -play) return;
-    still_at_ = seen.encoder_counts;
-    still_samples_ = 0;
   }
 
   /// Of the whole reference: the axis's own, as it was in the last sample, and the increment on top. By the upper
@@ -309,7 +299,8 @@ class SupervisedAxis {
   constexpr void count_from(std::int64_t origin) {
     axis_.set_home(origin);
     monitors_.forget_travel();
-    standing_at_ += origin;
+    standstill_.shift(origin);
+    stop_end_.shift(origin);
   }
 
   constexpr void begin_self_test() {
@@ -340,7 +331,7 @@ class SupervisedAxis {
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return sensors;
     if (!seen.enabled) {
-      watch_standstill(seen);
+      standstill_.watch(seen.encoder_counts);
       return monitors_.watch_rest(seen);
     }
     if (sequence_.parameters().ready_input && drive_unready_.filtered(!is_ready(hal_.drive_enable())))
@@ -358,8 +349,12 @@ class SupervisedAxis {
 
   constexpr void release_brake(bool released) { sequence_.release_brake(hal_.drive_enable(), released); }
 
-  /// Towards a closed loop and a released brake, while the state is starting.
+  /// Towards a closed loop and a released brake, while the state is starting. Until the loop is closed nothing may
+  /// move: an amplifier with an offset and a converter that is stuck drive the axis as soon as it has its enable.
   constexpr SupervisorEvents start_drive() {
+    const bool is_held = axis_.telemetry().enabled && !axis_.is_open_loop();
+    if (!is_held && standstill_.has_moved(axis_.telemetry().encoder_counts))
+      return latch(AxisFault::moved_while_starting) | SupervisorEvent::drop_fault;
     switch (sequence_.next_of_start(is_ready(hal_.drive_enable()), axis_.telemetry().enabled)) {
       case DriveStartStep::wait:
         break;
@@ -418,27 +413,21 @@ class SupervisedAxis {
   }
 
   constexpr bool has_stopped() {
-    if (is_braking_) return true;
-    if (++stopping_samples_ > longest_stop_) return true;
-    if (axis_.is_open_loop()) settling_samples_ = 0;  // nothing holds its place: it stands once it has come to rest
-    if (!axis_.is_at_rest()) {
-      settling_samples_ = standing_samples_ = 0;
-      return false;
-    }
-    const bool moves = axis_.telemetry().encoder_counts != standing_at_;
-    standing_at_ = axis_.telemetry().encoder_counts;
-    standing_samples_ = moves ? 0 : standing_samples_ + 1;
-    return standing_samples_ >= kStandingSamples || ++settling_samples_ >= kLongestSettling;
+    return is_braking_ ||
+           stop_end_.has_stopped(axis_.is_at_rest(), !axis_.is_open_loop(), axis_.telemetry().encoder_counts);
   }
 
   constexpr void enter(SupervisorState next) {
     if (next == state_) return;
     if (next == SupervisorState::starting && sequence_.starts_at_once()) next = SupervisorState::enabled;
+    if (next == SupervisorState::stopping && !axis_.telemetry().enabled)  // no loop that could slow it down
+      next = fault_ == AxisFault::none ? SupervisorState::ready : SupervisorState::fault;
     state_ = next;
     homing_.abandon();
     is_braking_ = false;
     if (next == SupervisorState::starting) {
       sequence_.begin();
+      standstill_.begin_start(axis_.telemetry().encoder_counts);
       axis_.energise();
     }
     if (next == SupervisorState::enabled) {
@@ -454,7 +443,7 @@ class SupervisedAxis {
         axis_.stop_interpolated();
       else
         axis_.stop();
-      settling_samples_ = standing_samples_ = stopping_samples_ = 0;
+      stop_end_.begin();
     }
     if (!outputs_are_on(state_)) {
       is_interpolated_ = limiting_.velocity_limited = false;
@@ -484,14 +473,9 @@ class SupervisedAxis {
   Increment led_increment_ = 0;
   bool is_led_ = false;
   bool is_guided_ = false;  ///< led, or looking for home: the next step may be another one
-  std::int64_t standing_at_ = 0;
   std::int32_t self_test_samples_ = 0;
-  std::int32_t settling_samples_ = 0;
-  std::int32_t standing_samples_ = 0;
-  std::int32_t stopping_samples_ = 0;
-  std::int32_t still_samples_ = 0;
-  std::int64_t still_at_ = 0;
-  std::int32_t longest_stop_ = 0;
+  Standstill standstill_;
+  StopEnd stop_end_;
   Axis<Scalar, Hal> axis_;  // the large tables come last: a load reaches no farther than 1 to 4 kB
   CaptureRing<Scalar> capture_;
 };

@@ -1,0 +1,48 @@
+// Whether an axis stands, by its encoder alone; and whether it has moved since its amplifier got the enable.
+#pragma once
+
+#include <cstdint>
+
+namespace firmware {
+
+class Standstill {
+ public:
+  static constexpr std::int32_t kSamples = 20;  ///< that an axis must stand for
+
+  /// `play`: counts within which a closed loop holds its place (TravelMonitor), >= 2. An axis that no loop holds has
+  /// an eighth of that: friction or the brake holds it, and it does not move at all.
+  constexpr void configure(std::int64_t play) {
+    play_ = play;
+    slack_ = 2 + (play - 2) / 8;
+  }
+
+  /// Each sample of an open loop.
+  constexpr void watch(std::int64_t counts) {
+    if (samples_ < kSamples) ++samples_;
+    if (is_within(counts, still_at_, play_)) return;
+    still_at_ = counts;
+    samples_ = 0;
+  }
+  constexpr bool stands() const { return samples_ >= kSamples; }
+
+  /// The amplifier gets its enable.
+  constexpr void begin_start(std::int64_t counts) { started_at_ = counts; }
+  constexpr bool has_moved(std::int64_t counts) const { return !is_within(counts, started_at_, slack_); }
+
+  /// Positions are counted from another origin now.
+  constexpr void shift(std::int64_t origin) {
+    still_at_ += origin;
+    started_at_ += origin;
+  }
+
+ private:
+  static constexpr bool is_within(std::int64_t counts, std::int64_t place, std::int64_t play) {
+    return counts - place <= play && place - counts <= play;
+  }
+
+  std::int64_t play_ = 2, slack_ = 2;
+  std::int64_t still_at_ = 0, started_at_ = 0;
+  std::int32_t samples_ = 0;
+};
+
+}  // namespace firmware

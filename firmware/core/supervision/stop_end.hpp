@@ -1,0 +1,44 @@
+// When a stopping axis has come to rest.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/motion/stopping_distance.hpp"
+#include "firmware/core/supervision/standstill.hpp"
+
+namespace firmware {
+
+/// A reference at rest, and the encoder's count unchanged for a while. An axis that swings about its place is given up
+/// after kLongestSettling, and one whose reference does not come to rest after twice its longest ramp.
+class StopEnd {
+ public:
+  static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
+
+  constexpr void configure(const MotionLimits& limits) { longest_ = longest_ramp(limits) + kLongestSettling; }
+
+  constexpr void begin() { settling_samples_ = standing_samples_ = samples_ = 0; }
+
+  /// Each sample after begin(). `is_held`: by a closed loop; what nothing holds stands once it has come to rest.
+  constexpr bool has_stopped(bool reference_at_rest, bool is_held, std::int64_t counts) {
+    if (++samples_ > longest_) return true;
+    if (!is_held) settling_samples_ = 0;
+    if (!reference_at_rest) {
+      settling_samples_ = standing_samples_ = 0;
+      return false;
+    }
+    const bool moves = counts != standing_at_;
+    standing_at_ = counts;
+    standing_samples_ = moves ? 0 : standing_samples_ + 1;
+    return standing_samples_ >= Standstill::kSamples || ++settling_samples_ >= kLongestSettling;
+  }
+
+  /// Positions are counted from another origin now.
+  constexpr void shift(std::int64_t origin) { standing_at_ += origin; }
+
+ private:
+  std::int64_t standing_at_ = 0;
+  std::int32_t settling_samples_ = 0, standing_samples_ = 0, samples_ = 0;
+  std::int32_t longest_ = 0;
+};
+
+}  // namespace firmware
