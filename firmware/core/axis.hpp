@@ -172,6 +172,9 @@ class Axis {
 
   /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
+    // A difference of positions has 64 bits; no reference stands as far out as this.
+    constexpr std::int64_t kFarthestTarget = std::int64_t{1} << 62;
+    if (target.counts > kFarthestTarget || target.counts < -kFarthestTarget) return {{}, Refusal::move_too_long};
     return plan_move(target - leading(), limits_);
   }
 

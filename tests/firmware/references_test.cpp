@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "firmware/core/arithmetic/count_position.hpp"
@@ -225,6 +226,20 @@ TEST(Move, OfNoDistanceIsOverAtOnce) {
 TEST(Move, ThatWouldTakeForeverIsRefused) {
   const MotionLimits slow{16, 16, 16};
   EXPECT_EQ(plan_move(CountPosition::at(1), slow).refusal, Refusal::move_too_long);
+}
+
+/// The negation of -2^63 overflows: a plan of it once divided by zero.
+TEST(Move, BeyondAllCountingIsRefused) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
+                         kMost = std::numeric_limits<std::int64_t>::max();
+  const MotionLimits fastest{kOneCount << 14, kOneCount, kOneCount >> 4};
+  ASSERT_EQ(check(fastest), Refusal::none);
+  for (const std::int64_t counts : {kLeast, kLeast + 1, kMost, kMost - 1, std::int64_t{1} << 62,
+                                    -(std::int64_t{1} << 62), std::int64_t{1} << 43, -(std::int64_t{1} << 43) - 1})
+    EXPECT_EQ(plan_move(CountPosition::at(counts), fastest).refusal, Refusal::move_too_long) << counts;
+  const std::int64_t far = std::int64_t{1} << 42;
+  EXPECT_EQ(plan_move(CountPosition::at(far), fastest).refusal, Refusal::none);
+  EXPECT_EQ(plan_move(CountPosition::at(-far), fastest).refusal, Refusal::none);
 }
 
 TEST(MotionLimits, AreCheckedOneByOne) {

@@ -31,6 +31,8 @@ struct MovePlanResult {
 
 namespace move_planning {
 
+inline constexpr std::int64_t kLongest = std::int64_t{1} << 29;  ///< N1, samples
+
 struct Division {
   Increment quotient;
   std::int64_t remainder;
@@ -87,13 +89,20 @@ constexpr bool is_admissible(const CountPosition& distance, std::int64_t N1, con
 
 }  // namespace move_planning
 
+/// Counts: the longest move at the highest velocity that limits may have. Nothing beyond can be planned, and the
+/// arithmetic of a plan has room for twice as much.
+inline constexpr std::int64_t kFarthestMove = move_planning::kLongest * (kMostMotion >> kFractionBits);
+
 /// The shortest plan, to within the rounding of its durations up to whole samples. `limits` have passed check(). Pure
 /// and bounded (some 60 trial durations), but it divides: run it outside the control interrupt.
 constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& limits) {
   using move_planning::Division;
   using move_planning::is_admissible;
+  using move_planning::kLongest;
   using move_planning::Ramp;
   MovePlan plan;
+  // Before the sign is turned: -2^63 has no opposite.
+  if (distance.counts >= kFarthestMove || distance.counts < -kFarthestMove) return {plan, Refusal::move_too_long};
   plan.negative = distance.counts < 0;
   if (plan.negative) distance = CountPosition{} - distance;
   if (distance == CountPosition{}) return {plan, Refusal::none};
@@ -101,7 +110,6 @@ constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& l
   // Spreading remainders adds at most one unit of velocity, two of acceleration and four of jerk.
   const MotionLimits reduced{
       .velocity = limits.velocity - 1, .acceleration = limits.acceleration - 2, .jerk = limits.jerk - 4};
-  constexpr std::int64_t kLongest = std::int64_t{1} << 29;
   std::int64_t admissible = 2;
   while (!is_admissible(distance, admissible, reduced)) {
     admissible *= 2;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "tests/firmware/app/board_on_a_bench.hpp"
@@ -157,6 +158,25 @@ TYPED_TEST(BoardMotion, MovesToItsTargetWhileTheHostIsHeard) {
   EXPECT_EQ(axis.state, kEnabled);
   EXPECT_NE(axis.flags & firmware::kAxisAtRest, 0);
   EXPECT_NEAR(static_cast<double>(axis.counts()), static_cast<double>(target), 2.0);
+}
+
+/// Moves by any count, of an axis that is homed and of one that is not: the board answers, and stays where it is.
+TYPED_TEST(BoardMotion, AMoveBeyondAllCountingIsRefused) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
+                         kMost = std::numeric_limits<std::int64_t>::max();
+  for (const bool is_homed : {true, false}) {
+    typename TestFixture::Bench bench;
+    bench.fit_and_enable_x();
+    if (!is_homed) bench.application.axes()[0].forget_home();
+    const std::int64_t before = bench.status().axis[0].counts();
+    for (const std::int64_t counts : {kLeast, kLeast + 1, kMost, kMost - 1, -(std::int64_t{1} << 62)}) {
+      EXPECT_NE(bench.ask(MessageType::move, firmware::MoveRequest::by(0, counts)).status, Status::ok) << counts;
+      EXPECT_NE(bench.ask(MessageType::move, firmware::MoveRequest::to(0, counts)).status, Status::ok) << counts;
+    }
+    bench.run(50);
+    EXPECT_EQ(bench.status().axis[0].counts(), before);
+    EXPECT_EQ(bench.status().axis[0].state, kEnabled);
+  }
 }
 
 /// Control periods of 1 ms from the last request to the beginning of the stop, and that it ends well.
