@@ -65,6 +65,8 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     if (header ~ /^(firmware|hal|host|sim|tests)\//) {
       if (!quoted) complain("include of <" header ">: our own headers stand in quotes")
       else if (!allowed(rule, header)) complain(rule " may not include \"" header "\"")
+    } else if (header == "fftw3.h" && path != "host/fourier.cpp") {
+      complain("include of <fftw3.h>: its planner is not re-entrant; call host/fourier.hpp, which locks it")
     } else if (quoted) {
       complain("include of \"" header "\": write the path from the root of the project")
     } else if (rule == "firmware/core/" && !(header in freestanding)) {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "host/compare/effort_residual.hpp"
 #include "host/evidence/period_search.hpp"
+#include "host/fourier.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {
@@ -22,7 +24,7 @@ Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set) {
     partition.define(static_cast<long>(band), span, "at frequencies " + span);
   }
   Prediction prediction;
-  std::vector<double> error, cosine, sine;
+  std::vector<double> error;
   for (const ComparedRecord& compared : set.records) {
     const PreparedRecord& prepared = compared.prepared;
     const ErrorFloor& floor = compared.floor;
@@ -30,32 +32,16 @@ Partition error_by_frequency(const sim::Drive& drive, const RecordSet& set) {
     for (std::size_t index = 0; index < prepared.windows.size(); index += set.stride) {
       const Window& window = prepared.windows[index];
       const std::size_t n = window.length;
-      if (cosine.size() != n) {
-        cosine.resize(n);
-        sine.resize(n);
-        for (std::size_t k = 0; k < n; ++k) {
-          const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
-          cosine[k] = std::cos(angle);
-          sine[k] = std::sin(angle);
-        }
-      }
       const auto spread = [&](const std::vector<double>& predicted, const std::vector<double>& measured, double unit) {
         error.resize(n);
         for (std::size_t k = 0; k < n; ++k)
           error[k] = (predicted[window.begin + 1 + k] - measured[window.begin + 1 + k]) / unit;
-        for (std::size_t line = 0; line <= n / 2; ++line) {
-          double real = 0.0, imaginary = 0.0;
-          for (std::size_t k = 0, at = 0; k < n; ++k) {
-            real += error[k] * cosine[at];
-            imaginary += error[k] * sine[at];
-            at += line;
-            if (at >= n) at -= n;
-          }
+        const std::vector<std::complex<double>> lines = spectrum_of(error);
+        for (std::size_t line = 0; line < lines.size(); ++line) {
           const double twice = line == 0 || 2 * line == n ? 1.0 : 2.0;  // the line of the negative frequency
           const double frequency_Hz = static_cast<double>(line) / (static_cast<double>(n) * prepared.period_s);
           const auto band = std::ranges::upper_bound(kEdges_Hz, frequency_Hz) - std::begin(kEdges_Hz) - 1;
-          partition.add(static_cast<long>(band), twice * (real * real + imaginary * imaginary) / static_cast<double>(n),
-                        twice);
+          partition.add(static_cast<long>(band), twice * std::norm(lines[line]) / static_cast<double>(n), twice);
         }
       };
       if (!floor.x.empty()) spread(prediction.x, prepared.record->x, floor.x[index]);

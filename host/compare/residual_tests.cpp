@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "host/evidence/period_search.hpp"
+#include "host/fourier.hpp"
 #include "host/report/text_format.hpp"
 #include "host/statistics.hpp"
 
@@ -190,6 +193,7 @@ struct Spectrum {
     const double period_s = half.samples.period_s;
     const auto length = static_cast<std::size_t>(std::lround(kSegment_s / period_s));
     power.assign(length / 2, 0.0);
+    const Values window = hann_window(length);
     Values series;
     for (std::size_t k = 0; k < half.value.size();) {
       const std::size_t record = half.samples.record[k], first = half.samples.slot[k];
@@ -199,7 +203,7 @@ struct Spectrum {
         series.back() = half.value[k];
       }
       for (std::size_t begin = 0; begin + length <= series.size(); begin += length / 2)
-        add(series.data() + begin, length);
+        add(std::span(series).subspan(begin, length), window);
     }
     const double total = std::accumulate(power.begin(), power.end(), 0.0);
     if (total > 0.0)
@@ -224,23 +228,11 @@ struct Spectrum {
   }
 
  private:
-  void add(const double* values, std::size_t length) {
-    Values windowed(length);
-    for (std::size_t k = 0; k < length; ++k)
-      windowed[k] =
-          values[k] *
-          (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length)));
-    for (std::size_t line = 0; line < power.size(); ++line) {
-      const double turn = 2.0 * std::numbers::pi * static_cast<double>(line) / static_cast<double>(length);
-      const double twice_cosine = 2.0 * std::cos(turn);  // Goertzel 1958
-      double last = 0.0, before = 0.0;
-      for (const double value : windowed) {
-        const double next = value + twice_cosine * last - before;
-        before = last;
-        last = next;
-      }
-      power[line] += last * last + before * before - twice_cosine * last * before;
-    }
+  void add(std::span<const double> values, const Values& window) {
+    Values windowed(values.size());
+    std::ranges::transform(values, window, windowed.begin(), std::multiplies<>());
+    const std::vector<std::complex<double>> lines = spectrum_of(windowed);
+    for (std::size_t line = 0; line < power.size(); ++line) power[line] += std::norm(lines[line]);
   }
 };
 

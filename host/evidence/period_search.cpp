@@ -1,14 +1,13 @@
 #include "host/evidence/period_search.hpp"
 
-#include <fftw3.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <memory>
-#include <mutex>
 #include <numbers>
+
+#include "host/fourier.hpp"
 
 namespace host {
 
@@ -21,19 +20,7 @@ std::vector<double> power_spectrum(const TravelSignal& signal, double origin, do
   std::vector<double> sums(cells, 0.0);
   for (std::size_t k = 0; k < signal.x.size(); ++k)
     sums[static_cast<std::size_t>((signal.x[k] - origin) / cell)] += signal.value[k] * signal.weight[k];
-  std::vector<std::complex<double>> spectrum(cells / 2 + 1);
-  static std::mutex planner;  // FFTW's planner is not re-entrant
-  fftw_plan plan = nullptr;
-  {
-    const std::lock_guard lock(planner);
-    plan = fftw_plan_dft_r2c_1d(static_cast<int>(cells), sums.data(), reinterpret_cast<fftw_complex*>(spectrum.data()),
-                                FFTW_ESTIMATE);
-  }
-  fftw_execute(plan);
-  {
-    const std::lock_guard lock(planner);
-    fftw_destroy_plan(plan);
-  }
+  const std::vector<std::complex<double>> spectrum = spectrum_of(sums);
   std::vector<double> power(spectrum.size());
   std::ranges::transform(spectrum, power.begin(), [](const std::complex<double>& value) { return std::norm(value); });
   return power;

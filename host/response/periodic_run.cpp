@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "host/exit_codes.hpp"
-#include "host/response/spectrum.hpp"
+#include "host/fourier.hpp"
 
 namespace host {
 

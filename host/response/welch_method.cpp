@@ -5,7 +5,7 @@
 #include <numbers>
 #include <span>
 
-#include "host/response/spectrum.hpp"
+#include "host/fourier.hpp"
 
 namespace host {
 
@@ -49,10 +49,7 @@ bool moves(const std::vector<double>& reference) {
 
 class Averages {
  public:
-  explicit Averages(std::size_t length) : window_(length), sums_(length / 2 + 1) {
-    for (std::size_t k = 0; k < length; ++k)
-      window_[k] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
-  }
+  explicit Averages(std::size_t length) : window_(hann_window(length)), sums_(length / 2 + 1) {}
 
   void add(const Record& record, bool is_indirect) {
     const std::vector<double> dx = increments(record.x);

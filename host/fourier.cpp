@@ -1,8 +1,10 @@
-#include "host/response/spectrum.hpp"
+#include "host/fourier.hpp"
 
 #include <fftw3.h>
 
+#include <cmath>
 #include <mutex>
+#include <numbers>
 
 namespace host {
 
@@ -22,6 +24,13 @@ std::vector<std::complex<double>> spectrum_of(std::span<const double> x) {
     fftw_destroy_plan(plan);
   }
   return out;
+}
+
+std::vector<double> hann_window(std::size_t length) {
+  std::vector<double> window(length);
+  for (std::size_t k = 0; k < length; ++k)
+    window[k] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
+  return window;
 }
 
 }  // namespace host
