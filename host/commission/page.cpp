@@ -7,11 +7,10 @@
 
 #include "host/commission/following.hpp"
 #include "host/commission/steps.hpp"
+#include "host/compare/residual_figures.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/compensation_parameters.hpp"
-#include "host/record/drive_units.hpp"
 #include "host/record/read_record.hpp"
-#include "host/report/binned_curve.hpp"
 #include "host/report/report.hpp"
 #include "host/report/text_format.hpp"
 #include "sim/catalogue.hpp"
@@ -84,11 +83,9 @@ std::vector<std::string> findings(const Page& page) {
     if (const sim::EffectInfo* info = sim::find_effect(kind))
       sentences.push_back(fmt::format("{}: {}. Usual origin: {}.", info->title, info->shows, info->origin));
   const auto& ladder = page.improvement["ladder"];
-  sentences.push_back(
-      fmt::format("The model predicts motions that it has not learnt from with an error of {} times the sensors' noise "
-                  "as it was, and of {} times with {}; 1 is perfect.",
-                  format_value(ladder.front()["validate"].get<double>()),
-                  format_value(ladder.back()["validate"].get<double>()), kinds.size() > 1 ? "these" : "this"));
+  sentences.push_back(fmt::format(
+      "The model's prediction error on validation data falls from {} to {} times what sensor noise leaves.",
+      format_value(ladder.front()["validate"].get<double>()), format_value(ladder.back()["validate"].get<double>())));
   return sentences;
 }
 
@@ -107,7 +104,7 @@ Verdict verdict_of(const Page& page) {
   verdict.tone = page.is_new() ? Tone::good : Tone::neutral;
   verdict.label = page.is_new() ? "error reduced" : "no gain";
   verdict.headline = fmt::format(
-      "Following error: {} µm before, {}; the best possible (floor) is {} µm. Cause: {}.", format_value(page.before()),
+      "Following error: {} µm before, {}; the noise floor is {} µm. Cause: {}.", format_value(page.before()),
       page.has_after() ? format_value(page.after()) + " µm after" : "stopped by the new parameters",
       format_value(page.floor()), page.cause());
   if (const std::string shares = shares_of_gain(page); !shares.empty()) verdict.sentences.push_back(shares);
@@ -141,11 +138,10 @@ std::string set_title(const Page& page, const std::string& name) {
 
 BarChart errors_chart(const Page& page) {
   BarChart chart;
-  chart.title = "The axis's own following error, µm RMS";
+  chart.title = "Following error of this axis, RMS";
   chart.caption =
-      "The same jogs with each set of parameters, twice (±: by how much the two differ). Base model: a controller "
-      "designed on inertia and friction alone. Floor: what differs from run to run, which no parameter mends. Once "
-      "both axes are commissioned, axistool run drives a circle and tells its contour error.";
+      "The same jogs twice with each set of parameters; ±: difference of the two runs. The noise floor is what differs "
+      "between equal runs: no parameter can reduce it. The base model holds inertia and friction alone.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
@@ -154,62 +150,63 @@ BarChart errors_chart(const Page& page) {
                             {set["rms_um"].get<double>()},
                             fmt::format("± {}{}", format_value(set["repeats_um"].get<double>()),
                                         set["name"] == page.errors["kept"] ? ", kept" : "")});
-  chart.rows.push_back({"floor", {page.floor()}, ""});
+  chart.rows.push_back({"noise floor", {page.floor()}, ""});
   return chart;
 }
 
-Facts model_facts(const Page& page) {
-  Facts facts;
-  facts.title = "The model's error in predicting motions, in multiples of the sensors' noise (1 is perfect)";
-  for (const auto& rung : page.improvement["ladder"]) {
-    const auto added = rung["added"].get<std::vector<std::string>>();
-    facts.items.emplace_back(added.empty() ? "as it was" : fmt::format("with {}", fmt::join(added, " + ")),
-                             format_value(rung["validate"].get<double>()));
-  }
-  return facts;
-}
-
-std::vector<double> travel_of(const Record& record) {
+/// A record's following error as a residual over the travel.
+ResidualEffort following_along(const Record& record, const sim::DataSheet& data) {
   const MovingRows rows = moving_rows(record);
-  return {record.x.begin() + static_cast<std::ptrdiff_t>(rows.begin),
-          record.x.begin() + static_cast<std::ptrdiff_t>(rows.end)};
+  ResidualEffort samples;
+  samples.missing = following_um(record, data);
+  for (std::size_t k = rows.begin; k < rows.end; ++k) {
+    samples.x.push_back(record.x[k]);
+    samples.w.push_back(record.x[std::min(k + 1, rows.end - 1)] - record.x[k > rows.begin ? k - 1 : k]);
+  }
+  return samples;
 }
 
-void add_pictures(Report& report, const Page& page, const std::vector<std::pair<const char*, const char*>>& runs) {
+void add_picture(Report& report, const Page& page, const std::vector<std::pair<const char*, const char*>>& runs) {
   const sim::DataSheet& data = page.session.options().sheet.data;
-  ScatterPlot along;
-  along.title = "Following error along the travel";
-  along.caption = "Mean in bins of the travel, with the spread from a tenth to nine tenths.";
-  along.x = {"travel", units_of(data.kind).travel};
-  along.y = {"reference less encoder", "µm"};
-  TimePlot over;
-  over.title = "Following error over time";
-  TracePanel panel{"reference less encoder", "µm", {}};
-  for (const auto& [file, name] : runs) {
-    const Record record = read_record(page.session.folder().path(file));
-    std::vector<double> error = following_um(record, data);
-    const SeriesRole role = std::string_view(name) == "before" ? SeriesRole::before : SeriesRole::after;
-    constexpr std::size_t kBins = 200;
-    along.series.push_back(curve_series(name, role, binned_curve(travel_of(record), error, kBins)));
-    if (over.t_s.empty())
-      for (std::size_t k = 0; k < error.size(); ++k)
-        over.t_s.push_back(static_cast<double>(k) * record.sample_period_s);
-    error.resize(over.t_s.size(), std::nan(""));
-    panel.traces.push_back({name, role, std::move(error)});
+  const double period = ripple_period(read_model(page.session.folder().require("improved.toml", "improve")));
+  std::vector<ResidualView> views;
+  for (const auto& [file, name] : runs)
+    views.push_back(
+        {name, SeriesRole::residual, following_along(read_record(page.session.folder().path(file)), data), {}});
+  add_residual_plot(report, coordinate_of("position", data.kind, period), "Along the travel",
+                    {"reference less encoder", "µm"}, views, &ResidualView::force, Layout::side_by_side);
+}
+
+/// "response-01.csv to response-09.csv" for files that count on.
+std::string files_in_words(const std::vector<std::string>& files) {
+  const auto stem_of = [](const std::string& file) {
+    return file.substr(0, file.find_last_not_of("0123456789", file.rfind('.') - 1) + 1);
+  };
+  std::vector<std::string> words;
+  for (std::size_t k = 0; k < files.size();) {
+    std::size_t end = k + 1;
+    const bool counts = files[k].rfind('.') != std::string::npos && stem_of(files[k]).size() < files[k].rfind('.');
+    while (counts && end < files.size() && stem_of(files[end]) == stem_of(files[k])) ++end;
+    words.push_back(end > k + 2 ? fmt::format("{} to {}", files[k], files[end - 1]) : files[k]);
+    k = end > k + 2 ? end : k + 1;
   }
-  over.panels.push_back(std::move(panel));
-  report.add(std::move(along));
-  report.add(std::move(over));
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 Table steps_table(const Page& page) {
   Table table;
   table.title = "Steps and their files";
   table.headings = {"step", "what was found", "files in the folder"};
-  for (const auto& step : page.state["steps"])
-    if (step.value("done", false))
-      table.rows.push_back({step["name"], step.value("said", ""),
-                            fmt::format("{}", fmt::join(step["files"].get<std::vector<std::string>>(), ", "))});
+  table.stacks = true;
+  const std::string explanation = page.state.at("verdict").at("explanation");
+  for (const auto& step : page.state["steps"]) {
+    if (!step.value("done", false)) continue;
+    std::string said = step.value("said", "");
+    // It stands at the top, or on the diagnosis's own page.
+    if (const std::size_t at = said.find(explanation); !explanation.empty() && at != std::string::npos)
+      said.erase(at, explanation.size());
+    table.rows.push_back({step["name"], said, files_in_words(step["files"].get<std::vector<std::string>>())});
+  }
   return table;
 }
 
@@ -239,10 +236,9 @@ CommissionStepResult write_page(CommissionSession& session) {
   report.verdict(verdict_of(page));
   report.section("Before and after, on the machine");
   report.add(errors_chart(page));
-  report.add(model_facts(page));
   std::vector<std::pair<const char*, const char*>> runs{{"before.csv", "before"}};
   if (page.has_after()) runs.emplace_back("after.csv", "after");
-  add_pictures(report, page, runs);
+  add_picture(report, page, runs);
   report.section("How it was found");
   report.add(pages_table(page));
   report.add(steps_table(page));

@@ -9,58 +9,14 @@
 #include <functional>
 #include <utility>
 
-#include "host/compare/effort_residual.hpp"
+#include "host/compare/residual_figures.hpp"
 #include "host/evidence/measured_sensors.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/record/record_origin.hpp"
-#include "host/report/binned_curve.hpp"
 
 namespace host {
-
-namespace {
-
-constexpr std::size_t kBins = 60;
-constexpr std::size_t kStride = 2;
-constexpr std::size_t kFewestSamples = 20;  // a mean of fewer tells of their noise
-
-ScatterSeries curve_of(const std::string& name, SeriesRole role, const std::vector<double>& x,
-                       const std::vector<double>& y) {
-  return curve_series(name, role, binned_curve(x, y, kBins, kFewestSamples));
-}
-
-/// One coordinate's values of each model's samples, and of what is drawn over it.
-using Channel = std::vector<double> ResidualSamples::*;
-
-ScatterPlot against(const std::string& title, Axis coordinate, Axis value, std::span<const ComparedModel> models,
-                    std::span<const ResidualSamples> samples, Channel along, Channel what) {
-  ScatterPlot plot;
-  plot.title = title;
-  plot.x = std::move(coordinate);
-  plot.y = std::move(value);
-  const auto add = [&plot](ScatterSeries series) {
-    if (!series.x.empty()) plot.series.push_back(std::move(series));
-  };
-  if (models.size() > 1) {
-    for (std::size_t m = 0; m < models.size(); ++m)
-      add(curve_of(models[m].name(), role_of_model(m), samples[m].*along, samples[m].*what));
-    return plot;
-  }
-  const ResidualSamples& all = samples.front();
-  for (const double sign : {1.0, -1.0}) {
-    std::vector<double> x, y;
-    for (std::size_t k = 0; k < all.w.size(); ++k) {
-      if (all.w[k] * sign <= 0.0) continue;
-      x.push_back((all.*along)[k]);
-      y.push_back((all.*what)[k]);
-    }
-    add(curve_of(sign > 0.0 ? "forward" : "backward", sign > 0.0 ? SeriesRole::residual : SeriesRole::other, x, y));
-  }
-  return plot;
-}
-
-}  // namespace
 
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
                            double window_s, const std::vector<std::string>& accepted) {
@@ -116,40 +72,25 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
 }
 
 void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
-  std::vector<ResidualSamples> samples;
-  for (const ComparedModel& one : models) samples.push_back(residual_samples(one.model, one.set, kStride));
-  const ResidualSamples& first = samples.front();
-  if (first.w.empty()) return;
-  const bool rotary = models.front().model.data.kind == sim::DriveKind::rotary;
-  const bool has_position = models.front().set.records.front().prepared.record->has_position();
-  const DriveUnits units = units_of(models.front().model.data.kind);
-  const Axis missing{rotary ? "missing torque" : "missing force", units.effort};
-  const std::string effort = rotary ? "torque" : "force";
-  const Axis speed{"speed", units.speed}, acceleration{"acceleration", units.acceleration};
+  const sim::DriveDescription& first = models.front().model;
+  std::vector<const sim::DriveDescription*> descriptions;
+  for (const ComparedModel& one : models) descriptions.push_back(&one.model);
+  std::vector<ResidualEffort> residuals = residuals_on(descriptions, models.front().set);
+  std::vector<ResidualView> views;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    views.push_back({models[m].name(), role_of_model(m), std::move(residuals[m]),
+                     residual_of_speed_channel(models[m].model, models[m].set)});
+  if (views.front().force.w.empty()) return;
+  const std::string effort = first.data.kind == sim::DriveKind::rotary ? "torque" : "force";
+  const double period = ripple_period(first);
   report.section(
       "What is missing, as " + effort,
-      "The " + effort +
-          " that the motion needed beyond what the model explains: mean in bins with the band "
-          "that holds 80 % of the samples" +
-          (models.size() == 1 ? ", by direction" : "") +
-          ". A missing effect shows as a curve against the coordinate that it depends on. Where there are no "
-          "samples the line breaks; the strip at the foot shows how many there are.");
-  const auto add = [&](const char* name, Axis axis, Channel along) {
-    report.add(against(fmt::format("Against {}", name), std::move(axis), missing, models, samples, along,
-                       &ResidualSamples::missing));
-  };
-  add("speed", speed, &ResidualSamples::w);
-  if (has_position) add("position", {"position", units.travel}, &ResidualSamples::x);
-  add("acceleration", acceleration, &ResidualSamples::acceleration);
-  add("time", {"time", "s"}, &ResidualSamples::t_s);
-  if (first.tach_error.size() != first.w.size() || !has_position) return;
-  report.section("What the tachometer adds",
-                 "Tachometer less what the model's tachometer reads at the encoder's speed.");
-  const Axis error{"tachometer error", units.speed};
-  report.add(
-      against("Against speed", speed, error, models, samples, &ResidualSamples::w, &ResidualSamples::tach_error));
-  report.add(against("Against acceleration", acceleration, error, models, samples, &ResidualSamples::acceleration,
-                     &ResidualSamples::tach_error));
+      fmt::format("The {} that the motion needed beyond the model's: mean in bins{}, forward and backward apart. A "
+                  "missing effect shows as a curve against the coordinate that it depends on. Where there are no "
+                  "samples the line breaks; the strip at the foot shows how many there are.",
+                  effort, models.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
+  add_residual_plots(report, views, first, period, Layout::overlaid);
+  if (models.size() == 1) add_residual_maps(report, views, first, period);
 }
 
 }  // namespace host

@@ -31,8 +31,7 @@ SeriesRole role_of_model(std::size_t index);
 /// Measured and predicted rows of one record, and the errors.
 TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record);
 
-/// What the motor gave beyond each model, against speed, position, acceleration and time; of one model by direction.
-/// The tachometer's error likewise, where there is one.
+/// The torque or force that each model lacks, as add_residual_plots() draws it; of one model as a map, too.
 void add_missing_effort(std::span<const ComparedModel> models, Report& report);
 
 }  // namespace host

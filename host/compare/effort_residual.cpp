@@ -32,6 +32,7 @@ ResidualSamples residual_samples(const sim::DriveDescription& model, const Prepa
     sim::DriveState here = state;
     here.x = 0.5 * (motion.x[k] + motion.x[k + 1]);
     here.w = w;
+    samples.row.push_back(k);
     samples.t_s.push_back(t_s);
     samples.x.push_back(here.x);
     samples.w.push_back(w);
@@ -47,6 +48,7 @@ ResidualSamples residual_samples(const sim::DriveDescription& model, const Recor
   ResidualSamples all;
   for (const ComparedRecord& compared : set.records) {
     const ResidualSamples part = residual_samples(model, compared.prepared, stride);
+    all.row.insert(all.row.end(), part.row.begin(), part.row.end());
     for (const auto channel :
          {&ResidualSamples::t_s, &ResidualSamples::x, &ResidualSamples::w, &ResidualSamples::acceleration,
           &ResidualSamples::effort, &ResidualSamples::missing, &ResidualSamples::tach_error})

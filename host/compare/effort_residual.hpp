@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "host/compare/comparison.hpp"
+#include "host/compare/residual_effort.hpp"
 
 namespace host {
 
 /// Samples of a record that move, thinned; all vectors of one length.
 struct ResidualSamples {
+  std::vector<std::size_t> row;  ///< of its record
   std::vector<double> t_s;
   std::vector<double> x;             ///< smoothed travel, mm or m
   std::vector<double> w;             ///< smoothed speed, rad/s or m/s
@@ -25,5 +27,9 @@ ResidualSamples residual_samples(const sim::DriveDescription& model, const Prepa
 
 /// Of all records of a set, one after the other.
 ResidualSamples residual_samples(const sim::DriveDescription& model, const RecordSet& set, std::size_t stride);
+
+/// The same in averages at the samples of residual_effort(), for models that have an inverse (has_inverse): exact, where
+/// a prediction drifts from the measured motion and meets another friction.
+ResidualEffort residual_of_inverse(const sim::DriveDescription& model, const RecordSet& set);
 
 }  // namespace host

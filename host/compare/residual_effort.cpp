@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "host/compare/effort_residual.hpp"
+
 namespace host {
 
 namespace {
@@ -45,15 +47,25 @@ double mean_of(const std::vector<double>& values, std::size_t row, std::size_t s
   return sum / static_cast<double>(step);
 }
 
-enum class Beyond { motion, speed_channel };
+enum class Beyond { motion, inverse_model, speed_channel };
+
+/// What each row's measured motion needed beyond the model; NaN where the axis stands or turns.
+std::vector<double> missing_by_row(const sim::DriveDescription& model, const PreparedRecord& prepared) {
+  std::vector<double> missing(prepared.record->size(), std::nan(""));
+  const ResidualSamples samples = residual_samples(model, prepared, 1);
+  for (std::size_t k = 0; k < samples.row.size(); ++k) missing[samples.row[k]] = samples.missing[k];
+  return missing;
+}
 
 /// Appends the averages of one record.
-void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedRecord& prepared, std::size_t index,
-            const Prediction& prediction, std::size_t first_window, bool with_temperature, Beyond what,
-            ResidualEffort& out) {
+void append(const sim::Drive& drive, const sim::DriveDescription& model, const PreparedRecord& prepared,
+            std::size_t index, const Prediction& prediction, std::size_t first_window, bool with_temperature,
+            Beyond what, ResidualEffort& out) {
   const Record& record = *prepared.record;
   const SmoothedMotion& motion = prepared.motion();
-  const History history(motion, data.encoder_resolution, prepared.period_s);
+  const History history(motion, model.data.encoder_resolution, prepared.period_s);
+  const std::vector<double> missing =
+      what == Beyond::inverse_model ? missing_by_row(model, prepared) : std::vector<double>{};
   const std::size_t step =
       std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(out.period_s / prepared.period_s)));
   const double step_s = static_cast<double>(step) * prepared.period_s;
@@ -77,12 +89,15 @@ void append(const sim::Drive& drive, const sim::DataSheet& data, const PreparedR
       const double bend = beyond(row + step) - 2.0 * beyond(row) + beyond(row - step);
       const double slope = 0.5 * (beyond(row + step) - beyond(row - step));
       const double acceleration = by_position ? bend / (step_s * step_s * drive.lead) : slope / step_s;
+      const double inverse = what == Beyond::inverse_model ? mean_of(missing, row, step) : 0.0;
+      if (std::isnan(inverse)) continue;
       out.record.push_back(index);
       out.slot.push_back(row / step);
       out.window.push_back(first_window + place);
       out.missing.push_back(what == Beyond::speed_channel
                                 ? mean_of(record.w, row, step) - drive.tachometer(motion_at(row))
-                                : drive.inertia * acceleration);
+                            : what == Beyond::inverse_model ? inverse
+                                                            : drive.inertia * acceleration);
       out.t_s.push_back(record.t_s[row] - record.t_s.front());
       out.x.push_back(motion.x[row]);
       out.w.push_back(motion.w[row]);
@@ -126,7 +141,7 @@ ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set
   for (std::size_t r = 0; r < set.records.size(); ++r) {
     const PreparedRecord prepared = in_long_windows(set.records[r].prepared);
     predict(drive, prepared, prediction);
-    append(drive, model.data, prepared, r, prediction, windows, with_temperature, what, residual);
+    append(drive, model, prepared, r, prediction, windows, with_temperature, what, residual);
     windows += prepared.windows.size();
   }
   return residual;
@@ -136,6 +151,10 @@ ResidualEffort residual(const sim::DriveDescription& model, const RecordSet& set
 
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set) {
   return residual(model, set, Beyond::motion);
+}
+
+ResidualEffort residual_of_inverse(const sim::DriveDescription& model, const RecordSet& set) {
+  return residual(model, set, Beyond::inverse_model);
 }
 
 ResidualEffort residual_of_speed_channel(const sim::DriveDescription& model, const RecordSet& set) {

@@ -5,96 +5,143 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
-#include "host/compare/effort_residual.hpp"
+#include "host/compare/residual_figures.hpp"
+#include "host/diagnose/claim.hpp"
 #include "host/record/drive_units.hpp"
-#include "host/report/binned_curve.hpp"
 #include "host/report/text_format.hpp"
+#include "sim/catalogue.hpp"
 
 namespace host {
 
 namespace {
 
-/// Samples of all validation records, thinned to what curves of a hundred bins need.
-ResidualSamples residuals_on(const sim::DriveDescription& model, const RecordSet& set) {
-  constexpr std::size_t kEnough = 30'000;
-  std::size_t rows = 0;
-  for (const ComparedRecord& compared : set.records) rows += compared.prepared.record->size();
-  return residual_samples(model, set, 1 + rows / kEnough);
+/// The period of the model's ripples, else that of the likeliest candidate that has one, else a turn of the shaft.
+double period_of(const sim::DriveDescription& model, const Diagnosis& diagnosis) {
+  const auto has_period = [](const sim::EffectEntry& entry) { return entry.has("period"); };
+  if (std::ranges::none_of(model.effects, has_period))
+    for (const JudgedCandidate& candidate : diagnosis.candidates)
+      if (has_period(candidate.model.effects.back())) return candidate.model.effects.back().at("period");
+  return ripple_period(model);
 }
 
-ScatterSeries curve(const std::string& name, SeriesRole role, const std::vector<double>& x,
-                    const std::vector<double>& y) {
-  constexpr std::size_t kMostBins = 160, kFewestBins = 8, kSamplesABin = 40, kFewestSamples = 20;
-  const std::size_t bins = std::clamp(x.size() / kSamplesABin, kFewestBins, kMostBins);
-  return curve_series(name, role, binned_curve(x, y, bins, kFewestSamples));
-}
-
-ScatterPlot before_and_after(const std::string& title, const std::string& caption, const Axis& x, const Axis& y,
-                             const std::vector<double>& before_x, const std::vector<double>& before_y,
-                             const std::vector<double>& after_x, const std::vector<double>& after_y) {
-  ScatterPlot plot;
-  plot.title = title;
-  plot.caption = caption;
-  plot.x = x;
-  plot.y = y;
-  plot.series = {curve("before", SeriesRole::before, before_x, before_y),
-                 curve("after", SeriesRole::after, after_x, after_y)};
-  return plot;
-}
-
-/// Position modulo the period of the effect that was found, or one motor turn.
-std::vector<double> folded(const std::vector<double>& x, double period) {
-  std::vector<double> result;
-  for (const double value : x) result.push_back(value - period * std::floor(value / period));
-  return result;
-}
-
-/// The model's period along the travel, else that of the likeliest candidate that has one, else a turn of the shaft.
-std::optional<double> period_of(const sim::DriveDescription& model, const Diagnosis& diagnosis) {
-  for (const sim::EffectEntry& entry : model.effects)
-    if (entry.has("period")) return entry.at("period");
-  for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (const sim::EffectEntry& last = candidate.model.effects.back(); last.has("period")) return last.at("period");
-  constexpr double kTurn_rad = 6.283185307179586;
-  if (model.data.kind == sim::DriveKind::linear) return {};
-  return kTurn_rad * model.data.lead;
+std::vector<std::string> titles_of(const std::vector<std::string>& kinds) {
+  std::vector<std::string> titles;
+  for (const std::string& kind : kinds) titles.emplace_back(sim::find_effect(kind)->title);
+  return titles;
 }
 
 }  // namespace
 
-void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {
-  const DriveUnits units = units_of(best.data.kind);
-  const ResidualSamples before = residuals_on(diagnosis.base, diagnosis.validation);
-  const ResidualSamples after = residuals_on(best, diagnosis.validation);
-  report.section(
-      "Where it shows",
-      "What the motor gave beyond what the model explains, on validation data, averaged over each coordinate, with "
-      "the band that holds 80 % of the samples. A flat line at zero is what a complete model leaves. Where there are "
-      "no samples the line breaks; the strip at the foot shows how many there are.");
-  const auto add = [&report](ScatterPlot plot) {
-    if (std::ranges::any_of(plot.series, [](const ScatterSeries& series) { return series.x.size() < 2; })) return;
-    report.add(std::move(plot));
-  };
-  const Axis effort{"unexplained effort", units.effort};
-  add(before_and_after("Against speed", "", {"speed", units.speed}, effort, before.w, before.missing, after.w,
-                       after.missing));
-  if (const std::optional<double> period = period_of(best, diagnosis))
-    add(before_and_after(fmt::format("Against position within one period of {:.4g} {}", *period, units.travel), "",
-                         {"position in the period", units.travel}, effort, folded(before.x, *period), before.missing,
-                         folded(after.x, *period), after.missing));
-  add(before_and_after("Along the travel", "", {"position", units.travel}, effort, before.x, before.missing, after.x,
-                       after.missing));
-  add(before_and_after("Against acceleration", "", {"acceleration", units.acceleration}, effort, before.acceleration,
-                       before.missing, after.acceleration, after.missing));
-  add(before_and_after("Over time", "", {"time since start", "s"}, effort, before.t_s, before.missing, after.t_s,
-                       after.missing));
-  if (!before.tach_error.empty())
-    add(before_and_after("Tachometer against speed", "Tachometer less the speed from the encoder.",
-                         {"speed", units.speed}, {"tachometer error", units.speed}, before.w, before.tach_error,
-                         after.w, after.tach_error));
+void add_found(Report& report, const std::vector<FoundEffect>& found, bool rivals) {
+  if (found.empty()) return;
+  report.section(rivals ? "What it could be" : "What was found",
+                 rivals ? "These records cannot tell these effects apart." : "");
+  for (const FoundEffect& effect : found) report.add(effect_plot(effect));
+}
+
+void add_unexplained(Report& report, const Diagnosis& diagnosis) {
+  const std::string& coordinate = diagnosis.verdict.coordinate;
+  if (coordinate.empty() || coordinate == "frequency") return;
+  const sim::DriveKind kind = diagnosis.best.data.kind;
+  const ResidualEffort samples =
+      residuals_on({&diagnosis.best}, together(diagnosis.training, diagnosis.validation)).front();
+  const ResidualCoordinate over = coordinate_of(coordinate, kind, period_of(diagnosis.best, diagnosis));
+  if ((samples.*over.along).size() != samples.w.size() || samples.w.empty()) return;
+  ScatterPlot plot;
+  plot.title = fmt::format("Unexplained residual against {}", over.axis.quantity);
+  plot.caption = fmt::format("What is left on training and validation data, most of it {}.", diagnosis.verdict.where);
+  plot.large = true;
+  plot.x = over.axis;
+  plot.y = {kind == sim::DriveKind::rotary ? "torque residual" : "force residual", units_of(kind).effort};
+  plot.logarithmic_x = over.logarithmic;
+  for (ScatterSeries& curve : direction_curves(samples, samples.missing, over))
+    if (!curve.x.empty()) plot.series.push_back(std::move(curve));
+  if (plot.series.empty()) return;
+  report.section("What is left");
+  report.add(std::move(plot));
+}
+
+std::vector<std::string> remedies(const std::vector<std::string>& kinds) {
+  std::vector<std::string> sentences;
+  for (const std::string& kind : kinds) {
+    const sim::EffectInfo& info = *sim::find_effect(kind);
+    if (!info.remedy.empty()) sentences.push_back(fmt::format("{}, what to do: {}.", info.title, info.remedy));
+  }
+  return sentences;
+}
+
+namespace {
+
+/// A channel's column in the units of its error.
+struct ShownChannel {
+  const char *quantity, *unit;
+  double factor;
+};
+
+ShownChannel shown_channel(const std::string& column) {
+  if (column == "x_mm") return {"position", "µm", 1e3};
+  if (column == "x_m") return {"position", "µm", 1e6};
+  if (column == "v_m_s") return {"speed", "mm/s", 1e3};
+  if (column == "effort_Nm") return {"torque", "Nm", 1.0};
+  if (column == "effort_N") return {"force", "N", 1.0};
+  return {"speed", "rad/s", 1.0};
+}
+
+std::string change_in_percent(const ChannelError& channel) {
+  return fmt::format("{:+.0f} %", 100.0 * (channel.after_validate / channel.before_validate - 1.0));
+}
+
+}  // namespace
+
+Table error_table(const std::vector<ChannelError>& channels, bool added) {
+  Table table;
+  table.title = "Error on validation data";
+  table.caption = "RMS of the prediction error.";
+  table.headings = added ? std::vector<std::string>{"channel", "before", "after", "change", "noise floor"}
+                         : std::vector<std::string>{"channel", "error", "noise floor"};
+  for (const ChannelError& channel : channels) {
+    const ShownChannel shown = shown_channel(channel.name);
+    const auto text = [&](double value) { return format_value(shown.factor * value) + " " + shown.unit; };
+    std::vector<std::string> row{shown.quantity, text(channel.before_validate)};
+    if (added) {
+      row.push_back(text(channel.after_validate));
+      row.push_back(change_in_percent(channel));
+    }
+    row.push_back(text(channel.floor_validate));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string errors_in_words(const std::vector<ChannelError>& channels) {
+  std::vector<std::string> words;
+  for (const ChannelError& channel : channels) {
+    if (!(channel.before_validate > 0.0)) continue;
+    const ShownChannel shown = shown_channel(channel.name);
+    words.push_back(
+        fmt::format("{} error {} → {} {} ({})", shown.quantity, format_value(shown.factor * channel.before_validate),
+                    format_value(shown.factor * channel.after_validate), shown.unit, change_in_percent(channel)));
+  }
+  return words.empty() ? "" : fmt::format("On validation data: {}.", fmt::join(words, ", "));
+}
+
+void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best, bool added) {
+  const RecordSet& set = diagnosis.validation;
+  std::vector<ResidualEffort> residuals = residuals_on({&diagnosis.base, &best}, set);
+  std::vector<ResidualView> views{{added ? "before" : "", SeriesRole::before, std::move(residuals.front()),
+                                   residual_of_speed_channel(diagnosis.base, set)}};
+  if (added)
+    views.push_back({"after", SeriesRole::after, std::move(residuals.back()), residual_of_speed_channel(best, set)});
+  if (views.front().force.w.empty()) return;
+  const double period = period_of(best, diagnosis);
+  report.section(added ? "Residual before and after" : "Residual",
+                 "What the model leaves unexplained on validation data: mean in bins with the band that holds 80 % of "
+                 "the samples, forward and backward apart. A complete model leaves a flat line at zero. Where there "
+                 "are no samples the line breaks; the strip at the foot shows how many there are.");
+  add_residual_maps(report, views, best, period);
+  add_residual_plots(report, views, best, period, Layout::side_by_side);
 }
 
 namespace {
@@ -134,7 +181,7 @@ void add_whiteness(Report& report, const Diagnosis& diagnosis) {
   report.add(table);
 }
 
-void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best) {
+void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDescription& best, bool added) {
   const DriveUnits units = units_of(best.data.kind);
   const ComparedRecord& compared = diagnosis.validation.records.front();
   const Record& record = *compared.prepared.record;
@@ -149,44 +196,94 @@ void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDesc
         values[k] = less == nullptr ? predicted[k] : (*less)[k] - predicted[k];
     return values;
   };
+  const auto errors = [&](const std::vector<double>& first, const std::vector<double>& last,
+                          const std::vector<double>& measured, double factor) {
+    const auto in_unit = [factor](std::vector<double> values) {
+      for (double& value : values) value *= factor;
+      return values;
+    };
+    if (!added) return std::vector<TimeTrace>{{"error", SeriesRole::residual, in_unit(shown(first, &measured))}};
+    return std::vector<TimeTrace>{{"before", SeriesRole::before, in_unit(shown(first, &measured))},
+                                  {"after", SeriesRole::after, in_unit(shown(last, &measured))}};
+  };
   TimePlot plot;
   plot.title = "Measured and predicted";
-  plot.caption = fmt::format("Prediction from the command alone, restarted every {:g} s from the smoothed measurement.",
-                             diagnosis.window_s);
+  plot.caption =
+      fmt::format("The prediction follows from the command alone and restarts from the measurement every {:g} s.",
+                  diagnosis.window_s);
   plot.t_s = record.t_s;
   if (record.has_speed()) {
     plot.panels.push_back({"speed",
                            units.speed,
                            {{"measured", SeriesRole::measured, record.w},
                             {"predicted", SeriesRole::predicted, shown(after.w, nullptr)}}});
-    plot.panels.push_back({"speed error",
-                           units.speed,
-                           {{"before", SeriesRole::before, shown(before.w, &record.w)},
-                            {"after", SeriesRole::after, shown(after.w, &record.w)}}});
+    plot.panels.push_back({"speed error", units.speed, errors(before.w, after.w, record.w, 1.0)});
   }
   if (record.has_position())
-    plot.panels.push_back({"position error",
-                           units.travel,
-                           {{"before", SeriesRole::before, shown(before.x, &record.x)},
-                            {"after", SeriesRole::after, shown(after.x, &record.x)}}});
+    plot.panels.push_back(
+        {"position error", "µm", errors(before.x, after.x, record.x, 1e3 * travel_in_mm(best.data.kind))});
   report.section("Measured and predicted", fmt::format("Validation record {}.", record.path));
   report.add(plot);
 }
 
-BarChart candidate_chart(const Diagnosis& diagnosis) {
+namespace {
+
+/// Whether it lowers the error on both sets by what counts as a gain.
+bool changes_something(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  return candidate.after < (1.0 - kLeastGain) * candidate.before &&
+         candidate.train_after < (1.0 - kLeastGain) * diagnosis.before_train;
+}
+
+/// Whether the verdict names it, or names it as what these records cannot tell from what it names.
+bool is_named(const JudgedCandidate& candidate, const DiagnosisVerdict& verdict) {
+  if (verdict.effects.empty()) return false;
+  return std::ranges::all_of(candidate.kinds, [&](const std::string& kind) {
+    return std::ranges::find(verdict.effects, kind) != verdict.effects.end() ||
+           std::ranges::any_of(verdict.alternatives, [&](const std::vector<std::string>& group) {
+             return std::ranges::find(group, kind) != group.end();
+           });
+  });
+}
+
+/// Effects in the candidate that the verdict names: rivals stand in place of one another, not beside it.
+std::size_t chosen_size(const DiagnosisVerdict& verdict) {
+  return verdict.status == Status::ambiguous ? 1 : verdict.effects.size();
+}
+
+BarChart chart_of(const std::string& title, const std::string& caption) {
   BarChart chart;
-  chart.title = "Candidates on validation data";
-  chart.caption = "Error over floor with the effect added and all parameters fitted again; shorter is better.";
+  chart.title = title;
+  chart.caption = caption;
   chart.series = {{"without", SeriesRole::before}, {"with", SeriesRole::after}};
-  chart.reference = {"floor", 1.0};
-  constexpr std::size_t kShown = 10;
-  for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
-    const JudgedCandidate& candidate = diagnosis.candidates[k];
-    chart.rows.push_back({fmt::format("{}", fmt::join(candidate.kinds, " + ")),
+  chart.reference = {"noise floor", 1.0};
+  return chart;
+}
+
+}  // namespace
+
+void add_candidates(Report& report, const Diagnosis& diagnosis) {
+  const DiagnosisVerdict& verdict = diagnosis.verdict;
+  const bool tied = !verdict.alternatives.empty();
+  BarChart named = chart_of(
+      tied ? "These records cannot tell these apart" : "What explains the error",
+      "Error on validation data in multiples of the noise floor, all parameters fitted again; shorter is better.");
+  BarChart others = chart_of("Other effects that lower the error", "");
+  BarChart rest = chart_of("", "They lower the error on training or validation data by less than 5 %.");
+  constexpr std::size_t kMostOthers = 8;
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    BarChart& chart = is_named(candidate, verdict) && candidate.kinds.size() == chosen_size(verdict) ? named
+                      : changes_something(candidate, diagnosis)                                      ? others
+                                                                                                     : rest;
+    if (&chart == &others && others.rows.size() == kMostOthers) continue;
+    chart.rows.push_back({fmt::format("{}", fmt::join(titles_of(candidate.kinds), " + ")),
                           {candidate.before, candidate.after},
                           fmt::format("{:.0f} % probable", 100.0 * candidate.probability)});
   }
-  return chart;
+  if (rest.rows.size() == 1) rest.title = "One effect that was tried changes nothing";
+  if (rest.rows.size() > 1) rest.title = fmt::format("{} effects that were tried change nothing", rest.rows.size());
+  rest.folded = true;
+  for (BarChart* chart : {&named, &others, &rest})
+    if (!chart->rows.empty()) report.add(std::move(*chart));
 }
 
 }  // namespace host

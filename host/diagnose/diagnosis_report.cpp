@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "host/diagnose/diagnosis_figures.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/report/report.hpp"
@@ -12,7 +14,7 @@ namespace host {
 
 namespace {
 
-Verdict verdict_block(const Diagnosis& diagnosis) {
+Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>& found) {
   const DiagnosisVerdict& verdict = diagnosis.verdict;
   Verdict block;
   const bool good = verdict.status == Status::adequate;
@@ -48,42 +50,71 @@ Verdict verdict_block(const Diagnosis& diagnosis) {
   }
   for (const LogFault& fault : diagnosis.log)
     block.sentences.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
+  const bool ambiguous = verdict.status == Status::ambiguous;
+  for (const FoundEffect& effect : found)
+    block.sentences.push_back(fmt::format("{}{}.", ambiguous ? "If it is " : "", size_in_words(effect)));
+  if (!found.empty()) block.sentences.push_back(errors_in_words(diagnosis.channels));
   block.sentences.push_back(verdict.explanation);
+  block.sentences.emplace_back(kNoiseFloorMeans);
   block.sentences.push_back("Next: " + verdict.next_experiment);
-  if (!diagnosis.not_searched.empty())
-    block.sentences.push_back(fmt::format("Not searched to the end, their fits used up what a fit may simulate: {}.",
+  // A search that ended early says nothing against what leaves no more than noise.
+  const bool is_explained = !verdict.effects.empty() && diagnosis.after_validate <= kExplained;
+  if (!diagnosis.not_searched.empty() && !is_explained)
+    block.sentences.push_back(fmt::format("Search incomplete (simulation budget exhausted) for: {}.",
                                           fmt::join(diagnosis.not_searched, ", ")));
-  if (!verdict.effects.empty())
-    block.sentences.push_back("What to do about it: " + std::string(sim::find_effect(verdict.effects.front())->remedy));
+  for (std::string& remedy : remedies(verdict.effects)) block.sentences.push_back(std::move(remedy));
   return block;
 }
 
 void add_errors(Report& report, const Diagnosis& diagnosis) {
   BarChart chart;
-  chart.title = "Error over floor";
-  chart.caption = "1 is what sensor noise and the restart leave to a perfect model.";
+  chart.title = "Error in multiples of the noise floor";
+  chart.caption = "All channels together.";
   chart.series = {{"train", SeriesRole::train}, {"validation", SeriesRole::validate}};
-  chart.reference = {"floor", 1.0};
+  chart.reference = {"noise floor", 1.0};
   chart.rows = {{"model as given", {diagnosis.given_train, diagnosis.given_validate}, ""},
                 {"base re-fitted", {diagnosis.before_train, diagnosis.before_validate}, ""}};
   if (!diagnosis.verdict.effects.empty())
     chart.rows.push_back({fmt::format("+ {}", fmt::join(diagnosis.verdict.effects, ", ")),
                           {diagnosis.after_train, diagnosis.after_validate},
                           ""});
+  report.add(error_table(diagnosis.channels, !diagnosis.verdict.effects.empty()));
   report.add(chart);
+}
+
+/// What the verdict names, each in its best model; where it cannot tell several apart, each of those.
+std::vector<FoundEffect> found_by(const Diagnosis& diagnosis) {
+  const DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (verdict.status != Status::ambiguous) return found_effects(diagnosis.best, verdict.effects, diagnosis);
+  std::vector<FoundEffect> found;
+  for (const JudgedCandidate& candidate : diagnosis.candidates) {
+    const bool is_rival = candidate.kinds.size() == 1 &&
+                          std::ranges::find(verdict.effects, candidate.kinds.front()) != verdict.effects.end();
+    if (!is_rival) continue;
+    for (FoundEffect& effect : found_effects(candidate.model, candidate.kinds, diagnosis))
+      found.push_back(std::move(effect));
+  }
+  return found;
 }
 
 }  // namespace
 
 void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name, const std::string& path) {
+  const bool added = !diagnosis.verdict.effects.empty();
+  const std::vector<FoundEffect> found = found_by(diagnosis);
   Report report("Diagnosis of " + model_name, "Which physical effect is missing from the model");
-  report.verdict(verdict_block(diagnosis));
+  report.verdict(verdict_block(diagnosis, found));
+  add_found(report, found, diagnosis.verdict.status == Status::ambiguous);
+  if (diagnosis.verdict.status == Status::unexplained) add_unexplained(report, diagnosis);
   report.section("How large the error is", "");
   add_errors(report, diagnosis);
-  if (!diagnosis.candidates.empty()) report.add(candidate_chart(diagnosis));
-  add_residuals(report, diagnosis, diagnosis.best);
+  if (!diagnosis.candidates.empty()) {
+    report.section("What was tried");
+    add_candidates(report, diagnosis);
+  }
+  add_residuals(report, diagnosis, diagnosis.best, added);
   add_whiteness(report, diagnosis);
-  add_traces(report, diagnosis, diagnosis.best);
+  add_traces(report, diagnosis, diagnosis.best, added);
   report.write(path);
 }
 

@@ -21,16 +21,33 @@ std::string join_words(const std::vector<std::string>& words) {
   return text;
 }
 
-/// "18.6 → 0.78 × floor"; empty where nothing could be judged.
+/// "18.6 → 0.78 × noise floor"; empty where nothing could be judged.
 std::string fall(const Improvement& improvement) {
   const double before = improvement.first.given_validate, after = improvement.ladder.back().validate;
   if (!(before > 0.0) || !std::isfinite(before) || !std::isfinite(after)) return "";
-  return fmt::format("{} → {} × floor", format_value(before), format_value(after));
+  return fmt::format("{} → {} × noise floor", format_value(before), format_value(after));
+}
+
+std::vector<std::string> added_kinds(const Improvement& improvement) {
+  std::vector<std::string> added;
+  for (const Rung& rung : improvement.ladder) added.insert(added.end(), rung.added.begin(), rung.added.end());
+  return added;
+}
+
+/// Errors of the base re-fitted beside those of the last step.
+std::vector<ChannelError> channels_of(const Improvement& improvement) {
+  std::vector<ChannelError> channels = improvement.ladder.back().channels;
+  for (ChannelError& channel : channels)
+    for (const ChannelError& first : improvement.ladder.front().channels)
+      if (first.name == channel.name) {
+        channel.before_train = first.after_train;
+        channel.before_validate = first.after_validate;
+      }
+  return channels;
 }
 
 std::string headline(const Improvement& improvement) {
-  std::vector<std::string> added;
-  for (const Rung& rung : improvement.ladder) added.insert(added.end(), rung.added.begin(), rung.added.end());
+  const std::vector<std::string> added = added_kinds(improvement);
   if (!added.empty()) return fmt::format("{} by adding {}", fall(improvement), join_words(added));
   switch (improvement.verdict.status) {
     case Status::adequate:
@@ -78,10 +95,10 @@ Verdict improvement_verdict(const Improvement& improvement, const ImprovementFil
 
 BarChart ladder_chart(const Improvement& improvement) {
   BarChart chart;
-  chart.title = "The ladder";
-  chart.caption = "Error over floor, rung by rung. 1 is what sensor noise and the restart leave to a perfect model.";
+  chart.title = "Error after each step";
+  chart.caption = "In multiples of the noise floor.";
   chart.series = {{"train", SeriesRole::train}, {"validation", SeriesRole::validate}};
-  chart.reference = {"floor", 1.0};
+  chart.reference = {"noise floor", 1.0};
   chart.rows = {{"as given", {improvement.first.given_train, improvement.first.given_validate}, ""}};
   for (const Rung& rung : improvement.ladder)
     chart.rows.push_back({rung.added.empty() ? "base re-fitted" : fmt::format("+ {}", fmt::join(rung.added, " + ")),
@@ -93,12 +110,27 @@ BarChart ladder_chart(const Improvement& improvement) {
 void write_improvement_report(const Improvement& improvement, const ImprovementFiles& files, const std::string& path) {
   Report report("Improvement of " + std::filesystem::path(files.model).filename().string(),
                 fmt::format("{} → {}", files.model, files.output));
-  report.verdict(improvement_verdict(improvement, files));
+  const std::vector<std::string> added = added_kinds(improvement);
+  const std::vector<FoundEffect> found = found_effects(improvement.model, added, improvement.first);
+  Verdict verdict = improvement_verdict(improvement, files);
+  std::vector<std::string> sizes{kNoiseFloorMeans};
+  for (const FoundEffect& effect : found) sizes.push_back(size_in_words(effect) + ".");
+  if (!added.empty()) sizes.push_back(errors_in_words(channels_of(improvement)));
+  verdict.sentences.insert(verdict.sentences.begin(), sizes.begin(), sizes.end());
+  // Before the last, which leads to the command.
+  const std::vector<std::string> what_to_do = remedies(added);
+  verdict.sentences.insert(verdict.sentences.end() - 1, what_to_do.begin(), what_to_do.end());
+  report.verdict(std::move(verdict));
+  add_found(report, found, false);
   report.section("The error falls");
   report.add(ladder_chart(improvement));
-  if (!improvement.first.candidates.empty()) report.add(candidate_chart(improvement.first));
-  add_residuals(report, improvement.first, improvement.model);
-  add_traces(report, improvement.first, improvement.model);
+  report.add(error_table(channels_of(improvement), !added.empty()));
+  if (!improvement.first.candidates.empty()) {
+    report.section("What was tried at the first step");
+    add_candidates(report, improvement.first);
+  }
+  add_residuals(report, improvement.first, improvement.model, !added.empty());
+  add_traces(report, improvement.first, improvement.model, !added.empty());
   report.write(path);
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/cancellation.hpp"
+#include "host/diagnose/parameter_covariance.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
@@ -157,35 +158,13 @@ Linearisation linearise(const sim::DriveDescription& model, const ParameterVecto
 }
 
 std::vector<ParameterEstimate> estimate_intervals(sim::DriveDescription& model, const RecordSet& training) {
-  const ParameterVector vector(model);
-  const auto columns = static_cast<Eigen::Index>(vector.size());
-  const Eigen::VectorXd values = vector.read(model);
-  const auto [here, jacobian] = linearise(model, vector, training);
-  const Eigen::Index rows = here.size();
+  const auto [vector, values, covariance] = covariance_of(model, training);
   std::vector<ParameterEstimate> estimates;
-  if (rows == 0) return estimates;
-
-  // Cluster-robust: residuals of one window of one channel are alike, those of different windows are not.
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(columns, columns);
-  Eigen::Index row = 0;
-  for (const ComparedRecord& compared : training.records) {
-    const auto channels = static_cast<Eigen::Index>(channel_count(compared, training.measure));
-    for (std::size_t index = 0; index < compared.prepared.windows.size(); index += training.stride) {
-      const auto length = channels * static_cast<Eigen::Index>(compared.prepared.windows[index].length);
-      const Eigen::VectorXd score = jacobian.middleRows(row, length).transpose() * here.segment(row, length);
-      meat += score * score.transpose();
-      row += length;
-    }
-  }
-  for (; row < rows; ++row) meat += jacobian.row(row).transpose() * jacobian.row(row);  // what is believed
-  const Eigen::MatrixXd bread = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
-  const Eigen::MatrixXd covariance = bread * meat * bread;
   constexpr double kNearlyOne = 0.95;
-  for (Eigen::Index k = 0; k < columns; ++k) {
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
     const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(k)];
-    ParameterEstimate estimate{
-        free.name(model), values(k), free.scale * std::sqrt(std::max(0.0, covariance(k, k))), true, {}, 0.0};
-    for (Eigen::Index other = 0; other < columns; ++other) {
+    ParameterEstimate estimate{free.name(model), values(k), std::sqrt(std::max(0.0, covariance(k, k))), true, {}, 0.0};
+    for (Eigen::Index other = 0; other < covariance.rows(); ++other) {
       const double product = covariance(k, k) * covariance(other, other);
       const double correlation = other == k || product <= 0.0 ? 0.0 : covariance(k, other) / std::sqrt(product);
       if (std::abs(correlation) > std::max(kNearlyOne, std::abs(estimate.correlation))) {

@@ -14,4 +14,7 @@ constexpr DriveUnits units_of(sim::DriveKind kind) {
                                         : DriveUnits{"m", "m/s", "N", "m/s²"};
 }
 
+/// Travel is shown in mm: what a length of the drive's own unit is multiplied by.
+constexpr double travel_in_mm(sim::DriveKind kind) { return kind == sim::DriveKind::rotary ? 1.0 : 1e3; }
+
 }  // namespace host

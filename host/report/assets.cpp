@@ -13,6 +13,7 @@
 AXIS_EMBED(axis_dygraphs_script, AXIS_DYGRAPHS_DIR "/dygraph.min.js");
 AXIS_EMBED(axis_synchronizer_script, AXIS_DYGRAPHS_DIR "/src-es5/extras/synchronizer.js");
 AXIS_EMBED(axis_dygraphs_style, AXIS_DYGRAPHS_DIR "/dygraph.min.css");
+AXIS_EMBED(axis_heat_map_script, AXIS_REPORT_DIR "/heat_map.js");
 AXIS_EMBED(axis_report_script, AXIS_REPORT_DIR "/report.js");
 AXIS_EMBED(axis_report_style, AXIS_REPORT_DIR "/report.css");
 
@@ -39,6 +40,7 @@ std::string_view synchronizer_script() {
 std::string_view dygraphs_style() {
   return without_source_map(embedded(axis_dygraphs_style_begin, axis_dygraphs_style_end));
 }
+std::string_view heat_map_script() { return embedded(axis_heat_map_script_begin, axis_heat_map_script_end); }
 std::string_view report_script() { return embedded(axis_report_script_begin, axis_report_script_end); }
 std::string_view report_style() { return embedded(axis_report_style_begin, axis_report_style_end); }
 

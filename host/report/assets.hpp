@@ -8,6 +8,7 @@ namespace host::assets {
 std::string_view dygraphs_script();      ///< dygraphs, minified (Debian: libjs-dygraphs)
 std::string_view synchronizer_script();  ///< its extra that joins zoom and cursor of several charts
 std::string_view dygraphs_style();
+std::string_view heat_map_script();
 std::string_view report_script();
 std::string_view report_style();
 

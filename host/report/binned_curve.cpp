@@ -36,10 +36,12 @@ void append_gap(BinnedCurve& curve, double x) {
   curve.samples.push_back(0.0);
 }
 
+/// Bins end at whole multiples of the width.
 void append_stretch(BinnedCurve& curve, std::span<const Sample> stretch, double width, std::size_t min_samples) {
+  const auto cell = [&](std::size_t k) { return std::floor(stretch[k].first / width); };
   while (!stretch.empty()) {
     std::size_t end = 1;
-    while (end < stretch.size() && (end < min_samples || stretch[end].first - stretch.front().first < width)) ++end;
+    while (end < stretch.size() && (end < min_samples || cell(end) == cell(end - 1))) ++end;
     if (stretch.size() - end < min_samples) end = stretch.size();
     append_bin(curve, stretch.first(end));
     stretch = stretch.subspan(end);
@@ -48,8 +50,15 @@ void append_stretch(BinnedCurve& curve, std::span<const Sample> stretch, double 
 
 }  // namespace
 
+double bin_width(double wanted, double period) {
+  constexpr double kFewestBinsAPeriod = 8.0;
+  if (!(period > 0.0)) return wanted;
+  if (kFewestBinsAPeriod * wanted > period) return period * std::ceil(wanted / period);
+  return period / std::round(period / wanted);
+}
+
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
-                         std::size_t min_samples) {
+                         std::size_t min_samples, double period) {
   constexpr double kGap = 5.0;  // widths of a bin
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k)
@@ -57,7 +66,7 @@ BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, s
   BinnedCurve curve;
   if (samples.empty() || bins == 0) return curve;
   std::ranges::stable_sort(samples, {}, &Sample::first);
-  const double width = (samples.back().first - samples.front().first) / static_cast<double>(bins);
+  const double width = bin_width((samples.back().first - samples.front().first) / static_cast<double>(bins), period);
   double last_x = samples.front().first;
   for (std::span<const Sample> rest = samples; !rest.empty();) {
     std::size_t end = 1;

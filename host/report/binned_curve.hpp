@@ -20,11 +20,15 @@ struct BinnedCurve {
   std::vector<double> samples;  ///< in the bin
 };
 
-/// Bins are as wide as the range of x over `bins`, or wider until they hold `min_samples`; what is left at the end of a
-/// stretch joins the bin before it. Five widths without a sample end a stretch; one with fewer than `min_samples` in
-/// all is left out. Samples with a NaN are left out.
+/// About the wanted width (> 0), so that a ripple of this period does not alias in the means: a whole number of
+/// periods, over which it averages out, or a whole part of one that is small enough to show it. Period 0: as wanted.
+double bin_width(double wanted, double period);
+
+/// Bins are as wide as the range of x over `bins`, by bin_width() for the period, or wider until they hold
+/// `min_samples`; what is left at the end of a stretch joins the bin before it. Five widths without a sample end a
+/// stretch; one with fewer than `min_samples` in all is left out. Samples with a NaN are left out.
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
-                         std::size_t min_samples = 10);
+                         std::size_t min_samples = 10, double period = 0.0);
 
 /// As points that a line joins, with the spread as its band.
 ScatterSeries curve_series(const std::string& name, SeriesRole role, const BinnedCurve& curve);

@@ -63,7 +63,8 @@ struct ScatterSeries {
   std::vector<double> lower;
   std::vector<double> upper;
   std::vector<double> samples =
-      {};  ///< behind each point: drawn as a strip at the foot of the plot, told at the cursor
+      {};               ///< behind each point: drawn as a strip at the foot of the plot, told at the cursor
+  bool dashed = false;  ///< its line
 };
 
 struct Axis {
@@ -81,6 +82,25 @@ struct ScatterPlot {
   bool logarithmic_y = false;  ///< values <= 0 leave gaps
   bool equal_scales = false;   ///< a unit of x is as long as a unit of y: for paths in a plane
   bool logarithmic_x = false;  ///< every x > 0
+  bool large = false;          ///< the whole width and twice the height: the figure that a reader looks at first
+  std::optional<std::pair<double, double>> y_range = {};  ///< shown at first, so that two plots can be compared
+};
+
+/// The mean of a value over a grid in two coordinates, in colours that diverge from zero.
+struct HeatMap {
+  /// Cells along a coordinate, each `step` wide, from `first` on.
+  struct Cells {
+    Axis axis;
+    double first = 0.0;
+    double step = 1.0;
+    std::size_t count = 0;
+  };
+  std::string title;
+  std::string caption;
+  Cells x, y;
+  Axis value;
+  std::vector<double> values;  ///< y.count rows of x.count; NaN where there is nothing
+  double limit = 1.0;          ///< > 0; values of this size and more have the strongest colour
 };
 
 /// One turn about the circle, or several: where the path is, and how far outside the circle (negative: inside).
@@ -118,6 +138,7 @@ struct BarChart {
   std::vector<BarSeries> series;
   std::vector<BarRow> rows;
   std::optional<std::pair<std::string, double>> reference;  ///< a vertical line: name and value
+  bool folded = false;                                      ///< the title alone is shown until the reader opens it
 };
 
 /// Rows of text. A column whose every cell starts with a number is aligned right.
@@ -127,6 +148,7 @@ struct Table {
   std::vector<std::string> headings;
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> links = {};  ///< files that the rows' first cells lead to; may be empty
+  bool stacks = false;  ///< on a narrow screen each row becomes a block of its own, with the headings in it
 };
 
 /// Pairs of name and value, set compactly.

@@ -102,8 +102,11 @@ std::string bar_chart(const BarChart& chart) {
     rows += fmt::format("<tr><th scope=\"row\">{}{}</th><td>{}</td></tr>\n", escape_html(row.label),
                         row.note.empty() ? "" : "<small>" + escape_html(row.note) + "</small>", bars);
   }
-  return fmt::format("<figure class=\"bars\">\n{}{}<table>{}</table>\n</figure>\n",
-                     caption_of(chart.title, chart.caption), bar_legend(chart), rows);
+  const std::string picture = fmt::format("{}<table>{}</table>\n", bar_legend(chart), rows);
+  if (chart.folded)
+    return fmt::format("<figure class=\"bars\">\n<details><summary>{}</summary>\n{}{}</details>\n</figure>\n",
+                       escape_html(chart.title), caption_of("", chart.caption), picture);
+  return fmt::format("<figure class=\"bars\">\n{}{}</figure>\n", caption_of(chart.title, chart.caption), picture);
 }
 
 std::string table(const Table& table) {
@@ -123,14 +126,18 @@ std::string table(const Table& table) {
       std::string cell = escape_html(row[column]);
       if (column == 0 && k < table.links.size())
         cell = fmt::format("<a href=\"{}\">{}</a>", escape_html(table.links[k]), cell);
-      body += fmt::format("<td{}>{}</td>", column < alignment.size() ? alignment[column] : "", cell);
+      body += fmt::format("<td{}{}>{}</td>", column < alignment.size() ? alignment[column] : "",
+                          table.stacks && column < table.headings.size()
+                              ? fmt::format(" data-heading=\"{}\"", escape_html(table.headings[column]))
+                              : "",
+                          cell);
     }
     body += "</tr>\n";
   }
   return fmt::format(
-      "<figure class=\"table\">\n{}<div class=\"scroll\"><table><thead><tr>{}</tr></thead>\n<tbody>{}</tbody></table>"
+      "<figure class=\"table{}\">\n{}<div class=\"scroll\"><table><thead><tr>{}</tr></thead>\n<tbody>{}</tbody></table>"
       "</div>\n</figure>\n",
-      caption_of(table.title, table.caption), head, body);
+      table.stacks ? " stacks" : "", caption_of(table.title, table.caption), head, body);
 }
 
 std::string facts(const Facts& facts) {

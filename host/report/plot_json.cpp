@@ -48,10 +48,18 @@ nlohmann::json packed_json(std::span<const double> values) {
   return {{"lowest", packed.lowest}, {"step", packed.step}, {"base64", packed.base64}};
 }
 
-nlohmann::json short_numbers(std::span<const double> values) {
+nlohmann::json short_numbers(std::span<const double> values, int digits = scatter_digits) {
   nlohmann::json numbers = nlohmann::json::array();
-  for (const double value : values) numbers.push_back(rounded_to_digits(value, scatter_digits));
+  for (const double value : values) numbers.push_back(rounded_to_digits(value, digits));
   return numbers;
+}
+
+nlohmann::json cells_json(const HeatMap::Cells& cells) {
+  return {{"label", axis_label(cells.axis.quantity, cells.axis.unit)},
+          {"unit", cells.axis.unit},
+          {"first", cells.first},
+          {"step", cells.step},
+          {"count", cells.count}};
 }
 
 nlohmann::json panel_json(const TracePanel& panel, const std::vector<double>& t_s, std::size_t max_rows) {
@@ -106,6 +114,7 @@ nlohmann::json scatter_plot_json(const ScatterPlot& plot) {
     nlohmann::json one = {{"name", series.name},
                           {"colour", series_colour(series.role)},
                           {"style", style_name(series.style)},
+                          {"dashed", series.dashed},
                           {"x", short_numbers(picked(series.x, rows))},
                           {"y", short_numbers(picked(series.y, rows))}};
     if (series.lower.size() == series.y.size() && series.upper.size() == series.y.size() && !series.y.empty()) {
@@ -116,15 +125,29 @@ nlohmann::json scatter_plot_json(const ScatterPlot& plot) {
       one["samples"] = short_numbers(picked(series.samples, rows));
     all.push_back(std::move(one));
   }
-  return {{"kind", "scatter"},
-          {"xLabel", axis_label(plot.x.quantity, plot.x.unit)},
-          {"label", axis_label(plot.y.quantity, plot.y.unit)},
-          {"unit", plot.y.unit},
-          {"xUnit", plot.x.unit},
-          {"logarithmic", plot.logarithmic_y},
-          {"logarithmicX", plot.logarithmic_x},
-          {"equal", plot.equal_scales},
-          {"series", all}};
+  nlohmann::json document = {{"kind", "scatter"},
+                             {"xLabel", axis_label(plot.x.quantity, plot.x.unit)},
+                             {"label", axis_label(plot.y.quantity, plot.y.unit)},
+                             {"unit", plot.y.unit},
+                             {"xUnit", plot.x.unit},
+                             {"logarithmic", plot.logarithmic_y},
+                             {"logarithmicX", plot.logarithmic_x},
+                             {"equal", plot.equal_scales},
+                             {"large", plot.large},
+                             {"series", all}};
+  if (plot.y_range) document["yRange"] = {plot.y_range->first, plot.y_range->second};
+  return document;
+}
+
+nlohmann::json heat_map_json(const HeatMap& map) {
+  constexpr int kDigits = 4;
+  return {{"kind", "map"},
+          {"x", cells_json(map.x)},
+          {"y", cells_json(map.y)},
+          {"label", axis_label(map.value.quantity, map.value.unit)},
+          {"unit", map.value.unit},
+          {"limit", map.limit},
+          {"values", short_numbers(map.values, kDigits)}};
 }
 
 }  // namespace host

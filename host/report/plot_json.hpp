@@ -14,4 +14,7 @@ nlohmann::json time_plot_json(const TimePlot& plot, std::size_t max_rows);
 /// Points with five significant digits, at most some thousand a series.
 nlohmann::json scatter_plot_json(const ScatterPlot& plot);
 
+/// Cells with four significant digits.
+nlohmann::json heat_map_json(const HeatMap& map);
+
 }  // namespace host

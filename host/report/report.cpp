@@ -43,8 +43,13 @@ struct BlockWriter {
     plots.push_back(time_plot_json(plot, max_rows));
   }
   void operator()(const ScatterPlot& plot) {
-    body += html::plot_frame(plots.size(), html::FrameWidth::half, plot.title, plot.caption, "");
+    body += html::plot_frame(plots.size(), plot.large ? html::FrameWidth::full : html::FrameWidth::half, plot.title,
+                             plot.caption, "");
     plots.push_back(scatter_plot_json(plot));
+  }
+  void operator()(const HeatMap& map) {
+    body += html::plot_frame(plots.size(), html::FrameWidth::half, map.title, map.caption, "");
+    plots.push_back(heat_map_json(map));
   }
   void operator()(const PolarPlot& plot) { body += html::polar_plot(plot); }
   void operator()(const BarChart& chart) { body += html::bar_chart(chart); }
@@ -88,6 +93,13 @@ void Report::add(ScatterPlot plot) {
             plot.title, fmt::format("series \"{}\" has error bars of another length", series.name));
   }
   blocks_.emplace_back(std::move(plot));
+}
+
+void Report::add(HeatMap map) {
+  require(map.values.size() == map.x.count * map.y.count, map.title,
+          fmt::format("{} values for {} x {} cells", map.values.size(), map.x.count, map.y.count));
+  require(map.limit > 0.0, map.title, "its limit is not above 0");
+  blocks_.emplace_back(std::move(map));
 }
 
 void Report::add(PolarPlot plot) {
@@ -143,6 +155,7 @@ std::string Report::html(std::size_t trace_budget) const {
   page += "\n";
   page += assets::synchronizer_script();
   page += "</script>\n<script>\n";
+  page += assets::heat_map_script();
   page += assets::report_script();
   page += "</script>\n</body>\n</html>\n";
   return page;

@@ -25,6 +25,7 @@ class Report {
   /// series do not fit together.
   void add(TimePlot plot);
   void add(ScatterPlot plot);
+  void add(HeatMap map);
   void add(PolarPlot plot);
   void add(BarChart chart);
   void add(Table table);
@@ -41,7 +42,7 @@ class Report {
     std::string heading;
     std::string text;
   };
-  using Block = std::variant<Section, TimePlot, ScatterPlot, PolarPlot, BarChart, Table, Facts>;
+  using Block = std::variant<Section, TimePlot, ScatterPlot, HeatMap, PolarPlot, BarChart, Table, Facts>;
 
   std::size_t rows_within_budget(std::size_t trace_budget) const;
 

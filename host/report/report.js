@@ -98,8 +98,11 @@
       addElement(content, "b", "", panel.label);
       data.series.forEach(function (series, index) {
         const item = addElement(content, "span");
-        addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : "")
-          ).style.background = panel.series[index].colour;
+        const swatch = addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : ""));
+        const colour = panel.series[index].colour;
+        swatch.style.background = panel.series[index].dashed
+          ? "repeating-linear-gradient(90deg, " + colour + " 0 5px, transparent 5px 8px)"
+          : colour;
         addElement(item, "span", "", series.label);
         const chosen = data.x !== undefined && series.y !== undefined && series.y !== null && !isNaN(series.y);
         const own = panel.series[index];
@@ -272,6 +275,7 @@
       drawPoints: withPoints,
       pointSize: series.style === "stems" ? 2 : many ? 1 : 3,
       strokeWidth: withLine ? 2 : 0,
+      strokePattern: series.dashed ? [7, 4] : null,
     };
   }
 
@@ -298,7 +302,7 @@
     const elements = panelElements(
       frame,
       spoken(plot.label, plot.xLabel, plot.series.map((series) => ({ name: series.name, values: series.y }))),
-      plot.equal ? "plane" : "scatter"
+      plot.equal ? "plane" : plot.large ? "large" : "scatter"
     );
     const options = commonOptions(plot, plot, elements, true, plot.xUnit);
     options.customBars = withBars;
@@ -310,6 +314,7 @@
     plot.series.forEach((series) => (options.series[series.name] = seriesOptions(series)));
     options.xRangePad = plot.logarithmicX ? 0 : 12;
     options.yRangePad = plot.logarithmic || plot.equal ? null : 12;
+    if (plot.yRange) options.valueRange = plot.yRange;
     const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot);
     if (plot.equal) equaliseScales(chart, plot);
   }
@@ -343,6 +348,7 @@
   JSON.parse(document.getElementById("plots").textContent).forEach(function (plot, index) {
     const frame = document.getElementById("plot-" + index);
     if (plot.kind === "time") drawTimePlot(frame, plot);
+    else if (plot.kind === "map") recolour.push(axisHeatMap(panelElements(frame, plot.label, "map"), plot, resolved, formatted));
     else drawScatterPlot(frame, plot);
   });
   for (const query of ["(prefers-color-scheme: dark)", "print"])

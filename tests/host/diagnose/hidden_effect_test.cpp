@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host/diagnose/found_effect.hpp"
 #include "tests/host/diagnose/drive_case.hpp"
 
 namespace {
@@ -34,6 +35,26 @@ TEST_P(HiddenEffect, IsFoundAndNothingElse) {
     EXPECT_THAT(verdict.effects, UnorderedElementsAreArray(hidden.effects));
   }
   EXPECT_LT(diagnosis.after_validate, diagnosis.before_validate);
+}
+
+/// A found effect has the size that was hidden, in the unit of the machine, over the coordinate in which it shows.
+TEST(FoundEffect, HasTheSizeThatWasHidden) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  constexpr double kHidden_Nm = 0.156, kPeriod_mm = 1.25;  // cog1 and cog1_per in its truth.json
+  DriveCase cogging("single/case-00");
+  const host::Diagnosis diagnosis = cogging.diagnose();
+  const auto found = host::found_effects(diagnosis.best, {"cogging", "backlash"}, diagnosis);
+  ASSERT_EQ(found.size(), 1U) << "what the model does not hold is absent";
+  EXPECT_NEAR(found[0].size, kHidden_Nm, 0.1 * kHidden_Nm);
+  ASSERT_TRUE(found[0].ci95 && found[0].share_of_friction);
+  EXPECT_LT((*found[0].ci95)[0], kHidden_Nm);
+  EXPECT_GT((*found[0].ci95)[1], kHidden_Nm);
+  EXPECT_NEAR(*found[0].share_of_friction, kHidden_Nm / 2.08, 0.02) << "mean of the two Coulomb levels";
+  EXPECT_TRUE(found[0].over.folded);
+  EXPECT_NEAR(found[0].over.period, kPeriod_mm, 0.01);
+  const host::ScatterPlot plot = host::effect_plot(found[0]);
+  ASSERT_EQ(plot.series.size(), 4U) << "residual and effect, forward and backward";
+  EXPECT_EQ(plot.x.unit, "mm");
 }
 
 INSTANTIATE_TEST_SUITE_P(DriveCases, HiddenEffect,

@@ -22,7 +22,7 @@ Improvement by_adding(const std::vector<std::string>& kinds, double left) {
 
 TEST(ImprovementVerdict, TellsTheFallAndWhatWasAdded) {
   const Verdict verdict = improvement_verdict(by_adding({"cogging"}, 0.78), {"x.toml", "out dir/x2.toml"});
-  EXPECT_EQ(verdict.headline, "18.6 → 0.780 × floor by adding cogging");
+  EXPECT_EQ(verdict.headline, "18.6 → 0.780 × noise floor by adding cogging");
   EXPECT_EQ(verdict.tone, Tone::good);
   EXPECT_EQ(verdict.command, "axistool design 'out dir/x2.toml' -o 'out dir/x2-params.toml'");
   EXPECT_THAT(verdict.sentences, testing::Contains(HasSubstr("out dir/x2.toml")));

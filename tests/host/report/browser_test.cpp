@@ -46,6 +46,12 @@ constexpr const char* visitor_script = R"(
   }
   const ranges = () => axisCharts.slice(0, 2).map((chart) => chart.xAxisRange());
   seen.pixels = axisCharts.map((chart) => chart.getColors().map((colour) => pixelsOf(chart, colour)));
+  seen.mapColours = [...document.querySelectorAll(".map canvas")].map(function (canvas) {
+    const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    const colours = new Set();
+    for (let k = 0; k < data.length; k += 4) colours.add(data[k] * 65536 + data[k + 1] * 256 + data[k + 2]);
+    return colours.size;
+  });
   seen.rowsAtFirst = axisCharts[0].numRows();
   seen.whole = ranges();
   mouse(axisCharts[0], "mousedown", 300);
@@ -188,8 +194,11 @@ TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
   EXPECT_EQ(log_.find("CONSOLE"), std::string::npos) << log_;
   const nlohmann::json seen = seen_in(page);
   ASSERT_TRUE(seen.is_object()) << "the page's scripts did not run to their end\n" << log_;
-  // Residual against speed, period, travel, acceleration, time and at the tachometer; speed, its error, position error.
-  EXPECT_EQ(seen["charts"], 9);
+  // Residual against speed, period, travel, acceleration and time; the tachometer's against speed and acceleration;
+  // speed, its error, position error.
+  EXPECT_EQ(seen["charts"], 10);
+  ASSERT_EQ(seen["mapColours"].size(), 1U) << "over position and speed";
+  EXPECT_GT(seen["mapColours"][0].get<int>(), 50);
   // The last curve lies on top: of a tachometer that no effect concerns, both are the same.
   for (const nlohmann::json& chart : seen["pixels"]) EXPECT_GT(chart.back().get<int>(), 30) << seen["pixels"];
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -80,6 +81,46 @@ TEST(Report, StaysLightHoweverLongTheRecordsAre) {
   EXPECT_LT(html.size(), 3'000'000U);
   const nlohmann::json panel = plots_of(html)[4]["panels"][0];
   EXPECT_GT(panel["series"][0]["y"]["base64"].get<std::string>().size(), 4U * 5000U);
+}
+
+TEST(Report, AMapKeepsItsCellsAndItsGaps) {
+  HeatMap map{"Map", "", {{"position", "mm"}, 10.0, 5.0, 2}, {{"speed", "rad/s"}, -1.0, 1.0, 2}, {"torque", "Nm"}};
+  map.values = {0.123456, std::nan(""), -2.0, 0.0};
+  map.limit = 2.0;
+  Report report("test");
+  report.add(map);
+  const nlohmann::json plot = plots_of(report.html())[0];
+  EXPECT_EQ(plot["kind"], "map");
+  EXPECT_EQ(plot["values"], nlohmann::json({0.1235, nullptr, -2.0, 0.0}));
+  EXPECT_EQ(plot["x"]["count"], 2);
+  EXPECT_EQ(plot["y"]["label"], "speed [rad/s]");
+  map.values.pop_back();
+  EXPECT_THROW(report.add(map), std::invalid_argument);
+}
+
+TEST(Report, WhatIsFoldedIsBehindItsTitle) {
+  Report report("test");
+  BarChart chart = sample::ladder();
+  chart.folded = true;
+  report.add(chart);
+  const std::string html = report.html();
+  const std::size_t details = html.find("<details>");
+  ASSERT_NE(details, std::string::npos);
+  EXPECT_LT(html.find("<summary>Ladder of errors</summary>"), html.find("as given"));
+  EXPECT_LT(html.find("+ cogging"), html.find("</details>"));
+}
+
+TEST(Report, PlotsToCompareKeepTheirRangeAndTheirDashes) {
+  ScatterPlot curve = sample::friction_curve();
+  curve.large = true;
+  curve.y_range = {-3.0, 4.0};
+  curve.series[1].dashed = true;
+  Report report("test");
+  report.add(curve);
+  const nlohmann::json plot = plots_of(report.html())[0];
+  EXPECT_EQ(plot["large"], true);
+  EXPECT_EQ(plot["yRange"], nlohmann::json({-3.0, 4.0}));
+  EXPECT_EQ(plot["series"][1]["dashed"], true);
 }
 
 TEST(Report, RefusesSeriesThatDoNotFitTogether) {

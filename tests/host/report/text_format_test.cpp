@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "host/report/binned_curve.hpp"
 #include "host/report/packed_samples.hpp"
@@ -104,6 +105,21 @@ TEST(BinnedCurve, AGapStaysAGapAndThinBinsJoinTheirNeighbours) {
   }
   EXPECT_EQ(gaps, 1u);
   EXPECT_EQ(samples, static_cast<double>(x.size())) << "none is lost";
+}
+
+TEST(BinnedCurve, DoesNotAliasWithAKnownPeriod) {
+  // A ripple every 5 mm over 320 mm, in 160 bins of 2 mm: their means would beat between +-0.9.
+  constexpr double kPeriod = 5.0;
+  std::vector<double> x, y;
+  for (int k = 0; k < 32'000; ++k) {
+    x.push_back(0.01 * k);
+    y.push_back(std::sin(2.0 * std::numbers::pi * x.back() / kPeriod));
+  }
+  for (const double mean : binned_curve(x, y, 160, 10, kPeriod).mean) EXPECT_NEAR(mean, 0.0, 0.02);
+  EXPECT_DOUBLE_EQ(bin_width(2.0, 5.0), 5.0);
+  EXPECT_DOUBLE_EQ(bin_width(12.0, 5.0), 15.0);
+  EXPECT_DOUBLE_EQ(bin_width(0.6, 5.0), 0.625) << "fine enough to show the ripple";
+  EXPECT_DOUBLE_EQ(bin_width(2.0, 0.0), 2.0);
 }
 
 TEST(ShellWord, QuotesWhatAShellWouldTakeApart) {

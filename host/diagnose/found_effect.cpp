@@ -1,0 +1,227 @@
+#include "host/diagnose/found_effect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "host/diagnose/parameter_covariance.hpp"
+#include "host/record/drive_units.hpp"
+#include "host/report/text_format.hpp"
+#include "host/statistics.hpp"
+#include "sim/catalogue.hpp"
+
+namespace host {
+
+namespace {
+
+using Values = std::vector<double>;
+using Curves = std::vector<ScatterSeries>;
+
+sim::DriveDescription without_kind(sim::DriveDescription model, std::string_view kind) {
+  std::erase_if(model.effects, [kind](const sim::EffectEntry& entry) { return entry.kind == kind; });
+  return model;
+}
+
+Values difference(const Values& a, const Values& b) {
+  Values result(a.size());
+  std::ranges::transform(a, b, result.begin(), std::minus<>());
+  return result;
+}
+
+double sum_of_squares(const Values& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+/// The part of the trace's square that its means over the coordinate hold, 0..1.
+double carried_share(const ResidualEffort& samples, const Values& trace, const ResidualCoordinate& over) {
+  double carried = 0.0;
+  for (const ScatterSeries& curve : direction_curves(samples, trace, over))
+    for (std::size_t k = 0; k < curve.y.size(); ++k)
+      if (std::isfinite(curve.y[k])) carried += curve.samples[k] * curve.y[k] * curve.y[k];
+  return carried / sum_of_squares(trace);
+}
+
+/// Where the trace could show: what the catalogue says, by the period of a ripple; of a free curve its own coordinate.
+std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, const sim::EffectEntry& entry,
+                                               const ResidualEffort& samples, sim::DriveKind kind) {
+  std::vector<std::string_view> names(info.along.begin(), info.along.end());
+  if (info.curve) names.push_back(entry.over);
+  std::vector<ResidualCoordinate> all;
+  for (std::string_view name : names) {
+    if (name == "friction_along_position") name = "position";
+    if (name == "friction_over_time") name = "time";
+    if (name == "frequency") continue;  // no coordinate of a sample
+    ResidualCoordinate over = coordinate_of(name, kind, entry.has("period") ? entry.at("period") : 0.0);
+    if ((samples.*over.along).size() != samples.w.size()) continue;
+    if (over.period > 0.0) {
+      const auto [low, high] = std::ranges::minmax_element(samples.x);
+      over.folded = *high - *low > 2.0 * entry.at("period");
+      if (over.folded) over.axis.quantity = fmt::format("position within {:.4g} mm", over.period);
+    }
+    all.push_back(std::move(over));
+  }
+  if (all.empty()) all.push_back(coordinate_of("speed", kind));
+  return all;
+}
+
+void trace_of(FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown) {
+  const sim::DriveDescription less = without_kind(model, effect.kind);
+  std::vector<ResidualEffort> both;
+  if (effect.of_speed_channel)
+    both = {residual_of_speed_channel(less, shown), residual_of_speed_channel(model, shown)};
+  else
+    both = residuals_on({&less, &model}, shown);
+  effect.trace = difference(both.front().missing, both.back().missing);
+  effect.without = std::move(both.front());
+  if (!effect.only_record) return;
+  for (std::size_t k = 0; k < effect.trace.size(); ++k)
+    if (effect.without.record[k] != *effect.only_record) effect.trace[k] = effect.without.missing[k] = std::nan("");
+}
+
+/// The record in which the trace is strongest.
+std::size_t strongest_record(const FoundEffect& effect) {
+  Values squares(1 + std::ranges::max(effect.without.record));
+  for (std::size_t k = 0; k < effect.trace.size(); ++k)
+    squares[effect.without.record[k]] += effect.trace[k] * effect.trace[k];
+  return static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
+}
+
+struct Peak {
+  std::size_t curve = 0, bin = 0;
+  double mean = 0.0;
+};
+
+Peak peak_of(const Curves& curves) {
+  Peak peak;
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    for (std::size_t k = 0; k < curves[c].y.size(); ++k)
+      if (std::abs(curves[c].y[k]) > std::abs(peak.mean)) peak = {c, k, curves[c].y[k]};
+  return peak;
+}
+
+/// 95 % interval of the peak, by the slopes of its bin over the effect's parameters and their covariance (delta
+/// method).
+std::optional<std::array<double, 2>> interval_of(const FoundEffect& effect, const sim::DriveDescription& model,
+                                                 const RecordSet& shown, const RecordSet& training) {
+  constexpr double kMostStep = 0.05;  // relative: the slope is wanted where the fit stands
+  const auto [vector, values, covariance] = covariance_of(model, training);
+  if (covariance.size() == 0) return {};
+  const Peak peak = peak_of(direction_curves(effect.without, effect.trace, effect.over));
+  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(values.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(k)];
+    if (model.effects[free.effect].kind != effect.kind) continue;
+    const double size = values(k) != 0.0 ? std::abs(values(k)) : free.scale;
+    const double step = std::min(std::sqrt(std::max(0.0, covariance(k, k))), kMostStep * size);
+    if (!(step > 0.0)) continue;
+    Eigen::VectorXd moved = values;
+    moved(k) += moved(k) + step > free.upper ? -step : step;
+    sim::DriveDescription changed = model;
+    vector.write(moved, changed);
+    FoundEffect other = effect;
+    trace_of(other, changed, shown);
+    const Curves curves = direction_curves(other.without, other.trace, other.over);
+    slopes(k) = (curves[peak.curve].y[peak.bin] - peak.mean) / (moved(k) - values(k));
+  }
+  const double deviation = std::sqrt(std::max(0.0, slopes.dot(covariance * slopes)));
+  if (!std::isfinite(deviation) || deviation == 0.0) return {};
+  const double reach = kNormal95 * deviation, size = std::abs(peak.mean);
+  return std::array{std::max(0.0, size - reach), size + reach};
+}
+
+double coulomb_level(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  double sum = 0.0;
+  for (std::size_t side = 0; side < drive.friction.size(); ++side)
+    sum += drive.friction[side].coulomb * drive.direction_factor[side].level;
+  return sum / static_cast<double>(drive.friction.size());
+}
+
+std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, const sim::EffectEntry& entry,
+                                        const RecordSet& shown, const RecordSet& training) {
+  const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+  FoundEffect effect;
+  effect.kind = entry.kind;
+  effect.drive = model.data.kind;
+  effect.of_speed_channel = info.stage == sim::Stage::tachometer;
+  trace_of(effect, model, shown);
+  if (!(sum_of_squares(effect.trace) > 0.0)) return {};
+  double most = -1.0;
+  for (ResidualCoordinate& over : coordinates_of(info, entry, effect.without, model.data.kind)) {
+    const double share = carried_share(effect.without, effect.trace, over);
+    if (share <= most) continue;
+    most = share;
+    effect.over = std::move(over);
+  }
+  if (effect.over.along == &ResidualEffort::t_s) {
+    effect.only_record = strongest_record(effect);
+    trace_of(effect, model, shown);
+  }
+  effect.size = std::abs(peak_of(direction_curves(effect.without, effect.trace, effect.over)).mean);
+  effect.ci95 = interval_of(effect, model, shown, training);
+  const double friction = coulomb_level(model);
+  if (!effect.of_speed_channel && friction > 0.0) effect.share_of_friction = effect.size / friction;
+  return effect;
+}
+
+}  // namespace
+
+const char* FoundEffect::unit() const { return of_speed_channel ? units_of(drive).speed : units_of(drive).effort; }
+
+std::vector<FoundEffect> found_effects(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                       const PreparedSets& sets) {
+  const RecordSet all = together(sets.training, sets.validation);
+  std::vector<FoundEffect> found;
+  for (const std::string& kind : kinds)
+    if (const sim::EffectEntry* entry = model.find(kind))
+      if (std::optional<FoundEffect> effect = found_effect(model, *entry, all, sets.training))
+        found.push_back(*std::move(effect));
+  return found;
+}
+
+std::string size_in_words(const FoundEffect& effect) {
+  std::string words =
+      fmt::format("{}: {} {}", sim::find_effect(effect.kind)->title, format_value(effect.size, 2), effect.unit());
+  if (effect.ci95)
+    words += fmt::format(" [{}, {}]", format_value((*effect.ci95)[0], 2), format_value((*effect.ci95)[1], 2));
+  if (effect.share_of_friction) words += fmt::format(", {:.0f} % of the friction", 100.0 * *effect.share_of_friction);
+  return words;
+}
+
+ScatterPlot effect_plot(const FoundEffect& effect) {
+  ScatterPlot plot;
+  plot.title = size_in_words(effect);
+  plot.caption =
+      "Points: residual of the model without this effect, with the band that holds 80 % of the samples, on training "
+      "and "
+      "validation data. Lines: what the fitted effect adds to the model.";
+  plot.large = true;
+  plot.x = effect.over.axis;
+  plot.logarithmic_x = effect.over.logarithmic;
+  plot.y = {effect.of_speed_channel                  ? "speed residual"
+            : effect.drive == sim::DriveKind::rotary ? "torque residual"
+                                                     : "force residual",
+            effect.unit()};
+  for (ScatterSeries& curve : direction_curves(effect.without, effect.without.missing, effect.over)) {
+    curve.style = SeriesStyle::points;
+    if (!curve.x.empty()) plot.series.push_back(std::move(curve));
+  }
+  for (ScatterSeries& curve : direction_curves(effect.without, effect.trace, effect.over)) {
+    if (curve.x.empty()) continue;
+    curve.style = SeriesStyle::line;
+    curve.role = SeriesRole::model;
+    curve.dashed = curve.name == "backward";
+    curve.name = "effect, " + curve.name;
+    curve.lower.clear();
+    curve.upper.clear();
+    curve.samples.clear();
+    plot.series.push_back(std::move(curve));
+  }
+  return plot;
+}
+
+}  // namespace host

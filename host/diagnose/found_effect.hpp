@@ -1,0 +1,42 @@
+// An effect that was found, as its machine shows it: the residual of the model without it, the part of that residual
+// that it explains, and how large it is.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/compare/residual_figures.hpp"
+#include "host/diagnose/prepared_sets.hpp"
+#include "host/report/report.hpp"
+
+namespace host {
+
+struct FoundEffect {
+  std::string kind;
+  sim::DriveKind drive = sim::DriveKind::rotary;
+  bool of_speed_channel = false;           ///< its residual is a speed, otherwise a torque or force
+  ResidualCoordinate over;                 ///< of those in EffectInfo::along, the one that carries most of its trace
+  ResidualEffort without;                  ///< residual of the model without the effect, all its other parameters alike
+  std::vector<double> trace;               ///< the effect's part of each: residual without it less residual with it
+  std::optional<std::size_t> only_record;  ///< over time: records have no common time, so the others' samples are NaN
+  double size = 0.0;  ///< largest mean of the trace over the coordinate, Nm or N, rad/s or m/s; >= 0
+  std::optional<std::array<double, 2>> ci95;  ///< 95 % interval of the size; empty where the fit gives none
+  std::optional<double> share_of_friction;    ///< size over the Coulomb level; empty for speeds
+
+  const char* unit() const;
+};
+
+/// The effects of these kinds in a fitted model, on all records of the sets. A kind that leaves no trace (the axis
+/// never slides) is absent.
+std::vector<FoundEffect> found_effects(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
+                                       const PreparedSets& sets);
+
+/// "Cogging: 0.9 Nm [0.86, 0.94], 31 % of the friction".
+std::string size_in_words(const FoundEffect& effect);
+
+/// The residual without the effect over its coordinate, forward and backward, and the effect's own curve over it.
+ScatterPlot effect_plot(const FoundEffect& effect);
+
+}  // namespace host

@@ -1,0 +1,74 @@
+// What figures of a residual show, from residuals in closed form.
+#include "host/compare/residual_figures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace host {
+namespace {
+
+constexpr double kPeriod_mm = 10.0;
+
+/// To and fro over 200 mm, with a friction that varies by 35 % of 2 Nm along each 10 mm.
+ResidualEffort varying_friction() {
+  ResidualEffort samples;
+  for (int k = 0; k < 8000; ++k) {
+    const double phase = std::fmod(0.0005 * k, 2.0);
+    const double direction = phase < 1.0 ? 1.0 : -1.0;
+    samples.record.push_back(0);
+    samples.x.push_back(200.0 * (phase < 1.0 ? phase : 2.0 - phase));
+    samples.w.push_back(direction * (5.0 + k % 7));
+    samples.missing.push_back(-direction * 0.7 * std::sin(2.0 * std::numbers::pi * samples.x.back() / kPeriod_mm));
+  }
+  return samples;
+}
+
+double largest(const ScatterSeries& curve) {
+  double most = 0.0;
+  for (const double value : curve.y) most = std::max(most, std::abs(value));
+  return most;
+}
+
+// Catches a mean over both directions, in which a friction that varies along the travel is a flat line at zero.
+TEST(DirectionCurves, ShowAFrictionThatVariesWithThePosition) {
+  const ResidualEffort samples = varying_friction();
+  ResidualCoordinate over = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
+  over.folded = true;
+  const std::vector<ScatterSeries> curves = direction_curves(samples, samples.missing, over);
+  ASSERT_EQ(curves.size(), 2U);
+  for (const ScatterSeries& curve : curves) EXPECT_NEAR(largest(curve), 0.7, 0.02);
+  for (std::size_t k = 0; k < std::min(curves[0].x.size(), curves[1].x.size()); ++k)
+    EXPECT_NEAR(curves[0].y[k], -curves[1].y[k], 0.1);
+}
+
+// Catches bins of 2 mm along the travel, whose means of a ripple every 10 mm or 5 mm beat.
+TEST(DirectionCurves, AKnownRippleAveragesOutAlongTheTravelOrShows) {
+  const ResidualEffort samples = varying_friction();
+  const auto along = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
+  for (const ScatterSeries& curve : direction_curves(samples, samples.missing, along)) {
+    EXPECT_GT(curve.x.size(), 10U);
+    EXPECT_LT(largest(curve), 0.05);
+  }
+}
+
+TEST(ResidualCoordinate, TravelIsInMillimetresForBothKindsOfDrives) {
+  ResidualEffort samples;
+  samples.x = {0.25};
+  EXPECT_EQ(coordinate_of("position", sim::DriveKind::linear).of(samples), std::vector{250.0});
+  EXPECT_EQ(coordinate_of("position", sim::DriveKind::rotary).of(samples), std::vector{0.25});
+  EXPECT_EQ(coordinate_of("position", sim::DriveKind::linear).axis.unit, "mm");
+}
+
+// A ripple along the travel and its direction are two cells of a map, not one.
+TEST(ResidualMaps, TellPositionAndSpeedApart) {
+  sim::DriveDescription model;
+  const ResidualView view{"", SeriesRole::before, varying_friction(), {}};
+  Report report("test");
+  add_residual_maps(report, {&view, 1}, model, kPeriod_mm);
+  EXPECT_NE(report.html().find("\"kind\":\"map\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace host
