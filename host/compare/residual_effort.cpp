@@ -77,10 +77,15 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
       if (row == window.begin) return 0.0;
       return by_position ? motion.x[row] - prediction.x[row] : motion.w[row] - prediction.w[row];
     };
+    const auto acceleration_at = [&](std::size_t row) {
+      return (motion.w[row + step] - motion.w[row - step]) / (2.0 * step_s);
+    };
+    // Slow against its filter, a tachometer shows the speed of one time constant ago.
     const auto motion_at = [&](std::size_t row) {
       sim::DriveMotion at;
       at.x = motion.x[row];
-      at.w = at.tach = motion.w[row];
+      at.w = motion.w[row];
+      at.tach = at.w - drive.tach_lag_s * acceleration_at(row);
       return at;
     };
     for (std::size_t row = window.begin + step; row + step <= window.begin + window.length; row += step) {
@@ -101,7 +106,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
       out.t_s.push_back(record.t_s[row] - record.t_s.front());
       out.x.push_back(motion.x[row]);
       out.w.push_back(motion.w[row]);
-      out.acceleration.push_back((motion.w[row + step] - motion.w[row - step]) / (2.0 * step_s));
+      out.acceleration.push_back(acceleration_at(row));
       out.command_V.push_back(prepared.u_V[row]);
       out.since_reversal.push_back(history.since_reversal[row]);
       out.rest_s.push_back(history.rest_s[row]);

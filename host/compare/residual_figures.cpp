@@ -81,13 +81,14 @@ void share_range(std::span<ScatterPlot> plots) {
   for (ScatterPlot& plot : plots) plot.y_range = {low - margin, high + margin};
 }
 
-/// Equal cells over the range of the values, but for the outermost ones.
+/// Equal cells over the middle 98 % of the values: a few fast samples must not shrink all others to a line.
 HeatMap::Cells cells_over(const Axis& axis, const Values& values, std::size_t count, double period) {
-  const auto [low, high] = std::ranges::minmax_element(values);
-  const double step = bin_width((*high - *low) / static_cast<double>(count), period);
-  if (!(step > 0.0)) return {axis, *low, 1.0, 0};
-  const double first = step * std::floor(*low / step);
-  return {axis, first, step, 1 + static_cast<std::size_t>((*high - first) / step)};
+  constexpr double kLeftOut = 0.01;
+  const double low = quantile(values, kLeftOut), high = quantile(values, 1.0 - kLeftOut);
+  const double step = bin_width((high - low) / static_cast<double>(count), period);
+  if (!(step > 0.0)) return {axis, low, 1.0, 0};
+  const double first = step * std::floor(low / step);
+  return {axis, first, step, 1 + static_cast<std::size_t>((high - first) / step)};
 }
 
 Values means_in(const HeatMap& map, const Values& x, const Values& y, const Values& values) {

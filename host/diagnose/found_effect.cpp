@@ -13,6 +13,7 @@
 #include "host/report/text_format.hpp"
 #include "host/statistics.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/harmonic.hpp"
 
 namespace host {
 
@@ -20,6 +21,10 @@ namespace {
 
 using Values = std::vector<double>;
 using Curves = std::vector<ScatterSeries>;
+
+const char* residual_unit(const FoundEffect& effect) {
+  return effect.of_speed_channel ? units_of(effect.drive).speed : units_of(effect.drive).effort;
+}
 
 sim::DriveDescription without_kind(sim::DriveDescription model, std::string_view kind) {
   std::erase_if(model.effects, [kind](const sim::EffectEntry& entry) { return entry.kind == kind; });
@@ -68,6 +73,21 @@ std::vector<ResidualCoordinate> coordinates_of(const sim::EffectInfo& info, cons
   return all;
 }
 
+/// Whether a ripple blurs in a sample: it averages over 5 ms, in which the axis passes more than an eighth of the
+/// shortest period (at an eighth, 97 % of the amplitude are left).
+std::vector<bool> blurred_samples(const FoundEffect& effect, const sim::DriveDescription& model) {
+  constexpr double kMostPeriods = 0.125;
+  constexpr std::ptrdiff_t kFewest = 200;
+  const sim::EffectEntry& entry = *model.find(effect.kind);
+  const double period = entry.has_any("cosine") ? sim::Harmonics(entry).finest_period() : entry.at("period");
+  std::vector<bool> blurred;
+  for (const double w : effect.without.w)
+    blurred.push_back(std::abs(w) * model.data.lead * effect.without.period_s > kMostPeriods * period);
+  if (std::ranges::count(blurred, false) < kFewest) blurred.assign(blurred.size(), false);
+  return blurred;
+}
+
+/// NaN for samples that tell nothing over the coordinate.
 void trace_of(FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown) {
   const sim::DriveDescription less = without_kind(model, effect.kind);
   std::vector<ResidualEffort> both;
@@ -77,9 +97,10 @@ void trace_of(FoundEffect& effect, const sim::DriveDescription& model, const Rec
     both = residuals_on({&less, &model}, shown);
   effect.trace = difference(both.front().missing, both.back().missing);
   effect.without = std::move(both.front());
-  if (!effect.only_record) return;
+  const std::vector<bool> blurred = effect.over.folded ? blurred_samples(effect, model) : std::vector<bool>{};
   for (std::size_t k = 0; k < effect.trace.size(); ++k)
-    if (effect.without.record[k] != *effect.only_record) effect.trace[k] = effect.without.missing[k] = std::nan("");
+    if ((effect.only_record && effect.without.record[k] != *effect.only_record) || (!blurred.empty() && blurred[k]))
+      effect.trace[k] = effect.without.missing[k] = std::nan("");
 }
 
 /// The record in which the trace is strongest.
@@ -103,34 +124,59 @@ Peak peak_of(const Curves& curves) {
   return peak;
 }
 
-/// 95 % interval of the peak, by the slopes of its bin over the effect's parameters and their covariance (delta
-/// method).
+/// The means and the lines, with some room: a bin whose samples spread far must not flatten all others.
+std::pair<double, double> range_of_means(const ScatterPlot& plot) {
+  constexpr double kMargin = 0.25;
+  double low = 0.0, high = 0.0;
+  for (const ScatterSeries& series : plot.series)
+    for (const double value : series.y)
+      if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+  const double margin = kMargin * (high - low);
+  return {low - margin, high + margin};
+}
+
+/// Of what an encoder adds to the travel, over one period.
+double largest_encoder_error(const sim::DriveDescription& model, double period) {
+  constexpr int kPlaces = 200;
+  const sim::Drive drive(model);
+  double largest = 0.0;
+  for (int k = 0; k < kPlaces; ++k) largest = std::max(largest, std::abs(drive.encoder_error_at(period * k / kPlaces)));
+  return largest;
+}
+
+/// FoundEffect::size of a model; its trace is read in the bin of `peak`.
+double size_in(const FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown,
+               const Peak& peak) {
+  if (sim::find_effect(effect.kind)->stage == sim::Stage::encoder)
+    return 1e3 * travel_in_mm(effect.drive) * largest_encoder_error(model, model.find(effect.kind)->at("period"));
+  FoundEffect other = effect;
+  trace_of(other, model, shown);
+  return std::abs(direction_curves(other.without, other.trace, other.over)[peak.curve].y[peak.bin]);
+}
+
+/// 95 % interval of the size, by its slopes over the effect's parameters and their covariance (delta method).
 std::optional<std::array<double, 2>> interval_of(const FoundEffect& effect, const sim::DriveDescription& model,
-                                                 const RecordSet& shown, const RecordSet& training) {
+                                                 const RecordSet& shown, const RecordSet& training, const Peak& peak) {
   constexpr double kMostStep = 0.05;  // relative: the slope is wanted where the fit stands
   const auto [vector, values, covariance] = covariance_of(model, training);
   if (covariance.size() == 0) return {};
-  const Peak peak = peak_of(direction_curves(effect.without, effect.trace, effect.over));
   Eigen::VectorXd slopes = Eigen::VectorXd::Zero(values.size());
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const FreeParameter& free = vector.parameters()[static_cast<std::size_t>(k)];
     if (model.effects[free.effect].kind != effect.kind) continue;
-    const double size = values(k) != 0.0 ? std::abs(values(k)) : free.scale;
-    const double step = std::min(std::sqrt(std::max(0.0, covariance(k, k))), kMostStep * size);
+    const double magnitude = values(k) != 0.0 ? std::abs(values(k)) : free.scale;
+    const double step = std::min(std::sqrt(std::max(0.0, covariance(k, k))), kMostStep * magnitude);
     if (!(step > 0.0)) continue;
     Eigen::VectorXd moved = values;
     moved(k) += moved(k) + step > free.upper ? -step : step;
     sim::DriveDescription changed = model;
     vector.write(moved, changed);
-    FoundEffect other = effect;
-    trace_of(other, changed, shown);
-    const Curves curves = direction_curves(other.without, other.trace, other.over);
-    slopes(k) = (curves[peak.curve].y[peak.bin] - peak.mean) / (moved(k) - values(k));
+    slopes(k) = (size_in(effect, changed, shown, peak) - effect.size) / (moved(k) - values(k));
   }
   const double deviation = std::sqrt(std::max(0.0, slopes.dot(covariance * slopes)));
   if (!std::isfinite(deviation) || deviation == 0.0) return {};
-  const double reach = kNormal95 * deviation, size = std::abs(peak.mean);
-  return std::array{std::max(0.0, size - reach), size + reach};
+  const double reach = kNormal95 * deviation;
+  return std::array{std::max(0.0, effect.size - reach), effect.size + reach};
 }
 
 double coulomb_level(const sim::DriveDescription& model) {
@@ -157,20 +203,19 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
     most = share;
     effect.over = std::move(over);
   }
-  if (effect.over.along == &ResidualEffort::t_s) {
-    effect.only_record = strongest_record(effect);
-    trace_of(effect, model, shown);
-  }
-  effect.size = std::abs(peak_of(direction_curves(effect.without, effect.trace, effect.over)).mean);
-  effect.ci95 = interval_of(effect, model, shown, training);
+  if (effect.over.along == &ResidualEffort::t_s) effect.only_record = strongest_record(effect);
+  if (effect.only_record || effect.over.folded) trace_of(effect, model, shown);
+  const Peak peak = peak_of(direction_curves(effect.without, effect.trace, effect.over));
+  effect.unit = info.stage == sim::Stage::encoder ? "µm" : residual_unit(effect);
+  effect.size = size_in(effect, model, shown, peak);
+  effect.ci95 = interval_of(effect, model, shown, training, peak);
   const double friction = coulomb_level(model);
-  if (!effect.of_speed_channel && friction > 0.0) effect.share_of_friction = effect.size / friction;
+  const bool acts_on_shaft = info.stage == sim::Stage::load || info.stage == sim::Stage::friction;
+  if (acts_on_shaft && friction > 0.0) effect.share_of_friction = effect.size / friction;
   return effect;
 }
 
 }  // namespace
-
-const char* FoundEffect::unit() const { return of_speed_channel ? units_of(drive).speed : units_of(drive).effort; }
 
 std::vector<FoundEffect> found_effects(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                        const PreparedSets& sets) {
@@ -185,9 +230,8 @@ std::vector<FoundEffect> found_effects(const sim::DriveDescription& model, const
 
 std::string size_in_words(const FoundEffect& effect) {
   std::string words =
-      fmt::format("{}: {} {}", sim::find_effect(effect.kind)->title, format_value(effect.size, 2), effect.unit());
-  if (effect.ci95)
-    words += fmt::format(" [{}, {}]", format_value((*effect.ci95)[0], 2), format_value((*effect.ci95)[1], 2));
+      fmt::format("{}: {} {}", sim::find_effect(effect.kind)->title, format_value(effect.size), effect.unit);
+  if (effect.ci95) words += fmt::format(" [{}, {}]", format_value((*effect.ci95)[0]), format_value((*effect.ci95)[1]));
   if (effect.share_of_friction) words += fmt::format(", {:.0f} % of the friction", 100.0 * *effect.share_of_friction);
   return words;
 }
@@ -205,7 +249,7 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
   plot.y = {effect.of_speed_channel                  ? "speed residual"
             : effect.drive == sim::DriveKind::rotary ? "torque residual"
                                                      : "force residual",
-            effect.unit()};
+            residual_unit(effect)};
   for (ScatterSeries& curve : direction_curves(effect.without, effect.without.missing, effect.over)) {
     curve.style = SeriesStyle::points;
     if (!curve.x.empty()) plot.series.push_back(std::move(curve));
@@ -221,6 +265,7 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
     curve.samples.clear();
     plot.series.push_back(std::move(curve));
   }
+  if (const auto range = range_of_means(plot); range.first < range.second) plot.y_range = range;
   return plot;
 }
 

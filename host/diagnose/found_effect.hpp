@@ -21,11 +21,11 @@ struct FoundEffect {
   ResidualEffort without;                  ///< residual of the model without the effect, all its other parameters alike
   std::vector<double> trace;               ///< the effect's part of each: residual without it less residual with it
   std::optional<std::size_t> only_record;  ///< over time: records have no common time, so the others' samples are NaN
-  double size = 0.0;  ///< largest mean of the trace over the coordinate, Nm or N, rad/s or m/s; >= 0
+  /// Largest mean of the trace over the coordinate; of an encoder's error its largest value. >= 0
+  double size = 0.0;
+  const char* unit = "";                      ///< of the size: Nm or N, rad/s or m/s, µm
   std::optional<std::array<double, 2>> ci95;  ///< 95 % interval of the size; empty where the fit gives none
-  std::optional<double> share_of_friction;    ///< size over the Coulomb level; empty for speeds
-
-  const char* unit() const;
+  std::optional<double> share_of_friction;    ///< size over the Coulomb level, of torques on the shaft
 };
 
 /// The effects of these kinds in a fitted model, on all records of the sets. A kind that leaves no trace (the axis

@@ -84,8 +84,12 @@ TEST(Report, StaysLightHoweverLongTheRecordsAre) {
 }
 
 TEST(Report, AMapKeepsItsCellsAndItsGaps) {
-  HeatMap map{"Map", "", {{"position", "mm"}, 10.0, 5.0, 2}, {{"speed", "rad/s"}, -1.0, 1.0, 2}, {"torque", "Nm"}};
-  map.values = {0.123456, std::nan(""), -2.0, 0.0};
+  HeatMap map{"Map",
+              "",
+              {{"position", "mm"}, 10.0, 5.0, 2},
+              {{"speed", "rad/s"}, -1.0, 1.0, 2},
+              {"torque", "Nm"},
+              {0.123456, std::nan(""), -2.0, 0.0}};
   map.limit = 2.0;
   Report report("test");
   report.add(map);
