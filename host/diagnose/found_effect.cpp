@@ -124,6 +124,24 @@ Peak peak_of(const Curves& curves) {
   return peak;
 }
 
+/// The 0.4 s of the strongest record in which the trace is strongest.
+std::array<double, 2> strongest_seconds(const FoundEffect& effect) {
+  constexpr double kLength_s = 0.4;
+  const Values& t_s = effect.without.t_s;
+  double most = -1.0, sum = 0.0, begin_s = 0.0;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < t_s.size(); ++k) {
+    if (effect.without.record[k] != *effect.only_record) continue;
+    if (sum == 0.0) first = k;
+    sum += effect.trace[k] * effect.trace[k];
+    for (; t_s[k] - t_s[first] > kLength_s; ++first) sum -= effect.trace[first] * effect.trace[first];
+    if (sum <= most) continue;
+    most = sum;
+    begin_s = t_s[first];
+  }
+  return {begin_s, begin_s + kLength_s};
+}
+
 /// The means and the lines, with some room: a bin whose samples spread far must not flatten all others.
 std::pair<double, double> range_of_means(const ScatterPlot& plot) {
   constexpr double kMargin = 0.25;
@@ -144,10 +162,37 @@ double largest_encoder_error(const sim::DriveDescription& model, double period) 
   return largest;
 }
 
+/// The parameter whose value says more than a torque; empty where the torque says it.
+std::string_view main_parameter(const sim::EffectInfo& info) {
+  const bool acts_elsewhere =
+      info.stage == sim::Stage::command || info.stage == sim::Stage::motor || info.stage == sim::Stage::mechanics;
+  return acts_elsewhere && !info.periodic ? info.parameters.front().id : std::string_view{};
+}
+
+/// A unit in which the value of a parameter reads well, and the factor to it. The unit of a key follows its last "_".
+struct ShownUnit {
+  std::string name;
+  double factor = 1.0;
+};
+
+ShownUnit shown_unit(std::string_view key, double value) {
+  constexpr double kSmall_s = 0.1, kSmall_mm = 1.0;
+  const std::string unit(key.substr(key.rfind('_') + 1));
+  if (unit == "s" && value < kSmall_s) return {"ms", 1e3};
+  if (unit == "mm" && value < kSmall_mm) return {"µm", 1e3};
+  if (unit == "m") return value < 1e-3 * kSmall_mm ? ShownUnit{"µm", 1e6} : ShownUnit{"mm", 1e3};
+  return {unit};
+}
+
 /// FoundEffect::size of a model; its trace is read in the bin of `peak`.
 double size_in(const FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown,
                const Peak& peak) {
-  if (sim::find_effect(effect.kind)->stage == sim::Stage::encoder)
+  const sim::EffectInfo& info = *sim::find_effect(effect.kind);
+  if (const std::string id(main_parameter(info)); !id.empty()) {
+    const double value = std::abs(model.find(effect.kind)->at(id));
+    return shown_unit(info.parameter(id)->key(effect.drive), value).factor * value;
+  }
+  if (info.stage == sim::Stage::encoder)
     return 1e3 * travel_in_mm(effect.drive) * largest_encoder_error(model, model.find(effect.kind)->at("period"));
   FoundEffect other = effect;
   trace_of(other, model, shown);
@@ -207,8 +252,15 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
   if (effect.only_record || effect.over.folded) trace_of(effect, model, shown);
   const Peak peak = peak_of(direction_curves(effect.without, effect.trace, effect.over));
   effect.unit = info.stage == sim::Stage::encoder ? "µm" : residual_unit(effect);
+  if (const std::string id(main_parameter(info)); !id.empty())
+    effect.unit = shown_unit(info.parameter(id)->key(effect.drive), std::abs(entry.at(id))).name;
   effect.size = size_in(effect, model, shown, peak);
   effect.ci95 = interval_of(effect, model, shown, training, peak);
+  constexpr double kLeastCarried = 0.4;
+  if (most < kLeastCarried) {
+    effect.only_record = strongest_record(effect);
+    effect.cutout_s = strongest_seconds(effect);
+  }
   const double friction = coulomb_level(model);
   const bool acts_on_shaft = info.stage == sim::Stage::load || info.stage == sim::Stage::friction;
   if (acts_on_shaft && friction > 0.0) effect.share_of_friction = effect.size / friction;
@@ -236,20 +288,12 @@ std::string size_in_words(const FoundEffect& effect) {
   return words;
 }
 
-ScatterPlot effect_plot(const FoundEffect& effect) {
-  ScatterPlot plot;
-  plot.title = size_in_words(effect);
-  plot.caption =
-      "Points: residual of the model without this effect, with the band that holds 80 % of the samples, on training "
-      "and "
-      "validation data. Lines: what the fitted effect adds to the model.";
-  plot.large = true;
+namespace {
+
+/// The residual over the coordinate, forward and backward, and the effect's curves over it.
+void append_curves(const FoundEffect& effect, ScatterPlot& plot) {
   plot.x = effect.over.axis;
   plot.logarithmic_x = effect.over.logarithmic;
-  plot.y = {effect.of_speed_channel                  ? "speed residual"
-            : effect.drive == sim::DriveKind::rotary ? "torque residual"
-                                                     : "force residual",
-            residual_unit(effect)};
   for (ScatterSeries& curve : direction_curves(effect.without, effect.without.missing, effect.over)) {
     curve.style = SeriesStyle::points;
     if (!curve.x.empty()) plot.series.push_back(std::move(curve));
@@ -265,6 +309,47 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
     curve.samples.clear();
     plot.series.push_back(std::move(curve));
   }
+}
+
+/// The same, sample by sample, over the seconds of the cutout.
+void append_cutout(const FoundEffect& effect, ScatterPlot& plot) {
+  plot.x = {"time", "s"};
+  plot.series = {{"residual, forward", SeriesRole::residual, SeriesStyle::points, {}, {}, {}, {}},
+                 {"residual, backward", SeriesRole::other, SeriesStyle::points, {}, {}, {}, {}},
+                 {"effect", SeriesRole::model, SeriesStyle::line, {}, {}, {}, {}}};
+  const auto [from_s, to_s] = *effect.cutout_s;
+  const ResidualEffort& samples = effect.without;
+  for (std::size_t k = 0; k < effect.trace.size(); ++k) {
+    if (samples.record[k] != *effect.only_record || samples.t_s[k] < from_s || samples.t_s[k] > to_s) continue;
+    ScatterSeries& residual = plot.series[samples.w[k] > 0.0 ? 0 : 1];
+    residual.x.push_back(samples.t_s[k]);
+    residual.y.push_back(samples.missing[k]);
+    plot.series.back().x.push_back(samples.t_s[k]);
+    plot.series.back().y.push_back(effect.trace[k]);
+  }
+  std::erase_if(plot.series, [](const ScatterSeries& series) { return series.x.empty(); });
+}
+
+}  // namespace
+
+ScatterPlot effect_plot(const FoundEffect& effect) {
+  ScatterPlot plot;
+  plot.title = size_in_words(effect);
+  plot.caption = effect.cutout_s
+                     ? "The 0.4 s in which the effect is strongest. Points: residual of the model without "
+                       "it. Line: what the fitted effect adds to the model."
+                     : "Points: residual of the model without this effect, with the band that holds 80 % of "
+                       "the samples, on training and validation data. Lines: what the fitted effect adds to "
+                       "the model.";
+  plot.large = true;
+  plot.y = {effect.of_speed_channel                  ? "speed residual"
+            : effect.drive == sim::DriveKind::rotary ? "torque residual"
+                                                     : "force residual",
+            residual_unit(effect)};
+  if (effect.cutout_s)
+    append_cutout(effect, plot);
+  else
+    append_curves(effect, plot);
   if (const auto range = range_of_means(plot); range.first < range.second) plot.y_range = range;
   return plot;
 }

@@ -21,9 +21,12 @@ struct FoundEffect {
   ResidualEffort without;                  ///< residual of the model without the effect, all its other parameters alike
   std::vector<double> trace;               ///< the effect's part of each: residual without it less residual with it
   std::optional<std::size_t> only_record;  ///< over time: records have no common time, so the others' samples are NaN
-  /// Largest mean of the trace over the coordinate; of an encoder's error its largest value. >= 0
+  /// Where no coordinate carries the trace, as after each step of the command: the strongest seconds of the record.
+  std::optional<std::array<double, 2>> cutout_s;
+  /// Largest mean of the trace over the coordinate, >= 0; of an encoder's error its largest value; of what acts in the
+  /// command, the motor or the mechanics its first parameter (a gap, a delay, a resonance).
   double size = 0.0;
-  const char* unit = "";                      ///< of the size: Nm or N, rad/s or m/s, µm
+  std::string unit;                           ///< of the size: Nm or N, rad/s or m/s, µm, ms, Hz ...
   std::optional<std::array<double, 2>> ci95;  ///< 95 % interval of the size; empty where the fit gives none
   std::optional<double> share_of_friction;    ///< size over the Coulomb level, of torques on the shaft
 };

@@ -51,10 +51,11 @@ void append_stretch(BinnedCurve& curve, std::span<const Sample> stretch, double 
 }  // namespace
 
 double bin_width(double wanted, double period) {
-  constexpr double kFewestBinsAPeriod = 8.0;
+  constexpr double kBinsAPeriod = 8.0;
+  constexpr double kMostFiner = 3.0;  // times as many bins as wanted, where they show the ripple
   if (!(period > 0.0)) return wanted;
-  if (kFewestBinsAPeriod * wanted > period) return period * std::ceil(wanted / period);
-  return period / std::round(period / wanted);
+  if (kBinsAPeriod * wanted > kMostFiner * period) return period * std::ceil(wanted / period);
+  return period / std::max(kBinsAPeriod, std::round(period / wanted));
 }
 
 BinnedCurve binned_curve(std::span<const double> x, std::span<const double> y, std::size_t bins,
