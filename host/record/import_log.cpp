@@ -10,6 +10,7 @@
 #include "host/exit_codes.hpp"
 #include "host/nearest_name.hpp"
 #include "host/read_file.hpp"
+#include "host/record/text_encoding.hpp"
 
 namespace host {
 
@@ -64,12 +65,15 @@ Log read_log(const std::string& path) {
   const std::string text = read_file(path);
   if (is_matlab_file(std::string_view(text).substr(0, 16), path)) return read_mat(path);
   if (text.starts_with("\x93NUMPY")) return parse_npy(text, path);
-  if (text.starts_with("PK\x03\x04"))
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: a packed archive (.npz, .xlsx, .zip); save the arrays as .npy or "
-                              ".mat, a sheet as .csv",
-                              path));
-  return parse_table(text, path);
+  if (text.starts_with("PK\x03\x04")) return parse_npz(text, path);
+  return parse_log_text(text, path);
+}
+
+Log parse_log_text(std::string_view text, std::string_view name) {
+  const std::string plain = as_utf8(std::string(text));
+  for (const auto parse : {parse_sinumerik, parse_camonitor, parse_channel_blocks})
+    if (std::optional<Log> log = parse(plain, name)) return std::move(*log);
+  return parse_table(plain, name);
 }
 
 }  // namespace host

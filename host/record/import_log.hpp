@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,13 +16,20 @@ struct LogColumn {
   std::vector<double> values;  ///< NaN where the field is empty
   std::string fault;           ///< why the values cannot be used, or stop early; empty: they are good
   double last_digit = 0.0;     ///< weight of the finest digit in the text; 0: binary numbers
+  std::string unit{};          ///< as the file gives it apart from the name: a line of units, a header; may be empty
+  std::string time{};          ///< name of the column that holds its own time stamps; empty: the log's
 };
+
+/// Lines of a preamble that are kept, and bytes of each: more than any logger known here writes (TwinCAT: 24).
+inline constexpr std::size_t kMostPreamble = 100, kLongestPreamble = 400;
 
 struct Log {
   std::string path;
   std::vector<LogColumn> columns;
   std::map<std::string, std::string> header;  ///< `# key: value` lines of a table
   std::size_t first_line = 0;                 ///< line of row 0 in a table; 0: not a table
+  std::string layout = "table";               ///< what kind of file it is: "twincat-scope", "camonitor", "mat", …
+  std::vector<std::string> preamble{};  ///< the lines in front of the table, remarks included; at most kMostPreamble
 
   /// By name, else by number ("3", "#3", from 1). Throws Failure(bad_input) that lists what there is.
   const LogColumn& find(std::string_view name) const;
@@ -31,16 +39,34 @@ struct Log {
 };
 
 /// Reads a MATLAB file (v4, v5, v7.3: by its content), a NumPy array (.npy) or a table: fields separated by comma,
-/// semicolon, tab or blanks, numbers with decimal point or comma (found out), with or without headings, a second line
-/// of units, remarks (# or %) or a preamble in front; UTF-8 or UTF-16. Dates and times of day become seconds. Throws
-/// Failure(bad_input).
+/// semicolon, tab or blanks, numbers with decimal point or comma (found out), with or without headings, further lines
+/// of headings or units, remarks (# or %) or a preamble in front; UTF-8, UTF-16 or Windows-1252. Dates and times of day
+/// become seconds. Exports of TwinCAT Scope and of National Instruments' loggers (a header for each channel, time
+/// columns of their own), EPICS camonitor (a line for each value) and SINUMERIK traces (XML) are known by their
+/// content. Throws Failure(bad_input).
 Log read_log(const std::string& path);
+
+/// read_log of text that is already in memory: whichever of the text layouts it has.
+Log parse_log_text(std::string_view text, std::string_view name);
 
 /// read_log of a table that is already in memory.
 Log parse_table(std::string_view text, std::string_view name);
 
+/// A table whose header stands above the channels, key by key, with a time column in front of one channel or of several
+/// (TwinCAT 3 Scope, NI). Empty where the text is none.
+std::optional<Log> parse_channel_blocks(std::string_view text, std::string_view name);
+
+/// One value a line: name, date, time, value (EPICS camonitor). Empty where the text is none.
+std::optional<Log> parse_camonitor(std::string_view text, std::string_view name);
+
+/// The trace of a SINUMERIK control (XML: dataFrame, dataSignal, rec). Empty where the text is none.
+std::optional<Log> parse_sinumerik(std::string_view text, std::string_view name);
+
 /// read_log of a NumPy array.
 Log parse_npy(std::string_view bytes, std::string_view path);
+
+/// read_log of an archive of NumPy arrays as numpy.savez writes it (not compressed).
+Log parse_npz(std::string_view bytes, std::string_view path);
 
 /// read_log of a MATLAB file.
 Log read_mat(const std::string& path);

@@ -159,6 +159,7 @@ Log read_mat(const std::string& path) {
                   fmt::format("{}: not a MATLAB file that can be read; save it again with save -v7 or -v7.3", path));
   Log log;
   log.path = path;
+  log.layout = "mat";
   while (const std::unique_ptr<matvar_t, FreeVariable> variable{matio.read_next(file.get())})
     append_variable(*variable, variable->name != nullptr ? variable->name : "", 0, log);
   if (log.columns.empty())

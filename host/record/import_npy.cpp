@@ -68,6 +68,7 @@ class NpyReader {
                               columns_));
     Log log;
     log.path = path_;
+    log.layout = "npy";
     for (std::size_t k = 0; k < columns_ * fields_.size(); ++k) log.columns.push_back(column(k));
     return log;
   }

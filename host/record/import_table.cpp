@@ -56,7 +56,6 @@ class TableReader {
 
  private:
   struct ColumnState {
-    std::string unit;
     bool begun = false, is_clock = false;
     std::optional<std::int64_t> first_day;
   };
@@ -87,9 +86,11 @@ class TableReader {
         continue;
       }
       layout_.split(line_, fields_);
+      if (fields_.size() == layout_.fields + 1 && fields_.back().empty()) fields_.pop_back();  // headings that end so
       if (fields_.size() == layout_.fields) break;
       if (fields_.size() > 1 && std::ranges::all_of(fields_, [&](std::string_view f) { return is_value(f); }))
         fail_field_count(layout_.fields);
+      keep_preamble();
       ++preamble;
     }
     if (trim_blanks(line_).empty()) fail("no rows; name a file that holds a log");
@@ -97,7 +98,12 @@ class TableReader {
       log_.header["imported_preamble"] = fmt::format("{} lines in front of the table were left out", preamble);
   }
 
+  void keep_preamble() {
+    if (log_.preamble.size() < kMostPreamble) log_.preamble.emplace_back(line_.substr(0, kLongestPreamble));
+  }
+
   void take_remark() {
+    keep_preamble();
     const std::string_view text = trim_blanks(line_);
     const std::size_t colon = text.find(':');
     if (colon != std::string_view::npos)
@@ -110,23 +116,41 @@ class TableReader {
     for (LogColumn& column : log_.columns) column.last_digit = std::numeric_limits<double>::infinity();
     if (std::ranges::all_of(fields_, [&](std::string_view f) { return f.empty() || is_value(f); })) return;
     for (std::size_t k = 0; k < fields_.size(); ++k) log_.columns[k].name = fields_[k];
-    if (!next_line()) fail("no rows follow the headings; name a file that holds a log");
-    layout_.split(line_, fields_);
-    if (!are_units(fields_)) return;
-    for (std::size_t k = 0; k < fields_.size(); ++k) {
-      states_[k].unit = without_brackets(fields_[k]);
-      log_.columns[k].name = name_with_unit(log_.columns[k].name, states_[k].unit);
+    constexpr int kMostHeadings = 4;
+    for (int k = 0; k < kMostHeadings; ++k) {
+      if (!next_line()) fail("no rows follow the headings; name a file that holds a log");
+      while (is_remark(line_) && next_line()) {
+      }
+      layout_.split(line_, fields_);
+      if (!are_headings(fields_)) return;
+      if (log_.header.contains("imported_units") || !take_units()) append_headings();
     }
-    log_.header["imported_units"] = fmt::format("{}", fmt::join(fields_, ", "));
-    if (!next_line()) fail("no rows follow the headings and units; name a file that holds a log");
   }
 
-  /// A second line of headings: short texts, no value among them.
-  bool are_units(const Fields& fields) const {
-    constexpr std::size_t kLongestUnit = 12;
+  /// Further lines of headings: as many texts, no value among them.
+  bool are_headings(const Fields& fields) const {
     return fields.size() == log_.columns.size() &&
            std::ranges::any_of(fields, [](std::string_view f) { return !f.empty(); }) &&
-           std::ranges::none_of(fields, [&](std::string_view f) { return is_value(f) || f.size() > kLongestUnit; });
+           std::ranges::none_of(fields, [&](std::string_view f) { return is_value(f); });
+  }
+
+  /// Whether all of the line's texts are as short as units.
+  bool take_units() {
+    constexpr std::size_t kLongestUnit = 16;
+    if (std::ranges::any_of(fields_, [](std::string_view f) { return f.size() > kLongestUnit; })) return false;
+    for (std::size_t k = 0; k < fields_.size(); ++k) {
+      log_.columns[k].unit = without_brackets(fields_[k]);
+      log_.columns[k].name = name_with_unit(log_.columns[k].name, log_.columns[k].unit);
+    }
+    log_.header["imported_units"] = fmt::format("{}", fmt::join(fields_, ", "));
+    return true;
+  }
+
+  /// "Analog 1" above "Servo motor speed".
+  void append_headings() {
+    for (std::size_t k = 0; k < fields_.size(); ++k)
+      if (!fields_[k].empty())
+        log_.columns[k].name += fmt::format("{}{}", log_.columns[k].name.empty() ? "" : " ", fields_[k]);
   }
 
   [[noreturn]] void fail_field_count(std::size_t columns) const {
@@ -176,7 +200,7 @@ class TableReader {
   static void describe(LogColumn& column, const ColumnState& state) {
     column.kind = fmt::format("{} {}{}", column.values.size(),
                               state.is_clock ? "times, s from the first day's midnight" : "numbers",
-                              state.unit.empty() ? "" : fmt::format(", {}", state.unit));
+                              column.unit.empty() ? "" : fmt::format(", {}", column.unit));
   }
 
   std::string_view rest_, line_;

@@ -66,7 +66,9 @@ double merit_of(TableLayout& layout, const std::vector<std::string_view>& lines)
     const auto known = std::ranges::count_if(fields, [&](std::string_view field) {
       return layout.number(field).has_value() || parse_clock(field).has_value();
     });
-    merit += static_cast<double>(known) / static_cast<double>(fields.size());
+    const std::size_t filled =
+        fields.size() - (fields.size() > 1 && fields.back().empty() ? 1 : 0);  // lines that end so
+    merit += static_cast<double>(known) / static_cast<double>(filled);
   }
   return merit;
 }

@@ -45,6 +45,46 @@ std::string from_utf16(const std::string& text, std::size_t begin, bool big_end_
   return out;
 }
 
+/// Length of the UTF-8 character at `at`; 0 where there is none.
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  const auto lead = static_cast<std::uint8_t>(text[at]);
+  const std::size_t length = lead < 0x80U                    ? 1
+                             : lead >= 0xC2U && lead < 0xE0U ? 2
+                             : lead >= 0xE0U && lead < 0xF0U ? 3
+                             : lead >= 0xF0U && lead < 0xF5U ? 4
+                                                             : 0;
+  if (at + length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if ((static_cast<std::uint8_t>(text[at + k]) & 0xC0U) != 0x80U) return 0;
+  return length;
+}
+
+bool is_utf8(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
+/// Bytes 0x80 to 0x9F of Windows-1252 (Unicode consortium, CP1252.TXT); 0 where the page has none.
+constexpr std::uint16_t kWindows1252[32] = {0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021,
+                                            0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0,      0x017D, 0,
+                                            0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
+                                            0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+
+std::string from_windows_1252(const std::string& text) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 8);
+  for (const char c : text) {
+    const auto byte = static_cast<std::uint8_t>(c);
+    append_utf8(byte >= 0x80U && byte < 0xA0U && kWindows1252[byte - 0x80U] != 0 ? kWindows1252[byte - 0x80U] : byte,
+                out);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string as_utf8(std::string text) {
@@ -53,7 +93,7 @@ std::string as_utf8(std::string text) {
   if (text.starts_with("\xFE\xFF")) return from_utf16(text, 2, true);
   if (text.size() >= 4 && text[1] == '\0' && text[0] != '\0' && text[3] == '\0') return from_utf16(text, 0, false);
   if (text.size() >= 4 && text[0] == '\0' && text[1] != '\0' && text[2] == '\0') return from_utf16(text, 0, true);
-  return text;
+  return is_utf8(text) ? text : from_windows_1252(text);
 }
 
 }  // namespace host

@@ -6,7 +6,7 @@
 namespace host {
 
 /// UTF-8 without byte-order mark, of UTF-8 or UTF-16 (known by its mark, or by a zero byte beside its first character).
-/// Other encodings of one byte a character come back as they are.
+/// Bytes that are not UTF-8 are taken as Windows-1252, which Western loggers write.
 std::string as_utf8(std::string text);
 
 }  // namespace host
