@@ -15,11 +15,13 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["sim/"] = "sim/"
     may["host/"] = "host/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/record/"] = "host/record/ sim/"
+    may["host/opening/"] = "host/opening/ host/record/ sim/"
     may["host/model/"] = "host/model/ sim/"
     may["host/report/"] = "host/report/ host/model/ sim/"
     may["host/identify/"] = "host/identify/ host/record/ sim/"
     may["host/evidence/"] = "host/evidence/ " may["host/identify/"]
     may["host/compare/"] = "host/compare/ host/report/ " may["host/evidence/"]
+    may["host/interchange/"] = "host/interchange/ " may["host/compare/"]
     may["host/effort/"] = "host/effort/ " may["host/compare/"]
     may["host/diagnose/"] = "host/diagnose/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]

@@ -2,6 +2,10 @@
 
 namespace axistool {
 
+void add_open(CLI::App& app);
+void add_sheet(CLI::App& app);
+void add_export(CLI::App& app);
+
 namespace {
 host::ExitCode ending = host::ExitCode::done;
 }
@@ -11,6 +15,8 @@ void end_with(host::ExitCode code) { ending = code; }
 int exit_status() { return static_cast<int>(ending); }
 
 void add_all_commands(CLI::App& app) {
+  add_open(app);
+  add_sheet(app);
   add_import(app);
   add_cut(app);
   add_shift(app);
@@ -22,6 +28,7 @@ void add_all_commands(CLI::App& app) {
   add_plan(app);
   add_add(app);
   add_improve(app);
+  add_export(app);
   add_scoreboard(app);
   add_commission(app);
   add_effects(app);

@@ -1,0 +1,210 @@
+// axistool open: any controller's logs in, records out, and what can be known.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "host/axistool/commands.hpp"
+#include "host/axistool/gate_arguments.hpp"
+#include "host/axistool/insight_arguments.hpp"
+#include "host/axistool/json_output.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
+#include "host/diagnose/diagnosis_report.hpp"
+#include "host/diagnose/log_to_verdict.hpp"
+#include "host/diagnose/verdict.hpp"
+#include "host/identify/identification_json.hpp"
+#include "host/model/model_file.hpp"
+#include "host/opening/opening.hpp"
+#include "host/record/read_record.hpp"
+
+namespace axistool {
+
+void add_open(CLI::App& app);
+
+namespace {
+
+struct OpenArguments {
+  std::vector<std::string> logs, accepted;
+  std::string sheet, map, hal, folder, json, drive;
+  double torque_constant = 0.0, period_s = 0.0;
+  bool yes = false;
+};
+
+host::OpeningOptions options_of(const OpenArguments& arguments) {
+  host::OpeningOptions options;
+  if (!arguments.sheet.empty()) options.hints.sheet = host::read_drive(arguments.sheet).data;
+  if (arguments.torque_constant > 0.0) options.hints.torque_constant = arguments.torque_constant;
+  if (arguments.period_s > 0.0) options.hints.period_s = arguments.period_s;
+  if (!arguments.map.empty() && std::filesystem::exists(arguments.map))
+    options.mapping_path = arguments.map;
+  else if (!arguments.map.empty())
+    options.hints.mappings = host::parse_mappings(arguments.map);
+  options.hal_path = arguments.hal;
+  options.hints.drive = arguments.drive;
+  return options;
+}
+
+void print(const host::OpenedFile& file) {
+  fmt::print("{}: {}, {}\n", file.path, file.understood.layout,
+             file.understood.rate_Hz > 0.0 ? fmt::format("{:.6g} Hz", file.understood.rate_Hz) : "rate not known");
+  fmt::print("  {:<28} {:<12} {:<12} {:>5}  {}\n", "channel", "taken as", "factor", "sure", "why");
+  for (const host::OpenedChannel& channel : file.understood.channels)
+    fmt::print("  {:<28} {:<12} {:<12} {:4.0f}%  {}\n", channel.name, channel.taken_as.empty() ? "-" : channel.taken_as,
+               channel.taken_as.empty() ? "" : fmt::format("{:.6g}", channel.factor), 100.0 * channel.sure,
+               channel.why);
+  for (const std::string& text : file.understood.missing) fmt::print("  missing: {}\n", text);
+}
+
+/// Asks on the terminal; without one, only --yes is an answer.
+bool is_accepted(const host::Opening& opening, bool yes) {
+  const std::vector<std::string> asks = opening.asks();
+  if (asks.empty() || opening.records().empty() || yes) return true;
+  if (isatty(STDIN_FILENO) == 0) return false;
+  for (const std::string& ask : asks) {
+    fmt::print(stderr, "{}\n  right? [y/N] ", ask);
+    std::string answer;
+    if (!std::getline(std::cin, answer) || (answer != "y" && answer != "Y" && answer != "yes")) return false;
+  }
+  return true;
+}
+
+/// Writes the records and the mapping; the files' names.
+std::vector<std::string> write(const host::Opening& opening, const std::string& folder) {
+  std::vector<std::string> written;
+  std::filesystem::create_directories(folder);
+  for (const host::OpenedRecord* record : opening.records()) {
+    written.push_back((std::filesystem::path(folder) / record->name).string());
+    host::write_record(record->record, written.back());
+  }
+  const std::string mapping = host::format_mapping(opening);
+  if (!mapping.empty()) host::write_file_atomically((std::filesystem::path(folder) / "mapping.toml").string(), mapping);
+  return written;
+}
+
+bool wants_verdict(const OpenArguments& arguments) {
+  return !arguments.sheet.empty() || arguments.torque_constant > 0.0;
+}
+
+/// One axis of the logs, identified and diagnosed; its model and page beside the records.
+nlohmann::json judge(const OpenArguments& arguments, const host::Opening& opening, const std::string& axis) {
+  std::vector<host::Record> records;
+  for (const host::OpenedRecord* record : opening.records())
+    if (record->axis == axis) records.push_back(record->record);
+  const auto lead = opening.files.front().understood.lead_mm_per_rad;
+  const sim::DriveDescription sheet =
+      arguments.sheet.empty() ? host::sheet_of_constant(records.front(), arguments.torque_constant, lead.value_or(0.0))
+                              : host::read_drive(arguments.sheet);
+  std::unique_ptr<host::LogVerdict> found;
+  {
+    SearchProgress progress("diagnose");
+    found = host::verdict_of(std::move(records), sheet, arguments.accepted, progress.callback());
+  }
+  nlohmann::json document = {{"axis", axis},
+                             {"identification", host::identification_json(found->identification)},
+                             {"verdict", host::to_json(found->diagnosis)["verdict"]},
+                             {"log", host::log_faults_json(found->measured.log())}};
+  const std::string name = axis.empty() ? "" : fmt::format("-{}", axis);
+  if (!arguments.folder.empty()) {
+    const std::filesystem::path folder(arguments.folder);
+    document["model"] = (folder / fmt::format("model{}.toml", name)).string();
+    document["page"] = (folder / fmt::format("page{}.html", name)).string();
+    host::write_model(found->diagnosis.best, document["model"].get<std::string>());
+    host::write_diagnosis_report(found->diagnosis, sheet.name, document["page"].get<std::string>());
+  }
+  if (arguments.json == "-") return document;
+  print_log(found->measured.log());
+  const host::DiagnosisVerdict& verdict = found->diagnosis.verdict;
+  fmt::print("\n{}verdict: {}{}{}\n  {}\n  next: {}\n", axis.empty() ? "" : axis + ": ",
+             host::status_name(verdict.status), verdict.effects.empty() ? "" : ": ", fmt::join(verdict.effects, " + "),
+             verdict.explanation, verdict.next_experiment);
+  return document;
+}
+
+/// Of every axis that has records; a refusal of one does not end the others.
+nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& opening) {
+  std::vector<std::string> axes;
+  for (const host::OpenedRecord* record : opening.records())
+    if (std::ranges::find(axes, record->axis) == axes.end()) axes.push_back(record->axis);
+  nlohmann::json all = nlohmann::json::array();
+  for (const std::string& axis : axes) {
+    try {
+      all.push_back(judge(arguments, opening, axis));
+    } catch (const host::Failure& failure) {
+      all.push_back({{"axis", axis}, {"refused", failure.what()}});
+      if (arguments.json != "-") fmt::print("\n{}no verdict: {}\n", axis.empty() ? "" : axis + ": ", failure.what());
+      end_with(failure.code);
+    }
+  }
+  return all;
+}
+
+void run(const OpenArguments& arguments) {
+  const host::Opening opening = host::open_logs(arguments.logs, options_of(arguments));
+  if (arguments.json != "-")
+    for (const host::OpenedFile& file : opening.files) print(file);
+  const bool accepted = is_accepted(opening, arguments.yes);
+  std::vector<std::string> written;
+  if (accepted && !arguments.folder.empty() && !opening.records().empty()) written = write(opening, arguments.folder);
+  if (arguments.json != "-") {
+    for (const std::string& ask : opening.asks()) fmt::print("not sure: {}\n", ask);
+    if (!accepted) fmt::print("No record was written: --yes accepts what is not sure, --map says it otherwise.\n");
+    for (const std::string& path : written) fmt::print("written: {}\n", path);
+  }
+  nlohmann::json document = host::to_json(opening, written);
+  if (!accepted || opening.records().empty())
+    end_with(host::ExitCode::answer_is_no);
+  else if (wants_verdict(arguments))
+    document["verdicts"] = judge_all(arguments, opening);
+  if (!arguments.json.empty()) write_json(document, arguments.json);
+}
+
+}  // namespace
+
+void add_open(CLI::App& app) {
+  const auto arguments = std::make_shared<OpenArguments>();
+  CLI::App* command =
+      app.add_subcommand("open", "Any controller's logs in: what they hold, records of it, what is missing");
+  add_input(
+      *command, "LOG", arguments->logs,
+      "logs: TwinCAT Scope, SINUMERIK trace, halsampler, halscope, ODrive, moteus, VESC, camonitor, drive monitors, "
+      ".mat, .npy, .npz, any table")
+      ->required();
+  CLI::Option* sheet =
+      add_input(*command, "--sheet", arguments->sheet, "data sheet of the drive (axistool sheet makes one)");
+  command->add_option("--kt", arguments->torque_constant, "the motor's constant alone: Nm/A, or N/A of a linear motor")
+      ->check(CLI::PositiveNumber)
+      ->excludes(sheet);
+  command->add_option(
+      "--map", arguments->map,
+      "column=channel[*factor][+shift], … in the place of what is understood (axistool help import); or the "
+      "mapping.toml of an earlier log");
+  add_input(*command, "--hal", arguments->hal, "the .hal file that names halsampler's columns");
+  command->add_option("--period", arguments->period_s, "sampling period (s) of a log that does not tell it")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--drive", arguments->drive, "name of the drive, for the records' headers");
+  command->add_flag("--yes", arguments->yes, "accept what is not sure");
+  add_output(*command, "-o,--output", arguments->folder, "folder for the records and the accepted mapping.toml",
+             FileRole::output_folder);
+  add_accept_option(*command, arguments->accepted);
+  add_json_option(*command, arguments->json);
+  command->footer(
+      "Every channel is listed with what it is taken as, the factor, why, and how sure that is. What is less than 90 % "
+      "sure\n"
+      "is asked on a terminal, and elsewhere refused without --yes. With --sheet or --kt it goes on: identify, "
+      "diagnose, one\n"
+      "page; a log that is called valid…, test… or check… judges. With --kt alone 1 mm stands for 1 rad.\n"
+      "Examples:\n"
+      "  axistool open scope.csv                                  (only look)\n"
+      "  axistool open steps.csv jog.csv --kt 0.6 -o x            (records, mapping)\n"
+      "  axistool open next.csv --map x/mapping.toml -o x         (the next log of that machine)\n"
+      "  axistool open pid.txt --hal loop.hal -o x\n"
+      "Exit code 1: no record could be made, or a question is open.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

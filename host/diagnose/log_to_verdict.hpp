@@ -1,0 +1,27 @@
+// From records of an unknown machine and a motor constant to what its base model lacks: identified, then diagnosed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+#include "host/identify/identification.hpp"
+
+namespace host {
+
+/// The data sheet of a log of the current of which the motor's constant alone is known (Nm/A; N/A where the record is
+/// of a linear drive): a millimetre for a radian where `lead_mm_per_rad` is 0, no converter.
+sim::DriveDescription sheet_of_constant(const Record& record, double motor_constant, double lead_mm_per_rad);
+
+struct LogVerdict {
+  Measurements measured;
+  Identification identification;
+  Diagnosis diagnosis;  ///< refers to `measured`
+};
+
+/// Records whose name says so ("valid", "test", "check") judge; without one, blocks of the others are kept back. Throws
+/// as the gate, identify_drive() and diagnose() do.
+std::unique_ptr<LogVerdict> verdict_of(std::vector<Record> records, const sim::DriveDescription& sheet,
+                                       const std::vector<std::string>& accepted, const ShareDone& progress = {});
+
+}  // namespace host

@@ -1,0 +1,61 @@
+// Models for other programs, with what those cannot express and by how much that matters on a record.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/interchange/portable_model.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+enum class ExportTarget { mjcf, urdf, linuxcnc, c, modelica, python };
+
+/// "mjcf", "urdf", …; empty for what is none of them.
+std::optional<ExportTarget> export_target(std::string_view name);
+
+struct NotExpressed {
+  std::string kind;
+  std::optional<double> share;  ///< of the record's squared effort; empty: no record, or the effort does not show it
+};
+
+struct ExportedFile {
+  std::string path, text;
+};
+
+struct Export {
+  std::string to;
+  std::vector<ExportedFile> files;
+  std::vector<NotExpressed> not_expressed;
+};
+
+/// `path` is the file to write; LinuxCNC gets further ones beside it. `record`, adapted to the model, tells what the
+/// things that are left out come to. Throws Failure(bad_input) where the record is too short for the filter.
+Export export_model(const sim::DriveDescription& model, ExportTarget target, const std::string& path,
+                    const Record* record);
+
+nlohmann::json to_json(const Export& exported);
+
+/// The texts, with `notes` (lines without a comment sign) in front.
+std::string c_header(const PortableModel& model, const std::vector<std::string>& notes);
+std::string python_module(const PortableModel& model, const std::vector<std::string>& notes);
+std::string modelica_model(const PortableModel& model, const std::vector<std::string>& notes);
+std::string hal_component(const PortableModel& model, const std::string& component,
+                          const std::vector<std::string>& notes);
+std::string hal_lines(const PortableModel& model, const std::string& component);
+std::string mjcf_joint(const PortableModel& model, const std::vector<std::string>& notes);
+std::string urdf_joint(const PortableModel& model, const std::vector<std::string>& notes);
+
+/// The model as MJCF and URDF have it: one viscous coefficient, one level.
+struct SymmetricFriction {
+  double viscous = 0.0, level = 0.0;
+};
+SymmetricFriction symmetric(const PortableModel& model);
+
+/// A name as C, Modelica, XML and HAL take it.
+std::string identifier(std::string_view name);
+
+}  // namespace host

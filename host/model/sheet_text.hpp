@@ -1,0 +1,28 @@
+// Data sheets to be filled in: every field with its unit, and where its value stands on paper.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+struct SheetValues {
+  std::string name;
+  sim::DriveKind kind = sim::DriveKind::rotary;
+  bool by_current = true;                    ///< the logs hold the current; else the command voltage
+  std::optional<double> motor_constant{};    ///< Nm/A or N/A
+  std::optional<double> lead_mm_per_turn{};  ///< of the screw or pinion; rotary only
+  std::optional<double> encoder_step_mm{};   ///< of the position as logged
+  std::optional<double> sample_period_s{};
+};
+
+/// A commented axis-model/1 file that holds what is known; what is not, and is needed, stands there as a comment that
+/// says what belongs there.
+std::string sheet_text(const SheetValues& values);
+
+/// The keys that are needed and not yet known.
+std::string sheet_gaps(const SheetValues& values);
+
+}  // namespace host

@@ -1,0 +1,46 @@
+// What the name of a channel says: which quantity, of which axis, wanted or measured, in which unit.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/opening/units.hpp"
+#include "host/record/import_log.hpp"
+
+namespace host {
+
+enum class Quantity {
+  unknown,
+  time,
+  position,
+  speed,
+  current,
+  torque,
+  force,
+  voltage,
+  temperature,
+  other,  ///< understood, and of no use here: acceleration, error, status, supply voltage
+};
+
+struct ChannelName {
+  Quantity quantity = Quantity::unknown;
+  bool is_reference = false;        ///< wanted: set point, command, target
+  bool is_measured = false;         ///< said to be measured: actual, feedback
+  bool is_second = false;           ///< of the load side: a scale on the table
+  bool is_weak = false;             ///< one letter, or a word that may mean something else ("enc", "u", "q")
+  bool makes_torque = false;        ///< q current, torque-making
+  std::string axis;                 ///< "X1", "2"; empty: the name says none
+  std::string unit_text;            ///< as the log gives it
+  std::optional<UnitMeaning> unit;  ///< empty: none, or one that is not known here
+};
+
+/// By words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and what controllers call
+/// things. The unit comes from the column's own, from brackets, or from the end of the name.
+ChannelName understand_name(const LogColumn& column);
+
+/// "position", "speed", …
+std::string_view quantity_name(Quantity quantity);
+
+}  // namespace host

@@ -1,0 +1,147 @@
+#include "host/opening/known_tools.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+namespace host {
+
+namespace {
+
+struct KnownColumn {
+  std::string_view ending;  ///< of the column's name
+  Quantity quantity;
+  bool is_reference;
+  std::string_view unit;  ///< empty: none
+};
+
+/// ODrive firmware 0.5.1 and later: turns, turns/s, A (docs.odriverobotics.com, interface reference).
+constexpr KnownColumn kOdrive[] = {
+    {"pos_estimate", Quantity::position, false, "turns"}, {"pos_rel", Quantity::position, false, "turns"},
+    {"pos_abs", Quantity::position, false, "turns"},      {"vel_estimate", Quantity::speed, false, "turns/s"},
+    {".vel", Quantity::speed, false, "turns/s"},          {"Iq_measured", Quantity::current, false, "A"},
+    {"Iq_setpoint", Quantity::current, true, "A"},        {"input_pos", Quantity::position, true, "turns"},
+    {"pos_setpoint", Quantity::position, true, "turns"},  {"input_vel", Quantity::speed, true, "turns/s"},
+    {"vel_setpoint", Quantity::speed, true, "turns/s"},   {"torque_setpoint", Quantity::torque, true, "Nm"},
+    {"torque_estimate", Quantity::torque, false, "Nm"},   {"effective_torque_setpoint", Quantity::torque, true, "Nm"},
+};
+
+/// moteus registers: revolutions, revolutions/s, Nm, A (github.com/mjbots/moteus, docs/reference.md).
+constexpr KnownColumn kMoteus[] = {
+    {"position", Quantity::position, false, "turns"},
+    {"velocity", Quantity::speed, false, "turns/s"},
+    {"torque", Quantity::torque, false, "Nm"},
+    {"q_current", Quantity::current, false, "A"},
+    {"q_A", Quantity::current, false, "A"},
+    {"d_current", Quantity::other, false, "A"},
+    {"d_A", Quantity::other, false, "A"},
+    {"control_position", Quantity::position, true, "turns"},
+    {"control_velocity", Quantity::speed, true, "turns/s"},
+    {"temperature", Quantity::temperature, false, "degC"},
+    {"voltage", Quantity::other, false, "V"},
+    {"motor_temperature", Quantity::temperature, false, "degC"},
+};
+
+/// VESC Tool's log: ms since midnight, A, degrees (github.com/vedderb/vesc_tool, vescinterface.cpp).
+constexpr KnownColumn kVesc[] = {
+    {"ms_today", Quantity::time, false, "ms"},
+    {"q_axis_current", Quantity::current, false, "A"},
+    {"current_motor", Quantity::other, false, "A"},
+    {"current_in", Quantity::other, false, "A"},
+    {"d_axis_current", Quantity::other, false, "A"},
+    {"encoder_position", Quantity::position, false, "deg"},
+    {"erpm", Quantity::other, false, ""},
+    {"tachometer", Quantity::other, false, ""},
+    {"tachometer_abs", Quantity::other, false, ""},
+    {"temp_motor", Quantity::temperature, false, "degC"},
+    {"speed_meters_per_sec", Quantity::other, false, ""},
+    {"q_axis_voltage", Quantity::other, false, "V"},
+    {"d_axis_voltage", Quantity::other, false, "V"},
+    {"ms_today_setup", Quantity::other, false, ""},
+    {"ms_today_imu", Quantity::other, false, ""},
+    {"tacho_meters", Quantity::other, false, ""},
+    {"temp_mos_max", Quantity::other, false, ""},
+    {"current_in_setup", Quantity::other, false, ""},
+    {"current_motor_setup", Quantity::other, false, ""},
+    {"gnss_posTime", Quantity::other, false, ""},
+};
+
+bool has(const Log& log, std::string_view part) {
+  return std::ranges::any_of(log.columns,
+                             [&](const LogColumn& column) { return column.name.find(part) != std::string::npos; });
+}
+
+bool has_named(const Log& log, std::string_view name) {
+  return std::ranges::any_of(log.columns, [&](const LogColumn& column) { return column.name == name; });
+}
+
+void apply(const Log& log, std::span<const KnownColumn> known, std::vector<ChannelName>& names) {
+  for (std::size_t k = 0; k < log.columns.size(); ++k)
+    for (const KnownColumn& column : known) {
+      const std::string& name = log.columns[k].name;
+      const bool whole =
+          name == column.ending || (name.ends_with(column.ending) && name.size() > column.ending.size() &&
+                                    name[name.size() - column.ending.size() - 1] == '.');
+      if (!whole && !(name.ends_with(column.ending) && column.ending.size() > 8)) continue;
+      names[k].quantity = column.quantity;
+      names[k].is_reference = column.is_reference;
+      names[k].is_weak = names[k].is_second = false;
+      names[k].makes_torque = column.ending.starts_with("q_") || column.ending.starts_with("Iq");
+      if (names[k].unit_text.empty() && !column.unit.empty()) {
+        names[k].unit_text = column.unit;
+        names[k].unit = unit_named(column.unit);
+      }
+      break;
+    }
+}
+
+/// Older ODrive firmware counts: 8192 a turn leave no doubt.
+bool are_counts(const Log& log) {
+  constexpr double kMoreThanTurns = 3000.0;
+  for (const LogColumn& column : log.columns)
+    if (column.name.ends_with("pos_estimate"))
+      for (const double value : column.values)
+        if (std::abs(value) > kMoreThanTurns) return true;
+  return false;
+}
+
+/// Pins of HAL: what a loop is given, what comes back, and what it puts out.
+void apply_hal(const Log& log, std::vector<ChannelName>& names) {
+  for (std::size_t k = 0; k < log.columns.size(); ++k) {
+    const std::string text = log.columns[k].name + " " + log.columns[k].kind;
+    const auto says = [&](std::string_view part) { return text.find(part) != std::string::npos; };
+    ChannelName& name = names[k];
+    if (says(".output")) {
+      name.quantity = Quantity::voltage;
+      name.is_reference = name.is_weak = true;
+    } else if (says(".command") || says("-cmd")) {
+      name.quantity = says("vel") ? Quantity::speed : Quantity::position;
+      name.is_reference = true;
+    } else if (says(".feedback") || says("-fb")) {
+      name.quantity = says("vel") ? Quantity::speed : Quantity::position;
+      name.is_measured = true;
+      name.is_reference = false;
+    }
+  }
+}
+
+}  // namespace
+
+void apply_known_tools(Log& log, std::vector<ChannelName>& names) {
+  for (std::size_t k = 0; k < log.columns.size(); ++k)  // dSPACE's captures: X is their time
+    if (log.columns[k].name.ends_with(".X.Data")) names[k].quantity = Quantity::time;
+  const bool odrive = has(log, "pos_estimate") || has(log, "vel_estimate") || has(log, "Iq_measured");
+  if (odrive && !are_counts(log)) apply(log, kOdrive, names);
+  const bool moteus =
+      !odrive &&
+      (has(log, "q_current") || has_named(log, "q_A") || (has_named(log, "fault") && has_named(log, "torque"))) &&
+      has(log, "position") && has(log, "velocity");
+  if (moteus) apply(log, kMoteus, names);
+  const bool vesc = has_named(log, "ms_today");
+  if (vesc) apply(log, kVesc, names);
+  if (log.layout == "halsampler" || log.layout == "halscope") apply_hal(log, names);
+  if (log.layout == "table") log.layout = odrive ? "odrive" : moteus ? "moteus" : vesc ? "vesc" : log.layout;
+}
+
+}  // namespace host

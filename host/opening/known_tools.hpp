@@ -1,0 +1,15 @@
+// Programs whose logs give names without units, and what they mean by them.
+#pragma once
+
+#include <vector>
+
+#include "host/opening/channel_name.hpp"
+#include "host/record/import_log.hpp"
+
+namespace host {
+
+/// Completes what names say where the log is one of ODrive's, moteus', VESC Tool's or LinuxCNC's; and names the layout
+/// after the tool.
+void apply_known_tools(Log& log, std::vector<ChannelName>& names);
+
+}  // namespace host

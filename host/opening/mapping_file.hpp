@@ -1,0 +1,23 @@
+// An accepted mapping as a file (`axis-mapping/1`, TOML): the next log of that machine needs no question.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace host {
+
+struct MappedAxis {
+  std::string name;  ///< may be empty
+  std::string map;   ///< in the language of --map, t_s included
+  std::optional<double> resample_s;
+  std::vector<std::string> unwrap;  ///< COLUMN=RANGE
+};
+
+std::string format_mapping_file(const std::vector<MappedAxis>& axes);
+
+/// Throws Failure(bad_input) naming file, line, field and remedy.
+std::vector<MappedAxis> parse_mapping_file(std::string_view text, std::string_view name);
+
+}  // namespace host

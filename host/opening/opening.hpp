@@ -1,0 +1,48 @@
+// Any controller's logs in, records out: what was read, what was understood, what is missing.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host/opening/understanding.hpp"
+#include "host/record/record.hpp"
+
+namespace host {
+
+struct OpeningOptions {
+  OpeningHints hints;
+  std::string hal_path{};      ///< names of a halsampler log; empty: none
+  std::string mapping_path{};  ///< an accepted mapping (axis-mapping/1); empty: none
+};
+
+struct OpenedRecord {
+  std::string name;  ///< of its file, "log-x.csv"
+  std::string axis;
+  Record record;
+};
+
+struct OpenedFile {
+  std::string path;
+  Understanding understood;
+  std::vector<OpenedRecord> records;  ///< that can be made of it once its questions are answered
+};
+
+struct Opening {
+  std::vector<OpenedFile> files;
+
+  /// Of all files, each once.
+  std::vector<std::string> asks() const;
+  std::vector<const OpenedRecord*> records() const;
+};
+
+/// Reads and understands. Throws Failure(bad_input) where a file cannot be read at all.
+Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& options);
+
+/// `axis-opening/1`. `records` are the files that were written.
+nlohmann::json to_json(const Opening& opening, const std::vector<std::string>& records);
+
+/// The mapping of all axes as a file that open_logs() takes for the next log of that machine.
+std::string format_mapping(const Opening& opening);
+
+}  // namespace host

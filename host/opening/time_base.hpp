@@ -1,0 +1,41 @@
+// When the rows of a log were taken.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/opening/channel_name.hpp"
+#include "host/record/import_log.hpp"
+
+namespace host {
+
+/// A sampling period that the text in front of the table states.
+struct StatedPeriod {
+  double value = 0.0;          ///< s where `unit_is_known`
+  bool unit_is_known = false;  ///< else in the unit of the time column
+  std::string line;            ///< where it stands
+};
+
+/// "Abtastung: 1 ms", "Sampling time interval(ms),0.667", "# Sampling period is 1000000 ns", "Rate: 2 kHz"; empty where
+/// the text states none, or several that differ.
+std::optional<StatedPeriod> stated_period(const Log& log);
+
+struct TimeBase {
+  std::string source;                   ///< column of the stamps, or "row"; empty: not found
+  double factor = 1.0;                  ///< to seconds
+  double period_s = 0.0;                ///< of the rows; 0: not found
+  std::optional<double> resample_s;     ///< the rows are uneven: make even ones of this period
+  std::vector<std::size_t> run_starts;  ///< rows at which stamps begin again: several runs strung together
+  std::string why;
+  double sure = 0.0;
+};
+
+/// The time base of the rows of `stamps`, one of the log's columns; nullptr: of a log without stamps.
+TimeBase time_base_of(const Log& log, const LogColumn* stamps, const ChannelName* name,
+                      std::optional<double> given_period_s);
+
+/// Whether all values increase by the same positive step within a thousandth: a counter or a clock that nobody named.
+bool is_ramp(const std::vector<double>& values);
+
+}  // namespace host

@@ -1,0 +1,260 @@
+#include "host/opening/understanding.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "host/opening/axis_study.hpp"
+#include "host/opening/channel_physics.hpp"
+#include "host/opening/known_tools.hpp"
+#include "host/record/columns.hpp"
+
+namespace host {
+
+namespace {
+
+/// More columns than any controller's log has; beyond it nothing is searched.
+constexpr std::size_t kMostColumns = 2'000;
+
+bool is_matrix(const Log& log) { return log.layout == "mat" || log.layout == "npy" || log.layout == "npz"; }
+
+/// Gaps filled by the value before (for comparing channels only; a record's are not filled so).
+std::vector<double> without_gaps(std::vector<double> values) {
+  const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
+  double last = first == values.end() ? 0.0 : *first;
+  for (double& value : values) value = last = std::isfinite(value) ? value : last;
+  return values;
+}
+
+Log for_comparing(const Log& log) {
+  Log plain = log;
+  for (LogColumn& column : plain.columns) column.values = without_gaps(std::move(column.values));
+  return plain;
+}
+
+class Understander {
+ public:
+  Understander(const Log& log, const std::vector<const Log*>& group, const OpeningHints& hints)
+      : raw_(log), log_(for_comparing(log)), hints_(hints) {
+    for (const Log* sibling : group) copies_.push_back(sibling == &log ? log_ : for_comparing(*sibling));
+    for (const Log& copy : copies_) group_.push_back(&copy);
+  }
+
+  Understanding run() {
+    found_.layout = log_.layout;
+    if (log_.columns.size() > kMostColumns) {
+      found_.missing.push_back(
+          fmt::format("a log of at most {} channels; this one has {}", kMostColumns, log_.columns.size()));
+      return std::move(found_);
+    }
+    read_names();
+    find_clock();
+    split_axes();
+    for (auto& [name, channels] : axes_) study(name, std::move(channels));
+    list_unknown();
+    for (const OpenedAxis& axis : found_.axes)
+      for (const std::string& text : axis.missing)
+        found_.missing.push_back(axis.name.empty() ? text : fmt::format("{}: {}", axis.name, text));
+    return std::move(found_);
+  }
+
+ private:
+  void read_names() {
+    found_.channels.resize(log_.columns.size());
+    for (std::size_t k = 0; k < log_.columns.size(); ++k) {
+      found_.channels[k].name = log_.columns[k].name.empty() ? fmt::format("#{}", k + 1) : log_.columns[k].name;
+      names_.push_back(understand_name(log_.columns[k]));
+      const std::string& name = log_.columns[k].name;
+      if (is_matrix(log_) && name.ends_with(')') && name.find('(') != std::string::npos)
+        names_.back() = {};  // a matrix' name
+      if (find_known_column(name) != nullptr) names_.back().axis.clear();
+    }
+    apply_known_tools(log_, names_);
+    found_.layout = log_.layout;
+  }
+
+  /// The rows' stamps: a column called time, else one that counts evenly and is not called anything else.
+  void find_clock() {
+    const LogColumn* stamps = nullptr;
+    std::size_t at = 0;
+    std::ptrdiff_t most = -1;  // of several stamps, those of the most channels
+    for (std::size_t k = 0; k < log_.columns.size(); ++k) {
+      if (!raw_.columns[k].fault.empty() || raw_.columns[k].values.size() < 2 || is_constant(raw_.columns[k].values))
+        continue;
+      const std::ptrdiff_t channels =
+          raw_.columns[k].name.empty() ? 0 : std::ranges::count(log_.columns, raw_.columns[k].name, &LogColumn::time);
+      if (channels == 0 && (names_[k].quantity != Quantity::time || !raw_.columns[k].time.empty())) continue;
+      names_[k].quantity = Quantity::time;
+      found_.channels[k].why = "time stamps";
+      found_.channels[k].sure = kSureEnough;
+      if (channels > most) stamps = &raw_.columns[at = k];
+      most = std::max(most, channels);
+    }
+    for (std::size_t k = 0; k < log_.columns.size() && stamps == nullptr; ++k)
+      if (raw_.columns[k].time.empty() && names_[k].quantity == Quantity::unknown && rises(log_.columns[k]) &&
+          !is_counter(k))
+        stamps = &raw_.columns[at = k];
+    const ChannelName* name = stamps == nullptr ? nullptr : &names_[at];
+    found_.time = time_base_of(log_, stamps, name, hints_.period_s);
+    if (stamps == nullptr && found_.time.source.empty()) {
+      found_.missing.push_back(
+          "when the rows were taken: no column of times, and no sampling period in the file; give --period SECONDS");
+    } else if (found_.time.source.empty()) {
+      found_.missing.push_back(
+          fmt::format("the unit of the times in '{}'; give --map t_s={}*…", stamps->name, source_text(stamps->name)));
+    }
+    if (found_.time.period_s > 0.0) found_.rate_Hz = 1.0 / found_.time.period_s;
+    if (stamps == nullptr) return;
+    stamps_ = stamps->name;
+    OpenedChannel& channel = found_.channels[at];
+    channel.taken_as = found_.time.source.empty() ? "" : "t_s";
+    const double factor = found_.time.source == kRowSource && name->unit ? name->unit->factor : found_.time.factor;
+    channel.factor = found_.time.source == kRowSource && !name->unit ? 1.0 : factor;
+    channel.why = found_.time.why;
+    channel.sure = found_.time.sure;
+    names_[at].quantity = Quantity::time;
+    if (channel.sure < kSureEnough && !channel.taken_as.empty())
+      found_.asks.push_back(
+          fmt::format("times in {}: {}? Else give --period SECONDS", source_text(stamps_), channel.why));
+  }
+
+  static bool rises(const LogColumn& column) {
+    return column.fault.empty() && column.values.size() > 2 &&
+           std::ranges::adjacent_find(column.values, std::ranges::greater_equal()) == column.values.end();
+  }
+
+  /// A column without a name that counts by one is a row number.
+  bool is_counter(std::size_t k) const {
+    const std::vector<double>& values = log_.columns[k].values;
+    return !is_matrix(log_) && log_.columns[k].name.empty() && is_ramp(values) &&
+           std::abs(values[1] - values[0] - 1.0) < 1e-9;
+  }
+
+  /// Channels by their axes. Where names tell of one axis or none, all belong together.
+  void split_axes() {
+    std::set<std::string> tags;
+    for (std::size_t k = 0; k < names_.size(); ++k)
+      if (names_[k].quantity == Quantity::position || names_[k].quantity == Quantity::speed ||
+          names_[k].quantity == Quantity::current || names_[k].quantity == Quantity::torque)
+        if (!names_[k].is_reference && !names_[k].axis.empty()) tags.insert(names_[k].axis);
+    const bool several = tags.size() > 1;
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (names_[k].quantity == Quantity::time) continue;
+      const bool belongs = several && tags.contains(names_[k].axis);
+      axes_[belongs ? names_[k].axis : ""].push_back({k, names_[k]});
+    }
+    if (!several) return;
+    // what no axis is named for is of one of them, or of none: it makes no record of its own
+    const auto rest = axes_.find("");
+    if (rest == axes_.end()) return;
+    for (const NamedChannel& channel : rest->second) {
+      OpenedChannel& out = found_.channels[channel.column];
+      out.why = channel.name.quantity == Quantity::unknown
+                    ? "not understood; kept out"
+                    : fmt::format("{}, of no axis by its name", quantity_name(channel.name.quantity));
+      const bool effort = channel.name.quantity == Quantity::current || channel.name.quantity == Quantity::torque ||
+                          channel.name.quantity == Quantity::voltage || channel.name.quantity == Quantity::force;
+      if (effort && !is_constant(log_.columns[channel.column].values))
+        found_.asks.push_back(
+            fmt::format("'{}' ({}) belongs to no axis by its name: say --map with the columns of one axis", out.name,
+                        quantity_name(channel.name.quantity)));
+    }
+    axes_.erase(rest);
+  }
+
+  void study(const std::string& name, std::vector<NamedChannel> channels) {
+    OpenedAxis axis;
+    axis.name = name;
+    axis.stamps = stamps_;
+    AxisStudy(group_, log_, hints_, found_.time.period_s).run(std::move(channels), axis, found_);
+    for (const Mapping& mapping : axis.mappings)
+      axis.has_other_stamps = axis.has_other_stamps || !mapping.time_source.empty();
+    axis.makes_record = axis.makes_record && !found_.time.source.empty();
+    found_.axes.push_back(std::move(axis));
+  }
+
+  /// Columns without a name that says anything: what they may be, by how they go together.
+  void list_unknown() {
+    constexpr std::size_t kMost = 16;
+    std::vector<std::size_t> unknown;
+    for (std::size_t k = 0; k < names_.size() && unknown.size() < kMost; ++k)
+      if (names_[k].quantity == Quantity::unknown && log_.columns[k].fault.empty() &&
+          !is_constant(log_.columns[k].values))
+        unknown.push_back(k);
+    if (!(found_.time.period_s > 0.0)) return;
+    for (const std::size_t position : unknown)
+      for (const std::size_t speed : unknown) {
+        if (position == speed || log_.columns[position].time != log_.columns[speed].time) continue;
+        const auto change =
+            change_over_speed(log_.columns[position].values, log_.columns[speed].values, found_.time.period_s);
+        if (change && change->r_squared > 0.99 && std::abs(change->factor - 1.0) < 0.03)
+          may_be(position, speed, unknown);
+      }
+  }
+
+  void may_be(std::size_t position, std::size_t speed, const std::vector<std::size_t>& unknown) {
+    std::string efforts;
+    for (const std::size_t k : unknown) {
+      const auto share = k == position || k == speed
+                             ? std::nullopt
+                             : effort_by_motion(log_.columns[position].values, log_.columns[k].values);
+      if (share && *share > 0.5)
+        efforts += fmt::format("{}{} ({:.0f} %)", efforts.empty() ? "" : ", ", found_.channels[k].name, 100.0 * *share);
+    }
+    found_.asks.push_back(
+        fmt::format("'{}' may be the speed of the position '{}' (its integral){}: say --map x_mm=…",
+                    found_.channels[speed].name, found_.channels[position].name,
+                    efforts.empty() ? "" : fmt::format("; the motion explains as an effort would be {}", efforts)));
+    found_.channels[position].why =
+        fmt::format("may be a position: '{}' is its derivative", found_.channels[speed].name);
+    found_.channels[speed].why = fmt::format("may be a speed: the derivative of '{}'", found_.channels[position].name);
+    found_.channels[position].sure = found_.channels[speed].sure = 0.4;
+  }
+
+  const Log& raw_;
+  Log log_;  ///< the same without gaps
+  const OpeningHints& hints_;
+  std::vector<Log> copies_;
+  std::vector<const Log*> group_;
+  std::vector<ChannelName> names_;
+  std::map<std::string, std::vector<NamedChannel>> axes_;
+  std::string stamps_;
+  Understanding found_;
+};
+
+}  // namespace
+
+std::string source_text(const std::string& name) {
+  const bool plain = std::ranges::all_of(name, [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return std::isalnum(byte) != 0 || c == '_' || c == '.' || byte >= 0x80;
+  });
+  const bool digit = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0;
+  if ((plain && !digit) || name.starts_with('#')) return name;
+  return name.find('"') == std::string::npos ? fmt::format("\"{}\"", name) : fmt::format("'{}'", name);
+}
+
+std::string mapping_text(const Mapping& mapping) {
+  return fmt::format("{}={}{}{}{}", mapping.column, source_text(mapping.source),
+                     mapping.factor == 1.0 ? "" : fmt::format("*{}", mapping.factor),
+                     mapping.shift == 0.0 ? "" : fmt::format("{:+}", mapping.shift),
+                     mapping.time_source.empty() ? "" : fmt::format("@{}", source_text(mapping.time_source)));
+}
+
+void decode_signs(Log& log) {
+  for (LogColumn& column : log.columns)
+    if (const auto bit = column.fault.empty() ? sign_bit(column.values) : std::nullopt) {
+      column.values = without_sign_bit(std::move(column.values), *bit);
+      log.header["imported_sign_" + column.name] = fmt::format("bit {} is the sign of a magnitude", *bit);
+      column.kind += fmt::format(", bit {} was the sign", *bit);
+    }
+}
+
+Understanding understand(const Log& log, const std::vector<const Log*>& group, const OpeningHints& hints) {
+  return Understander(log, group, hints).run();
+}
+
+}  // namespace host

@@ -1,0 +1,39 @@
+// Units as loggers write them, in several languages.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace host {
+
+enum class Dimension {
+  time,           ///< s
+  angle,          ///< rad
+  length,         ///< mm
+  counts,         ///< 1
+  angular_speed,  ///< rad/s
+  linear_speed,   ///< mm/s
+  count_speed,    ///< 1/s
+  acceleration,   ///< whatever its unit
+  current,        ///< A
+  torque,         ///< Nm
+  force,          ///< N
+  voltage,        ///< V
+  temperature,    ///< deg C
+  share,          ///< 1: of a rated value that the log does not give
+};
+
+/// value in the dimension's own unit = factor * number + offset.
+struct UnitMeaning {
+  Dimension dimension;
+  double factor = 1.0;
+  double offset = 0.0;
+};
+
+/// Of "mm", "°", "U/min", "мс", "r.p.m.", "rad_s", "1/min" …; empty for what is no unit that is known here.
+std::optional<UnitMeaning> unit_named(std::string_view text);
+
+/// The unit in which a dimension is told, "rad/s".
+std::string_view unit_of(Dimension dimension);
+
+}  // namespace host
