@@ -19,6 +19,7 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/model/model_file.hpp"
+#include "host/opening/next_run.hpp"
 #include "host/opening/opening.hpp"
 #include "host/record/read_record.hpp"
 
@@ -58,6 +59,7 @@ void print(const host::OpenedFile& file) {
                channel.taken_as.empty() ? "" : fmt::format("{:.6g}", channel.factor), 100.0 * channel.sure,
                channel.why);
   for (const std::string& text : file.understood.missing) fmt::print("  missing: {}\n", text);
+  if (const std::string next = host::next_run(file.understood); !next.empty()) fmt::print("  next: {}\n", next);
 }
 
 /// Asks on the terminal; without one, only --yes is an answer.

@@ -10,6 +10,7 @@
 #include "host/exit_codes.hpp"
 #include "host/opening/hal_file.hpp"
 #include "host/opening/mapping_file.hpp"
+#include "host/opening/next_run.hpp"
 #include "host/read_file.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/read_record.hpp"
@@ -23,6 +24,17 @@ constexpr std::size_t kFewestRowsOfARun = 100;
 
 /// Unknown columns that go along into a record.
 constexpr std::size_t kMostExtra = 16;
+
+/// 64 MiB: numbers of two characters take a gigabyte by the time they are understood.
+constexpr std::uintmax_t kLargest = std::uintmax_t{64} << 20U;
+
+void refuse_huge(const std::string& path) {
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  if (!unknown && size > kLargest)
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: {} MiB, and {} are read at most; cut the log", path, size >> 20U, kLargest >> 20U));
+}
 
 bool same_channels(const Log& a, const Log& b) {
   return std::ranges::equal(a.columns, b.columns, {}, &LogColumn::name, &LogColumn::name) &&
@@ -246,6 +258,7 @@ std::vector<const OpenedRecord*> Opening::records() const {
 Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& options) {
   std::vector<Log> logs;
   for (const std::string& path : paths) {
+    refuse_huge(path);
     logs.push_back(read_log(path));
     if (!options.hal_path.empty()) name_by_hal(logs.back(), options.hal_path);
     decode_signs(logs.back());
@@ -292,7 +305,8 @@ nlohmann::json to_json(const Opening& opening, const std::vector<std::string>& r
                      {"layout", file.understood.layout},
                      {"rate_Hz", file.understood.rate_Hz},
                      {"channels", std::move(channels)},
-                     {"missing", file.understood.missing}});
+                     {"missing", file.understood.missing},
+                     {"next", next_run(file.understood)}});
   }
   return {{"format", "axis-opening/1"}, {"files", std::move(files)}, {"records", records}, {"asks", opening.asks()}};
 }
@@ -307,7 +321,7 @@ std::string format_mapping(const Opening& opening) {
       MappedAxis mapped;
       mapped.name = axis.name;
       mapped.map = mapping_text({"t_s", time.source, {}, time.factor, 0.0});
-      for (const Mapping& mapping : axis.mappings) mapped.map += "," + mapping_text(mapping);
+      for (const Mapping& mapping : axis.mappings) mapped.map += fmt::format(",{}", mapping_text(mapping));
       mapped.resample_s = time.resample_s;
       for (const Unwrapping& unwrap : axis.unwrap)
         mapped.unwrap.push_back(fmt::format("{}={}", unwrap.column, unwrap.range));

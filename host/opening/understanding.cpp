@@ -39,7 +39,12 @@ class Understander {
  public:
   Understander(const Log& log, const std::vector<const Log*>& group, const OpeningHints& hints)
       : raw_(log), log_(for_comparing(log)), hints_(hints) {
-    for (const Log* sibling : group) copies_.push_back(sibling == &log ? log_ : for_comparing(*sibling));
+    std::size_t numbers = 0;
+    for (const LogColumn& column : log.columns) numbers += column.values.size();
+    constexpr std::size_t kMostNumbers = 2'000'000;  // copies of larger siblings would fill the memory
+    for (const Log* sibling : group)
+      if (sibling != &log && numbers < kMostNumbers) copies_.push_back(for_comparing(*sibling));
+    group_.push_back(&log_);
     for (const Log& copy : copies_) group_.push_back(&copy);
   }
 

@@ -174,9 +174,10 @@ class BlockReader {
       LogColumn& column = log_.columns[k];
       const bool is_time = column.time.empty();
       if (is_time && !column.values.empty() && column.values.front() > kFiletime) count_from_start(column);
-      column.kind = fmt::format("{} {}{}{}", column.values.size(), is_time ? "times" : "numbers",
-                                column.unit.empty() ? std::string() : fmt::format(", {}", column.unit),
-                                k < symbols_.size() && !symbols_[k].empty() ? fmt::format(", {}", symbols_[k]) : std::string());
+      column.kind =
+          fmt::format("{} {}{}{}", column.values.size(), is_time ? "times" : "numbers",
+                      column.unit.empty() ? std::string() : fmt::format(", {}", column.unit),
+                      k < symbols_.size() && !symbols_[k].empty() ? fmt::format(", {}", symbols_[k]) : std::string());
     }
   }
 
