@@ -142,6 +142,20 @@ std::array<double, 2> strongest_seconds(const FoundEffect& effect) {
   return {begin_s, begin_s + kLength_s};
 }
 
+/// Whether a sample belongs to the cutout.
+bool is_in_cutout(const FoundEffect& effect, std::size_t sample) {
+  const auto [from_s, to_s] = *effect.cutout_s;
+  const double t_s = effect.without.t_s[sample];
+  return effect.without.record[sample] == *effect.only_record && t_s >= from_s && t_s <= to_s;
+}
+
+Peak peak_in_cutout(const FoundEffect& effect) {
+  Peak peak;
+  for (std::size_t k = 0; k < effect.trace.size(); ++k)
+    if (is_in_cutout(effect, k) && std::abs(effect.trace[k]) > std::abs(peak.mean)) peak = {0, k, effect.trace[k]};
+  return peak;
+}
+
 /// The means and the lines, with some room: a bin whose samples spread far must not flatten all others.
 std::pair<double, double> range_of_means(const ScatterPlot& plot) {
   constexpr double kMargin = 0.25;
@@ -184,7 +198,7 @@ ShownUnit shown_unit(std::string_view key, double value) {
   return {unit};
 }
 
-/// FoundEffect::size of a model; its trace is read in the bin of `peak`.
+/// FoundEffect::size of a model; its trace is read in the bin of `peak`, in a cutout at its sample.
 double size_in(const FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown,
                const Peak& peak) {
   const sim::EffectInfo& info = *sim::find_effect(effect.kind);
@@ -196,6 +210,7 @@ double size_in(const FoundEffect& effect, const sim::DriveDescription& model, co
     return 1e3 * travel_in_mm(effect.drive) * largest_encoder_error(model, model.find(effect.kind)->at("period"));
   FoundEffect other = effect;
   trace_of(other, model, shown);
+  if (effect.cutout_s) return std::abs(other.trace[peak.bin]);
   return std::abs(direction_curves(other.without, other.trace, other.over)[peak.curve].y[peak.bin]);
 }
 
@@ -250,17 +265,18 @@ std::optional<FoundEffect> found_effect(const sim::DriveDescription& model, cons
   }
   if (effect.over.along == &ResidualEffort::t_s) effect.only_record = strongest_record(effect);
   if (effect.only_record || effect.over.folded) trace_of(effect, model, shown);
-  const Peak peak = peak_of(direction_curves(effect.without, effect.trace, effect.over));
-  effect.unit = info.stage == sim::Stage::encoder ? "µm" : residual_unit(effect);
-  if (const std::string id(main_parameter(info)); !id.empty())
-    effect.unit = shown_unit(info.parameter(id)->key(effect.drive), std::abs(entry.at(id))).name;
-  effect.size = size_in(effect, model, shown, peak);
-  effect.ci95 = interval_of(effect, model, shown, training, peak);
   constexpr double kLeastCarried = 0.4;
   if (most < kLeastCarried) {
     effect.only_record = strongest_record(effect);
     effect.cutout_s = strongest_seconds(effect);
   }
+  const Peak peak =
+      effect.cutout_s ? peak_in_cutout(effect) : peak_of(direction_curves(effect.without, effect.trace, effect.over));
+  effect.unit = info.stage == sim::Stage::encoder ? "µm" : residual_unit(effect);
+  if (const std::string id(main_parameter(info)); !id.empty())
+    effect.unit = shown_unit(info.parameter(id)->key(effect.drive), std::abs(entry.at(id))).name;
+  effect.size = size_in(effect, model, shown, peak);
+  effect.ci95 = interval_of(effect, model, shown, training, peak);
   const double friction = coulomb_level(model);
   const bool acts_on_shaft = info.stage == sim::Stage::load || info.stage == sim::Stage::friction;
   if (acts_on_shaft && friction > 0.0) effect.share_of_friction = effect.size / friction;
@@ -317,15 +333,21 @@ void append_cutout(const FoundEffect& effect, ScatterPlot& plot) {
   plot.series = {{"residual, forward", SeriesRole::residual, SeriesStyle::points, {}, {}, {}, {}},
                  {"residual, backward", SeriesRole::other, SeriesStyle::points, {}, {}, {}, {}},
                  {"effect", SeriesRole::model, SeriesStyle::line, {}, {}, {}, {}}};
-  const auto [from_s, to_s] = *effect.cutout_s;
+  constexpr double kGap = 3.0;  // averages without a sample: there the axis stands or turns
   const ResidualEffort& samples = effect.without;
+  ScatterSeries& line = plot.series.back();
   for (std::size_t k = 0; k < effect.trace.size(); ++k) {
-    if (samples.record[k] != *effect.only_record || samples.t_s[k] < from_s || samples.t_s[k] > to_s) continue;
+    if (!is_in_cutout(effect, k)) continue;
+    const double t_s = samples.t_s[k];
+    if (!line.x.empty() && t_s - line.x.back() > kGap * samples.period_s) {
+      line.x.push_back(0.5 * (line.x.back() + t_s));
+      line.y.push_back(std::nan(""));
+    }
+    line.x.push_back(t_s);
+    line.y.push_back(effect.trace[k]);
     ScatterSeries& residual = plot.series[samples.w[k] > 0.0 ? 0 : 1];
-    residual.x.push_back(samples.t_s[k]);
+    residual.x.push_back(t_s);
     residual.y.push_back(samples.missing[k]);
-    plot.series.back().x.push_back(samples.t_s[k]);
-    plot.series.back().y.push_back(effect.trace[k]);
   }
   std::erase_if(plot.series, [](const ScatterSeries& series) { return series.x.empty(); });
 }

@@ -23,8 +23,9 @@ struct FoundEffect {
   std::optional<std::size_t> only_record;  ///< over time: records have no common time, so the others' samples are NaN
   /// Where no coordinate carries the trace, as after each step of the command: the strongest seconds of the record.
   std::optional<std::array<double, 2>> cutout_s;
-  /// Largest mean of the trace over the coordinate, >= 0; of an encoder's error its largest value; of what acts in the
-  /// command, the motor or the mechanics its first parameter (a gap, a delay, a resonance).
+  /// Largest mean of the trace over the coordinate, in a cutout its largest value, >= 0; of an encoder's error its
+  /// largest value; of what acts in the command, the motor or the mechanics its first parameter (a gap, a delay, a
+  /// resonance).
   double size = 0.0;
   std::string unit;                           ///< of the size: Nm or N, rad/s or m/s, µm, ms, Hz ...
   std::optional<std::array<double, 2>> ci95;  ///< 95 % interval of the size; empty where the fit gives none
