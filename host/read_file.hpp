@@ -3,9 +3,15 @@
 
 #include <string>
 
+#include "host/input_limits.hpp"
+
 namespace host {
 
-/// The bytes of a file. Throws Failure(bad_input) naming the path and the system's reason.
+/// The bytes of a file. Throws Failure(bad_input) naming the path and the system's reason, or the limit that it
+/// exceeds: then no more than the limit has been read.
+std::string read_file(const std::string& path, const ByteLimit& limit);
+
+/// Of a document.
 std::string read_file(const std::string& path);
 
 }  // namespace host

@@ -50,8 +50,8 @@ void add_cut(CLI::App& app) {
       "Example:\n  axistool cut log.csv --from 2.5 --to 9 -o moving.csv\n"
       "Time stamps stay as they are; the header says what was cut.");
   command->callback([arguments] {
-    tell(*arguments,
-         host::cut_record(host::read_file(arguments->record), arguments->record, arguments->from_s, arguments->to_s));
+    tell(*arguments, host::cut_record(host::read_file(arguments->record, host::kRecordSize), arguments->record,
+                                      arguments->from_s, arguments->to_s));
   });
 }
 

@@ -218,7 +218,7 @@ firmware::ParameterValues values_without_board(const RunArguments& arguments) {
 }
 
 void run(const RunArguments& arguments) {
-  const std::string text = host::read_file(arguments.file);
+  const std::string text = host::read_file(arguments.file, host::kProgramSize);
   require_program(text, arguments);
   std::optional<host::BoardClient> asked = board_of(arguments);
   if (asked) asked->require_same_table();

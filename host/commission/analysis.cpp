@@ -43,7 +43,7 @@ Record settled_record(const std::string& path, double resolution) {
   if (moves == whole.x.end()) return whole;
   const double from_s = whole.t_s[static_cast<std::size_t>(moves - whole.x.begin())] + kForgotten_s;
   if (from_s > whole.t_s[whole.size() / 2]) return whole;
-  return cut_record(read_file(path), path, from_s, whole.t_s.back());
+  return cut_record(read_file(path, kRecordSize), path, from_s, whole.t_s.back());
 }
 
 Measurements settled(const sim::DriveDescription& model, const std::vector<std::string>& training,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "host/exit_codes.hpp"
+#include "host/input_limits.hpp"
 
 namespace host {
 
@@ -231,7 +232,7 @@ class Reader {
     move.curve = PathCurve::line(at_, at_);
     move.dwell_s = seconds;
     move.line = line_;
-    program_.moves.push_back(move);
+    append(move, seconds);
   }
 
   PathPoint target() {
@@ -253,6 +254,17 @@ class Reader {
     move.feed_mm_s = is_rapid ? (machine_.rapid_mm_s > 0.0 ? machine_.rapid_mm_s : 1e9) : feed_mm_s_;
     move.tolerance_mm = tolerance_mm_;
     move.line = line_;
+    append(move, curve.length() / move.feed_mm_s);
+  }
+
+  /// `least_s`: what it takes at least.
+  void append(const PathMove& move, double least_s) {
+    duration_s_ += least_s;
+    if (duration_s_ > kLongestPath_s)
+      fail(fmt::format("the program lasts longer than {:g} h, the most that one may; raise F, or divide it",
+                       kLongestPath_s / 3600.0));
+    if (program_.moves.size() == kMostPathMoves)
+      fail(fmt::format("more than {} moves, the most that a program may have; divide it", kMostPathMoves));
     program_.moves.push_back(move);
   }
 
@@ -370,7 +382,7 @@ class Reader {
   Block block_;
   PathPoint at_;
   Motion motion_ = Motion::none;
-  double unit_mm_ = 1.0, feed_mm_s_ = 0.0, tolerance_mm_ = 0.0;
+  double unit_mm_ = 1.0, feed_mm_s_ = 0.0, tolerance_mm_ = 0.0, duration_s_ = 0.0;
   std::array<bool, 3> is_known_{};  ///< where the axis stands
   bool is_relative_ = false, has_ended_ = false;
 };

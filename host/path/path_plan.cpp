@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "host/exit_codes.hpp"
+#include "host/input_limits.hpp"
 #include "host/path/corner_blend.hpp"
+#include "host/path/path_bounds.hpp"
 #include "host/path/path_headroom.hpp"
 #include "host/path/path_span.hpp"
 
@@ -61,6 +63,8 @@ class Chain {
     for (const PathSpan& span : spans_) path.stretched = std::max(path.stretched, span.stretched());
     const double from_s = path.knots.back().time_s;
     const std::vector<PathKnot> knots = knots_of(spans_, begins_);
+    require_bounded(path.knots.size() + knots.size(), from_s + knots.back().time_s,
+                    spans_.front().curves().front().line);
     for (std::size_t k = 1; k < knots.size(); ++k) {
       path.knots.push_back(knots[k]);
       path.knots.back().time_s += from_s;

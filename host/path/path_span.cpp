@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "host/input_limits.hpp"
+#include "host/path/path_bounds.hpp"
+
 namespace host {
 
 namespace {
@@ -93,6 +96,7 @@ PathSpan::PathSpan(std::vector<SpanCurve> curves, const PathPlanOptions& options
     states_.push_back(after(states_.back(), phase.duration_s, phase.jerk));
     times_.push_back(times_.back() + phase.duration_s);
   }
+  require_bounded(0, times_.back(), curves_.front().line);
   // Where curves take part of the limits, the profile, which has one acceleration and jerk a phase, leaves the rest.
   const bool is_straight = std::ranges::all_of(curves_, [](const SpanCurve& one) { return one.curve.is_line(); });
   if (is_straight) return;
@@ -144,7 +148,8 @@ std::vector<PathSpan::Wanted> PathSpan::knot_times() const {
     const double turning = span.curve.at(middle.length - span.begin).curvature.norm() * middle.speed * time;
     double parts = std::max(time / kLongest_s, turning / kLargestTurn);
     if (span.curve.is_blend()) parts = std::max(parts, 8.0 * middle.speed * time / span.curve.length());
-    const auto count = static_cast<int>(std::ceil(std::min(parts, time / options_.shortest_s)));
+    const auto count = static_cast<int>(std::ceil(std::min({parts, time / options_.shortest_s, 2.0 * kMostPathNodes})));
+    require_bounded(wanted.size() + static_cast<std::size_t>(count), duration_s(), span.line);
     for (int k = 1; k < count; ++k) wanted.push_back({from + time * k / count, 0});
   }
   for (Wanted& one : wanted) one.time_s *= factor_;
@@ -180,6 +185,7 @@ std::vector<double> PathSpan::warp_cells() const {
     const double from = cells.back(), time = event - from;
     if (time < 1.5 * options_.shortest_s) continue;
     const auto parts = static_cast<int>(std::ceil(time / cell_s));
+    require_bounded(cells.size() + static_cast<std::size_t>(parts), times_.back(), curves_.front().line);
     for (int k = 1; k <= parts; ++k) cells.push_back(from + time * k / parts);
   }
   cells.back() = times_.back();

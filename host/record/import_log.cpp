@@ -62,7 +62,7 @@ std::string Log::inventory() const {
 }
 
 Log read_log(const std::string& path) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, kLogSize);
   if (is_matlab_file(std::string_view(text).substr(0, 16), path)) return read_mat(path);
   if (text.starts_with("\x93NUMPY")) return parse_npy(text, path);
   if (text.starts_with("PK\x03\x04")) return parse_npz(text, path);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "host/exit_codes.hpp"
+#include "host/input_limits.hpp"
 #include "host/record/import_log.hpp"
 #include "host/record/mat_library.hpp"
 
@@ -134,6 +135,19 @@ void append_array(const matvar_t& variable, const std::string& name, const std::
 
 constexpr int kDeepestStruct = 8;
 
+/// As many numbers as the variable says that it holds; a packed file may say more than the computer has room for.
+double announced_numbers(const matvar_t& variable, int depth) {
+  double count = 1.0;
+  for (int k = 0; k < variable.rank; ++k) count *= static_cast<double>(variable.dims[k]);
+  if (variable.class_type != MAT_C_STRUCT && variable.class_type != MAT_C_CELL) return count;
+  if (count > static_cast<double>(kMostLogNumbers) || depth > kDeepestStruct || variable.data == nullptr) return count;
+  const std::size_t parts = variable.nbytes / sizeof(matvar_t*);
+  for (std::size_t k = 0; k < parts; ++k)
+    if (const matvar_t* part = static_cast<matvar_t* const*>(variable.data)[k])
+      count += announced_numbers(*part, depth + 1);
+  return count;
+}
+
 void append_variable(matvar_t& variable, const std::string& name, int depth, Log& log) {
   const std::string kind =
       fmt::format("{}{}, {}", variable.isComplex != 0 ? "complex " : "", class_name(variable), size_of(variable));
@@ -160,8 +174,17 @@ Log read_mat(const std::string& path) {
   Log log;
   log.path = path;
   log.layout = "mat";
-  while (const std::unique_ptr<matvar_t, FreeVariable> variable{matio.read_next(file.get())})
-    append_variable(*variable, variable->name != nullptr ? variable->name : "", 0, log);
+  double announced = 0.0;
+  while (const std::unique_ptr<matvar_t, FreeVariable> variable{matio.read_next_info(file.get())}) {
+    const std::string name = variable->name != nullptr ? variable->name : "";
+    announced += announced_numbers(*variable, 0);
+    if (!(announced <= static_cast<double>(kMostLogNumbers)))
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{}: with '{}' it unpacks to more than {} numbers, the most that a log may have; save "
+                                "fewer variables or rows",
+                                path, name, kMostLogNumbers));
+    if (matio.read_data(file.get(), variable.get()) == 0) append_variable(*variable, name, 0, log);
+  }
   if (log.columns.empty())
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: the file holds no variables, or is cut off; save it again", path));

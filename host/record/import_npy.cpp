@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "host/exit_codes.hpp"
+#include "host/input_limits.hpp"
 #include "host/record/import_log.hpp"
 
 namespace host {
@@ -62,6 +63,9 @@ class NpyReader {
     take_shape();
     if (fields_.size() > 1 && columns_ > 1) fail(path_, "an array of rows with named fields has one dimension");
     const std::size_t row = row_size() * columns_;
+    if (rows_ > kMostLogNumbers / std::max<std::size_t>(1, columns_ * fields_.size()))
+      fail(path_, fmt::format("more than {} numbers, the most that a log may have; save fewer rows or columns",
+                              kMostLogNumbers));
     if (rows_ == 0 || row == 0) fail(path_, "the array is empty; save one that holds a log");
     if (bytes_.size() / row < rows_)
       fail(path_, fmt::format("the file ends within its array of {} x {} numbers: it was cut; save it again", rows_,

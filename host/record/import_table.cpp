@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/input_limits.hpp"
 #include "host/number.hpp"
 #include "host/record/clock.hpp"
 #include "host/record/columns.hpp"
@@ -43,7 +44,10 @@ class TableReader {
     find_table();
     take_headings();
     log_.first_line = number_;
+    std::size_t rows = 0;
     do {
+      if (++rows * log_.columns.size() > kMostLogNumbers)
+        fail("more than {} numbers, the most that a log may have; cut it, or export fewer columns", kMostLogNumbers);
       if (trim_blanks(line_).empty()) {
         if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) break;
         fail("the line is blank; remove it, or cut the log there");

@@ -22,7 +22,8 @@ MatLibrary load_mat_library(const std::string& file) {
   find(functions.log_to, "Mat_LogInitFunc");
   find(functions.open, "Mat_Open");
   find(functions.close, "Mat_Close");
-  find(functions.read_next, "Mat_VarReadNext");
+  find(functions.read_next_info, "Mat_VarReadNextInfo");
+  find(functions.read_data, "Mat_VarReadDataAll");
   find(functions.free_variable, "Mat_VarFree");
   find(functions.field_count, "Mat_VarGetNumberOfFields");
   find(functions.field_names, "Mat_VarGetStructFieldnames");

@@ -13,7 +13,8 @@ struct MatLibrary {
   decltype(&Mat_LogInitFunc) log_to = nullptr;
   decltype(&Mat_Open) open = nullptr;
   decltype(&Mat_Close) close = nullptr;
-  decltype(&Mat_VarReadNext) read_next = nullptr;
+  decltype(&Mat_VarReadNextInfo) read_next_info = nullptr;
+  decltype(&Mat_VarReadDataAll) read_data = nullptr;
   decltype(&Mat_VarFree) free_variable = nullptr;
   decltype(&Mat_VarGetNumberOfFields) field_count = nullptr;
   decltype(&Mat_VarGetStructFieldnames) field_names = nullptr;

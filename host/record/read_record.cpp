@@ -142,7 +142,12 @@ class Parser {
       else
         column.fields.reserve(std::min(expected_rows, kReserveAtMost));
     }
-    while (!lines_.only_blanks_left() && lines_.next(line_)) read_row();
+    for (std::size_t rows = 1; !lines_.only_blanks_left() && lines_.next(line_); ++rows) {
+      if (rows * columns_.size() > kMostLogNumbers)
+        fail_here("more than {} numbers, the most that a record may have; cut it, or record fewer columns",
+                  kMostLogNumbers);
+      read_row();
+    }
   }
 
   void read_row() {
@@ -234,6 +239,9 @@ Record parse_record(std::string_view text, std::string_view name) {
   return Parser(plain, name).parse();
 }
 
-Record read_record(const std::string& path) { return parse_record(read_file(path), path); }
+Record read_record(const std::string& path) {
+  const std::string plain = as_utf8(read_file(path, kRecordSize));
+  return Parser(plain, path).parse();
+}
 
 }  // namespace host

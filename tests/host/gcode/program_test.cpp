@@ -116,4 +116,13 @@ TEST(Gcode, SaysWhetherItNeedsToKnowWhereItIs) {
   EXPECT_TRUE(read("G91 G28").is_absolute);
 }
 
+/// Catches a plan that takes gigabytes for two lines.
+TEST(BoundedProgram, LastsAndHoldsNoMoreThanAMachineDoes) {
+  EXPECT_THAT(refusal("G21 G91\nF1\nG1 X100000\nM2\n"), HasSubstr("part.ngc:3: the program lasts longer than 10 h"));
+  EXPECT_THAT(refusal("G4 P20000\nG4 P20000\n"), HasSubstr("part.ngc:2: the program lasts longer than 10 h"));
+  std::string many = "G91 F1000\n";
+  for (int k = 0; k < 200'001; ++k) many += "G1X1\n";
+  EXPECT_THAT(refusal(many), HasSubstr("part.ngc:200002: more than 200000 moves"));
+}
+
 }  // namespace

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 
+#include "host/exit_codes.hpp"
 #include "host/gcode/program.hpp"
 #include "host/path/path_words.hpp"
 #include "tests/host/path/random_programs.hpp"
@@ -149,6 +150,19 @@ TEST(PlannedPath, RandomProgramsNeverExceedTheirLimits) {
   }
   RecordProperty("slowed_down_by", std::to_string(slowest));
   RecordProperty("worst_jerk", std::to_string(worst.jerk));
+}
+
+/// Slow axes make days of a metre.
+TEST(BoundedPath, IsRefusedBeforeItTakesMemory) {
+  host::PathPlanOptions slow;
+  slow.limits = {PathPoint::Constant(1e-6), PathPoint::Constant(1.0), PathPoint::Constant(1.0)};
+  for (const host::PathCurve& curve : {host::PathCurve::line(PathPoint::Zero(), PathPoint(1000.0, 0.0, 0.0)),
+                                       host::PathCurve::arc(PathPoint::Zero(), PathPoint(100.0, 0.0, 0.0), 6.0, 0.0)}) {
+    host::PathMove move;
+    move.curve = curve;
+    move.feed_mm_s = 100.0;
+    EXPECT_THROW(host::plan_path({move}, slow), host::Failure);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+// What an input may be at most. More is refused with the limit's name before it costs memory or time: a file from
+// elsewhere may be damaged, or made so on purpose. host/README.md lists them.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace host {
+
+struct ByteLimit {
+  std::string_view of;  ///< what is limited, for messages
+  std::size_t bytes;
+  bool in_lines;  ///< a text: a line longer than kLongestLine ends the reading at once (/dev/zero never ends)
+};
+
+inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
+inline constexpr std::size_t kLongestLine = kMebibyte;
+
+/// Models, scenarios, parameters, results of other commands, images.
+inline constexpr ByteLimit kDocumentSize{"a document", 16 * kMebibyte, false};
+inline constexpr ByteLimit kProgramSize{"a G-code program", 64 * kMebibyte, true};
+inline constexpr ByteLimit kRecordSize{"a record", 1024 * kMebibyte, true};
+inline constexpr ByteLimit kLogSize{"a log", 1024 * kMebibyte, false};
+
+/// Numbers of a record or log: 400 MB as they are kept; an hour of five channels at 2.7 kHz. Expanded, where packed.
+inline constexpr std::size_t kMostLogNumbers = 50'000'000;
+
+/// Of a model. The largest that the search makes has a tenth of each.
+inline constexpr std::size_t kMostEffects = 64, kMostHarmonics = 128, kMostKnots = 1000;
+
+/// Of a G-code program: some 350 bytes and 0.1 ms of planning a move, 100 bytes a node.
+inline constexpr std::size_t kMostPathMoves = 200'000, kMostPathNodes = 2'000'000;
+inline constexpr double kLongestPath_s = 36'000.0;
+
+}  // namespace host

@@ -1,0 +1,11 @@
+// How long a planned path may be.
+#pragma once
+
+#include <cstddef>
+
+namespace host {
+
+/// Throws Failure(bad_input) naming the line and the limit: slow axes make a short program last for days.
+void require_bounded(std::size_t nodes, double duration_s, std::size_t line);
+
+}  // namespace host
