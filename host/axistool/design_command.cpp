@@ -10,6 +10,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/identify/design_json.hpp"
 #include "host/identify/plausibility.hpp"
+#include "host/known_by_current.hpp"
 #include "host/model/model_file.hpp"
 #include "host/parameters/compensation_parameters.hpp"
 #include "host/parameters/design_file.hpp"
@@ -118,6 +119,7 @@ void print_compensation(const sim::DriveDescription& model) {
 
 void run(const DesignArguments& arguments) {
   const sim::DriveDescription model = host::read_model(arguments.model, host::Bounds::examined_later);
+  host::require_volts(model.data, model.name, "a controller");
   host::require_plausible(model, arguments.accepted);
   const host::LoopAim aim = aim_of(arguments);
   std::optional<host::LoopDesign> loop;

@@ -25,8 +25,8 @@ RigidAxis rigid_axis(const sim::DriveDescription& model) {
   if (!(axis.effort_per_volt > 0.0)) {
     throw Failure(ExitCode::bad_input, fmt::format("model '{}': [drive] needs {} greater than zero", model.name,
                                                    model.data.kind == sim::DriveKind::rotary
-                                                       ? "amplifier_gain_A_per_V and torque_constant_Nm_per_A"
-                                                       : "force_constant_N_per_V"));
+                                                       ? "torque_constant_Nm_per_A"
+                                                       : "force_constant_N_per_V or force_constant_N_per_A"));
   }
   return axis;
 }

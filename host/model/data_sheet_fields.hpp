@@ -8,7 +8,12 @@
 
 namespace host {
 
-enum class Presence { required, optional, alternative_unit };
+enum class Presence {
+  required,
+  optional,
+  of_volts,  ///< absent where the torque or force is known by the current alone
+  alternative_unit,
+};
 
 struct DataSheetField {
   std::string_view table;  ///< "" for [drive] itself, else the name of its sub-table
@@ -25,17 +30,17 @@ struct DataSheetField {
 /// In the order in which they are written.
 inline constexpr DataSheetField kDataSheetFields[] = {
     {"", "amplifier_gain_A_per_V", sim::DriveKind::rotary, &sim::DataSheet::amplifier_gain_A_per_V, false,
-     Presence::required},
+     Presence::of_volts},
     {"", "torque_constant_Nm_per_A", sim::DriveKind::rotary, &sim::DataSheet::torque_constant_Nm_per_A, false,
      Presence::required},
     {"", "lead_mm_per_rad", sim::DriveKind::rotary, &sim::DataSheet::lead, false, Presence::required},
     {"", "force_constant_N_per_V", sim::DriveKind::linear, &sim::DataSheet::force_constant_N_per_V, false,
-     Presence::required},
+     Presence::of_volts},
     {"", "force_constant_N_per_A", sim::DriveKind::linear, &sim::DataSheet::torque_constant_Nm_per_A, false,
      Presence::optional},
     {"", "sample_period_s", {}, &sim::DataSheet::sample_period_s, false, Presence::required},
-    {"dac", "resolution_V", {}, &sim::DataSheet::dac_resolution_V, true, Presence::optional},
-    {"dac", "limit_V", {}, &sim::DataSheet::dac_limit_V, false, Presence::optional},
+    {"dac", "resolution_V", {}, &sim::DataSheet::dac_resolution_V, true, Presence::of_volts},
+    {"dac", "limit_V", {}, &sim::DataSheet::dac_limit_V, false, Presence::of_volts},
     {"encoder", "resolution_mm", sim::DriveKind::rotary, &sim::DataSheet::encoder_resolution, true, Presence::optional},
     {"encoder", "resolution_m", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true, Presence::optional},
     {"encoder", "resolution_mm", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "host/model/data_sheet_fields.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/nearest_name.hpp"
@@ -30,6 +31,7 @@ constexpr std::string_view kHeldSuffix = "_held";
 constexpr std::string_view kDeviationSuffix = "_sd";
 constexpr std::string_view kGivenSuffix = "_given";  ///< what was believed, where a fit has moved the value
 constexpr std::string_view kHarmonics = "harmonics";
+constexpr std::string_view kForcePerVolt = "force_constant_N_per_V", kForcePerAmpere = "force_constant_N_per_A";
 
 class ModelReader {
  public:
@@ -92,14 +94,49 @@ class ModelReader {
   void read_data_sheet() {
     const toml::table* drive = table_at(root_, "drive");
     if (drive == nullptr) fail(line_of(root_), "missing table [drive]; add the drive's data-sheet values");
+    if (!drive->contains("kind")) require_fields(*drive);
     const std::string kind = text_at(*drive, "kind", "[drive]", true);
     if (kind != "rotary" && kind != "linear")
       fail(line_of(*drive->get("kind")), "kind: '{}' is unknown; write \"rotary\" or \"linear\"", kind);
     model_.data.kind = kind == "rotary" ? DriveKind::rotary : DriveKind::linear;
     refuse_unknown_in_drive(*drive);
+    require_fields(*drive);
     for (const DataSheetField& field : kDataSheetFields)
       if (field.belongs_to(model_.data.kind)) read_field(*drive, field);
     if (const toml::table* tach = table_at(*drive, "tach")) read_tachometer(*tach);
+    const bool gives_volts = drive->contains(kForcePerVolt) || drive->contains("amplifier_gain_A_per_V");
+    if (!gives_volts) take_current_alone(*drive);
+  }
+
+  /// All that is missing at once. A kind that is not told is presumed from the fields that are there.
+  void require_fields(const toml::table& drive) const {
+    std::vector<std::string> missing;
+    const bool speaks_of_force = drive.contains(kForcePerVolt) || drive.contains(kForcePerAmpere);
+    const bool is_linear =
+        drive.contains("kind") ? text_at(drive, "kind", "[drive]", true) == "linear" : speaks_of_force;
+    const DriveKind kind = is_linear ? DriveKind::linear : DriveKind::rotary;
+    if (!drive.contains("kind")) missing.emplace_back("kind = \"rotary\" or \"linear\"");
+    for (const DataSheetField& field : kDataSheetFields)
+      if (field.presence == Presence::required && field.belongs_to(kind) && !drive.contains(field.key))
+        missing.push_back(fmt::format("{} = …", field.key));
+    if (is_linear && !speaks_of_force)
+      missing.push_back(fmt::format("{} = … ({} for logs of the current)", kForcePerVolt, kForcePerAmpere));
+    if (const toml::table* tach = table_at(drive, "tach"); tach != nullptr && !tach->contains(tach_noise_key(kind)))
+      missing.push_back(fmt::format("{} = … in [drive.tach], or no such table where the drive has no tachometer",
+                                    tach_noise_key(kind)));
+    if (missing.empty()) return;
+    fail(line_of(drive), "missing field{} in [drive]: {}; add {} from the data sheet", missing.size() == 1 ? "" : "s",
+         fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them");
+  }
+
+  /// The torque or force is known by the current: a volt stands for an ampere, and nothing limits it.
+  void take_current_alone(const toml::table& drive) {
+    if (const toml::node* dac = drive.get("dac"))
+      fail(line_of(*dac),
+           "[drive.dac] is about volts, but [drive] gives torque or force for the current alone; add {}, or remove "
+           "[drive.dac]",
+           model_.data.kind == DriveKind::rotary ? "amplifier_gain_A_per_V" : kForcePerVolt);
+    know_by_current(model_.data);
   }
 
   void refuse_unknown_in_drive(const toml::table& drive) const {
@@ -128,11 +165,6 @@ class ModelReader {
   void read_field(const toml::table& drive, const DataSheetField& field) {
     const toml::table* table = field.table.empty() ? &drive : table_at(drive, field.table);
     const toml::node* node = table == nullptr ? nullptr : table->get(field.key);
-    // Where the force is known by the current alone, a volt stands for an ampere.
-    if (node == nullptr && field.value == &sim::DataSheet::force_constant_N_per_V)
-      node = drive.get("force_constant_N_per_A");
-    if (node == nullptr && field.presence == Presence::required)
-      fail(line_of(drive), "missing field {} in [drive]; add {} = … from the data sheet", field.key, field.key);
     if (node == nullptr) return;
     if (field.presence == Presence::alternative_unit && table->size() > 1)
       fail(line_of(*node), "{}: the same quantity stands beside it in another unit; keep one of them", field.key);
@@ -148,13 +180,7 @@ class ModelReader {
 
   void read_tachometer(const toml::table& tach) {
     const std::string_view key = tach_noise_key(model_.data.kind);
-    const toml::node* node = tach.get(key);
-    if (node == nullptr)
-      fail(line_of(tach),
-           "missing field {} in [drive.tach]; add it, or remove the table where the drive has no "
-           "tachometer",
-           key);
-    model_.data.tach_noise_variance = positive_number(*node, key, true);
+    model_.data.tach_noise_variance = positive_number(*tach.get(key), key, true);
   }
 
   void read_effects(bool required) {
@@ -165,12 +191,18 @@ class ModelReader {
            name_);
     const toml::array* array = node->as_array();
     if (array == nullptr) fail(line_of(*node), "effect: write each effect under a heading [[effect]]");
+    require_at_most(*array, kMostEffects, "effects", "a model");
     for (const toml::node& entry : *array) {
       if (!entry.is_table()) fail(line_of(entry), "effect: write each effect under a heading [[effect]]");
       read_effect(*entry.as_table());
     }
     if (required && model_.find("inertia") == nullptr)
       fail(line_of(*node), "missing effect inertia: without one nothing moves; add [[effect]] kind = \"inertia\"");
+  }
+
+  void require_at_most(const toml::array& list, std::size_t most, std::string_view what, std::string_view of) const {
+    if (list.size() > most)
+      fail(line_of(list), "{} {}, and {} may have at most {}; merge them", list.size(), what, of, most);
   }
 
   void read_effect(const toml::table& table) {
@@ -235,6 +267,7 @@ class ModelReader {
     if (node == nullptr) fail(line_of(table), "missing field {} in effect free_curve; add {} = [ … ]", key, key);
     const toml::array* list = node->as_array();
     if (list == nullptr) fail(line_of(*node), "{}: write a list, [ … ]", key);
+    require_at_most(*list, kMostKnots, key, "a curve");
     std::vector<double> numbers;
     for (const toml::node& element : *list) numbers.push_back(number_of(element, key));
     return numbers;
@@ -281,6 +314,7 @@ class ModelReader {
       fail(line_of(*node), "{} stands beside {} or {}; keep one form", kHarmonics, cosine_key, sine_key);
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty()) fail(line_of(*node), "{}: write {}", kHarmonics, form);
+    require_at_most(*list, kMostHarmonics, kHarmonics, "an effect");
     for (const toml::node& element : *list) {
       const toml::table* term = element.as_table();
       const toml::node* order_node = term == nullptr ? nullptr : term->get("order");

@@ -7,6 +7,7 @@
 
 #include "host/atomic_file.hpp"
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "host/model/data_sheet_fields.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
@@ -47,6 +48,7 @@ void append_data_sheet(const sim::DataSheet& data, std::string& text) {
   std::string_view table;
   for (const DataSheetField& field : kDataSheetFields) {
     if (!field.belongs_to(data.kind) || field.presence == Presence::alternative_unit) continue;
+    if (field.presence == Presence::of_volts && is_known_by_current(data)) continue;
     if (data.*field.value == 0.0 && !field.zero_allowed && field.presence == Presence::optional) continue;
     if (field.table != table) fmt::format_to(out, "\n[drive.{}]\n", field.table);
     table = field.table;

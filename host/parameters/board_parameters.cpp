@@ -9,6 +9,7 @@
 
 #include "firmware/app/parameters/parameter_table.hpp"
 #include "host/identify/friction_law.hpp"
+#include "host/known_by_current.hpp"
 
 namespace host {
 
@@ -57,6 +58,7 @@ ReferenceLimits ReferenceLimits::usual_for(sim::DriveKind kind) {
 
 std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model, const AxisDesign& design,
                                              const ReferenceLimits& limits) {
+  require_volts(model.data, model.name, "a board");
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
   const Eigen::Matrix3d& A = design.model.A;
   const Eigen::Vector3d& B = design.model.B;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "host/parameters/parameter_names.hpp"
 
 namespace host {
@@ -17,6 +18,7 @@ std::size_t place_of(std::size_t axis, std::string_view name) {
 
 firmware::ParameterValues with_data_sheet(firmware::ParameterValues values, std::size_t axis,
                                           const sim::DataSheet& data) {
+  require_volts(data, firmware::kAxisNames.at(axis), "a board");
   if (!(data.encoder_resolution > 0.0) || !(data.dac_resolution_V > 0.0))
     throw Failure(ExitCode::bad_input,
                   "the data sheet lacks the resolution of the encoder or of the converter: without them nobody knows "

@@ -8,6 +8,7 @@
 
 #include "host/diagnose/parallel.hpp"
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "host/plan/information.hpp"
 #include "host/plan/primitives.hpp"
 #include "host/plan/simulated_run.hpp"
@@ -301,6 +302,7 @@ class Planner {
 Plan plan_run(const sim::DriveDescription& model, const std::vector<const Record*>& training,
               const std::vector<Rival>& rivals, const ExcitationLimits& box, const PlanOptions& options,
               const ShareDone& progress) {
+  require_volts(model.data, model.name, "a planned run");
   if (rivals.size() < 2)
     throw Failure(ExitCode::usage,
                   "a run separates two rivals at least: give --rivals A,B, or records of which "

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/log_fault.hpp"
 #include "host/statistics.hpp"
@@ -325,6 +326,14 @@ void adapt_to(Record& record, const sim::DataSheet& sheet) {
     fail(record,
          "missing column: u_V; the record holds the current i_A alone, and this drive's data sheet knows its force by "
          "the command in volts: add force_constant_N_per_A to [drive], or log u_V");
+  if (is_known_by_current(sheet)) {
+    if (record.i_A.empty() && !record.u_V.empty())
+      fail(record,
+           fmt::format("missing column: i_A; the record holds the command u_V, and this drive's data sheet gives "
+                       "torque or force for the current alone: add {} to [drive], or log i_A",
+                       sheet.kind == sim::DriveKind::rotary ? "amplifier_gain_A_per_V" : "force_constant_N_per_V"));
+    record.u_V.clear();  // nothing is known of it
+  }
   scale(record.x, record.kind, sheet.kind);
   scale(record.x_ref, record.kind, sheet.kind);
   record.kind = sheet.kind;

@@ -10,6 +10,7 @@
 #include "hal/pc/simulated_board.hpp"
 #include "host/atomic_file.hpp"
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "host/read_file.hpp"
 
 namespace host {
@@ -99,7 +100,11 @@ std::unique_ptr<SimulatedProgram> start_program(const SimulatedDeviceOptions& op
 
 }  // namespace
 
-SimulatedDevice::SimulatedDevice(SimulatedDeviceOptions options) : options_(std::move(options)) { power_up(); }
+SimulatedDevice::SimulatedDevice(SimulatedDeviceOptions options) : options_(std::move(options)) {
+  for (const SimulatedDrive& drive : options_.drives)
+    require_volts(drive.drive.data, drive.drive.name, "a simulated board");
+  power_up();
+}
 
 void SimulatedDevice::power_up() {
   const bool is_reset = program_ != nullptr;

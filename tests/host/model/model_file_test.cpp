@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "sim/catalogue.hpp"
 #include "tests/host/temporary_folder.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 // The x axis of the paper (Table 1); line numbers below count from its first line.
 constexpr const char* kPaperX = R"(format = "axis-model/1"
@@ -180,14 +182,62 @@ TEST(ReadModel, UnknownEffect) {
 }
 
 TEST(ReadModel, MissingFields) {
-  EXPECT_THAT(message_of("amplifier_gain_A_per_V = 6.4898\n", ""),
-              AllOf(HasSubstr("line 4"), HasSubstr("missing field amplifier_gain_A_per_V"), HasSubstr("data sheet")));
+  EXPECT_THAT(
+      message_of("lead_mm_per_rad = 1.5915494309189535\n", ""),
+      AllOf(HasSubstr("line 4"), HasSubstr("missing field in [drive]: lead_mm_per_rad"), HasSubstr("data sheet")));
   EXPECT_THAT(message_of("B_Nm_s_per_rad = 0.0296\n", ""),
               AllOf(HasSubstr("line 23"), HasSubstr("missing field B_Nm_s_per_rad in effect viscous")));
   EXPECT_THAT(message_of("kind = \"viscous\"\n", ""), AllOf(HasSubstr("line 23"), HasSubstr("missing field kind")));
   EXPECT_THAT(message_of("kind = \"inertia\"\nJ_kg_m2 = 0.00765\nJ_kg_m2_ci95 = [0.0076, 0.0077]",
                          "kind = \"dac_offset\"\noffset_V = 0.01"),
               HasSubstr("missing effect inertia"));
+}
+
+/// Catches a reader that names one missing field after the other.
+TEST(ReadModel, NamesAllThatADataSheetLacks) {
+  const std::string head = "format = \"axis-model/1\"\n[drive]\n";
+  EXPECT_THAT(message_of(head + "kind = \"rotary\"\n[drive.tach]\n"),
+              AllOf(HasSubstr("torque_constant_Nm_per_A"), HasSubstr("lead_mm_per_rad"), HasSubstr("sample_period_s"),
+                    HasSubstr("noise_variance_rad2_s2")));
+  EXPECT_THAT(
+      message_of(head + "kind = \"linear\"\n"),
+      AllOf(HasSubstr("force_constant_N_per_V"), HasSubstr("force_constant_N_per_A"), HasSubstr("sample_period_s")));
+  EXPECT_THAT(message_of(head + "force_constant_N_per_A = 3\n"),
+              AllOf(HasSubstr("kind = "), HasSubstr("sample_period_s"), Not(HasSubstr("lead"))));
+}
+
+/// A log of the current needs no amplifier: a sheet without one stays without one.
+TEST(ReadModel, TorqueOrForceOfTheCurrentAlone) {
+  const std::string common = "format = \"axis-model/1\"\nname = \"k\"\n[drive]\nsample_period_s = 0.001\n";
+  for (const std::string& sheet :
+       {common + "kind = \"rotary\"\ntorque_constant_Nm_per_A = 0.4\nlead_mm_per_rad = 1.5\n",
+        common + "kind = \"linear\"\nforce_constant_N_per_A = 40\n"}) {
+    const sim::DriveDescription drive = host::parse_drive(sheet, "drive.toml");
+    EXPECT_TRUE(host::is_known_by_current(drive.data));
+    EXPECT_EQ(drive.data.effort_per_volt(), drive.data.torque_constant_Nm_per_A);
+    EXPECT_THROW(host::require_volts(drive.data, "k", "a board"), host::Failure);
+    const std::string written = host::format_model(drive);
+    for (const char* of_volts : {"amplifier_gain", "N_per_V", "[drive.dac]"})
+      EXPECT_THAT(written, Not(HasSubstr(of_volts)));
+    EXPECT_TRUE(host::is_known_by_current(host::parse_drive(written, "again.toml").data));
+    EXPECT_THAT(message_of(sheet + "[drive.dac]\nlimit_V = 10\n"), HasSubstr("[drive.dac] is about volts"));
+  }
+  EXPECT_FALSE(host::is_known_by_current(host::parse_model(kPaperX, "x.toml").data));
+}
+
+/// Catches a model that keeps the machine busy for minutes.
+TEST(ReadModel, HoldsNoMoreThanAModelDoes) {
+  std::string many = kPaperX, list, knots;
+  for (int k = 0; k < 62; ++k)
+    many += "[[effect]]\nkind = \"cogging\"\nperiod_mm = 5\ncosine_Nm = 0.1\nsine_Nm = 0.1\n";
+  EXPECT_THAT(message_of(many), HasSubstr("a model may have at most 64"));
+  for (int k = 1; k <= 129; ++k) list += "{ order = " + std::to_string(k) + ", cosine_Nm = 1e-4, sine_Nm = 1e-4 },";
+  EXPECT_THAT(message_of(kPaperX + ("[[effect]]\nkind = \"cogging\"\nperiod_mm = 5\nharmonics = [" + list + "]\n")),
+              HasSubstr("an effect may have at most 128"));
+  for (int k = 0; k <= 1000; ++k) knots += std::to_string(k) + ",";
+  EXPECT_THAT(message_of(kPaperX + ("[[effect]]\nkind = \"free_curve\"\nover = \"speed\"\nknots = [" + knots +
+                                    "]\nvalues_Nm = [" + knots + "]\n")),
+              HasSubstr("a curve may have at most 1000"));
 }
 
 TEST(ReadModel, OneFormForBothDirectionsOrOneForEach) {
