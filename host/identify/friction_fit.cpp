@@ -123,7 +123,7 @@ Candidate solve_from(const std::vector<CurvePoint>& points, const std::vector<do
   std::vector<double> residuals;
   ceres::CRSMatrix sparse;
   double half = 0.0;
-  problem.Evaluate({}, &half, &residuals, nullptr, &sparse);
+  if (!problem.Evaluate({}, &half, &residuals, nullptr, &sparse)) return candidate;  // its cost stays infinite
   candidate.cost = 2.0 * half;
   candidate.jacobian = dense_matrix(sparse);
   return candidate;
@@ -161,6 +161,10 @@ double information_criterion(const Candidate& candidate, std::size_t points) {
 }
 
 FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& points) {
+  if (!std::isfinite(best.cost))
+    throw Failure(ExitCode::refused,
+                  "no friction curve fits the constant speeds: their torques or forces leave the "
+                  "range of numbers; check units and scales");
   const Layout& layout = best.layout;
   const double degrees = std::max(1.0, static_cast<double>(points.size()) - static_cast<double>(layout.size()));
   const double excess = std::max(1.0, best.cost / degrees);  // scatter beyond the points' own errors widens

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "host/exit_codes.hpp"
@@ -77,6 +78,44 @@ std::vector<DistortionLine> read_distortion(const json& document, const char* wh
   for (std::size_t i = 0; i < part.at("f_Hz").size(); ++i)
     lines.push_back({part["f_Hz"][i].get<double>(), part.at("level").at(i).get<double>()});
   return lines;
+}
+
+/// Magnitudes beyond these are no drive's: the widest range of a plant's lines, 1e-9 to 1e9 of its unit, squared.
+constexpr double kLeast = 1e-18, kMost = 1e18;
+
+bool is_one_of_a_drive(const ResponseLine& line, const FrequencyResponse& response) {
+  for (Eigen::Index channel = 0; channel < 2; ++channel) {
+    if (!(channel == 0 ? response.has_position : response.has_speed)) continue;
+    const double size = std::abs(line.plant(channel)), variance = line.covariance(channel, channel).real();
+    if (!(size > kLeast && size < kMost && variance >= 0.0 && variance < kMost * kMost)) return false;
+  }
+  return std::isfinite(line.noise) && std::isfinite(line.nonlinearity) &&
+         std::isfinite(std::abs(line.covariance(0, 1))) && line.coherence >= 0.0 && line.coherence <= 1.0 &&
+         line.degrees >= 0.0 && line.degrees < kMost;
+}
+
+/// Throws Failure(bad_input) naming the first entry that no measurement gives.
+void require_measured(const FrequencyResponse& response, const std::string& path) {
+  const auto refuse = [&](const std::string& what) {
+    throw Failure(ExitCode::bad_input, fmt::format("{}: {}; write it anew with `axistool bode --json`", path, what));
+  };
+  constexpr double kShortest_s = 1e-6, kLongest_s = 1.0;
+  if (!(response.sample_period_s >= kShortest_s && response.sample_period_s <= kLongest_s))
+    refuse(fmt::format("sample_period_s = {:g}: it must be from {:g} to {:g}", response.sample_period_s, kShortest_s,
+                       kLongest_s));
+  double last_Hz = 0.0;
+  for (std::size_t i = 0; i < response.lines.size(); ++i) {
+    const ResponseLine& line = response.lines[i];
+    if (!(line.f_Hz > last_Hz && line.f_Hz * response.sample_period_s < 1.0))
+      refuse(fmt::format("f_Hz[{}] = {:g}: frequencies must increase, from above 0 to below {:g}", i, line.f_Hz,
+                         1.0 / response.sample_period_s));
+    last_Hz = line.f_Hz;
+    if (!is_one_of_a_drive(line, response))
+      refuse(
+          fmt::format("entry {} of plant, covariance, noise, nonlinearity, coherence or degrees is not finite or out "
+                      "of any drive's range",
+                      i));
+  }
 }
 
 /// Products of the two channels' errors: what the margins' intervals need beside "sd".
@@ -187,6 +226,7 @@ AxisResponse read_response(const std::string& path) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: {}: no response that `axistool bode --json` wrote", path, error.what()));
   }
+  require_measured(response, path);
   axis.fit = fit_plant(response);
   return axis;
 }

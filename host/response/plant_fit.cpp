@@ -161,7 +161,8 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, Late late,
   Fitted found{std::move(value), late, 2.0 * summary.final_cost, {}};
   if (iterations < kIterations) return found;
   ceres::CRSMatrix sparse;
-  problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
+  if (!problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse))
+    throw Failure(ExitCode::refused, "no drive fits the response: the fit leaves the range of numbers");
   const Eigen::MatrixXd jacobian = dense_matrix(sparse);
   found.covariance = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
   return found;
