@@ -31,6 +31,8 @@ constexpr Row kRows[] = {
     {"same_record", "same_record", "give a record of another motion"},
     {"records_disagree", "records_disagree",
      "record again under one set of units and settings, or leave the record out"},
+    {"other_drive", "other_drive", "name the model of this drive, or the record of the model's"},
+    {"no_encoder", "data_sheet", "add [drive.encoder] with its resolution to the data sheet"},
 };
 
 const Row& row_of(LogFaultKind kind) { return kRows[static_cast<std::size_t>(kind)]; }

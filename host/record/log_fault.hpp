@@ -29,6 +29,8 @@ enum class LogFaultKind {
   another_zero,      ///< what repeats along the travel lies elsewhere than in the first record: homed anew
   same_record,       ///< rows that judge are rows that train, or rows that count twice
   records_disagree,  ///< the records are not of one machine, or a channel's scale changed between them
+  other_drive,       ///< its header names another drive than the model
+  no_encoder,        ///< positions lie on a grid, and the data sheet knows no encoder
 };
 
 /// The kind's own name, "integer_wrap", and the name of the family that programs and `--accept` know, "jump".

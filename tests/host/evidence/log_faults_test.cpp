@@ -39,6 +39,21 @@ class LogFaults : public testing::Test {
 
 TEST_F(LogFaults, NoneInASoundRecord) { EXPECT_TRUE(host::log_faults(record, model).empty()); }
 
+/// Catches a noise floor of nothing, and a model of another machine, without a word.
+TEST_F(LogFaults, OfADataSheetAreSaidAndEndNothing) {
+  model.data.encoder_resolution = 0.0;
+  expect_only(LogFaultKind::no_encoder, "x_mm", 0.002, 1e-9);
+  EXPECT_FALSE(host::log_faults(record, model)[0].fatal);
+  for (std::size_t k = 0; k < record.size(); ++k) record.x[k] += 1e-4 * std::sin(1.3 * static_cast<double>(k));
+  EXPECT_TRUE(host::log_faults(record, model).empty()) << "positions without counts";
+  model = HandMade::model();
+  record = HandMade::record();
+  record.drive = "y";
+  expect_only(LogFaultKind::other_drive, "x_mm", 0.0, 1e-9);
+  record.drive = model.name;
+  EXPECT_TRUE(host::log_faults(record, model).empty());
+}
+
 TEST_F(LogFaults, NoneWhereInertiaAndFrictionDiffer) {
   model.find("inertia")->parameters["J"] *= 1.5;
   model.find("coulomb")->parameters["positive"] *= 0.6;
