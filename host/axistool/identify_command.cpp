@@ -95,8 +95,10 @@ void add_identify(CLI::App& app) {
                    "on the samples that slide for sure. Default sliding-ls with a tachometer, unbiased-ls without")
       ->check(CLI::IsMember({"unbiased-ls", "ls", "sliding-ls"}));
   command
-      ->add_option("--deadband", arguments->options.deadband,
-                   "speed that counts as standstill, rad/s (default 0.5) or m/s (default 0: every sample counts)")
+      ->add_option(
+          "--deadband", arguments->options.deadband,
+          "speed that counts as standstill, rad/s (default 0.5, or a tenth of the record's top speed if that is "
+          "less) or m/s (default 0: every sample counts)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--cutoff", arguments->options.cutoff_Hz,
                       "of the zero-phase filter, Hz. Default: a tenth of the sampling rate, at most 100 Hz, lowered "

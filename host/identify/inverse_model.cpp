@@ -84,6 +84,23 @@ class SeenEffort {
 
 }  // namespace
 
+namespace {
+
+/// By more than sensors fake at rest: 10 counts, or speeds of one sign beyond noise.
+bool has_moved(const Record& record, const sim::DataSheet& data) {
+  constexpr double kCounts = 10.0, kDeviations = 5.0;
+  if (record.has_position()) {
+    const auto [least, most] = std::ranges::minmax(record.x);
+    return most - least > kCounts * data.encoder_resolution;
+  }
+  double travel = 0.0, farthest = 0.0;
+  for (const double w : record.w) farthest = std::max(farthest, std::abs(travel += w));
+  return farthest >
+         kDeviations * std::sqrt(data.tach_noise_variance.value_or(0.0) * static_cast<double>(record.size()));
+}
+
+}  // namespace
+
 double relative_error(const sim::DriveDescription& model, const Record& record, const MotionOptions& options) {
   return relative_error(model, std::vector<Record>{record}, options);
 }
@@ -104,6 +121,12 @@ double relative_error(const sim::DriveDescription& model, const std::vector<Reco
       residual += (measured[k] - modelled[k]) * (measured[k] - modelled[k]);
       total += measured[k] * measured[k];
     }
+  }
+  if (!(total > 0.0) && !options.deadband &&
+      std::ranges::any_of(records, [&](const Record& one) { return has_moved(one, model.data); })) {
+    MotionOptions all = options;
+    all.deadband = 0.0;  // too slow and short for any: every sample counts
+    return relative_error(model, records, all);
   }
   if (!(total > 0.0)) {
     throw Failure(ExitCode::bad_input, fmt::format("{}: the axis never slides faster than the dead band, so there is "

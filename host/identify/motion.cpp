@@ -15,6 +15,7 @@ namespace host {
 namespace {
 
 constexpr double kPaperDeadband_rad_s = 0.5;  // p. 1499
+constexpr double kDeadbandShare = 0.1;        ///< of the top speed, for records slower than the paper's
 constexpr double kHighestCutoff_Hz = 100.0;
 constexpr double kLowestCutoff_Hz = 10.0;
 
@@ -27,6 +28,20 @@ double sum_of_squares(const std::vector<double>& signal) {
 void trim(std::vector<double>& signal, std::size_t margin) {
   signal.erase(signal.end() - static_cast<std::ptrdiff_t>(margin), signal.end());
   signal.erase(signal.begin(), signal.begin() + static_cast<std::ptrdiff_t>(margin));
+}
+
+/// The paper's, or a tenth of the top speed where that is less: a slow axis slides too. Not below what noise and the
+/// encoder's last digit fake at standstill.
+double usual_deadband(const std::vector<double>& speed, const sim::DataSheet& data, double cutoff_Hz, double rate_Hz) {
+  if (data.kind == sim::DriveKind::linear) return 0.0;
+  constexpr double kTop = 0.99, kDeviations = 3.0;
+  std::vector<double> magnitude(speed.size());
+  std::ranges::transform(speed, magnitude.begin(), [](double w) { return std::abs(w); });
+  const auto top = magnitude.begin() + static_cast<std::ptrdiff_t>(kTop * static_cast<double>(magnitude.size() - 1));
+  std::ranges::nth_element(magnitude, top);
+  const double noise = kDeviations * std::sqrt(data.tach_noise_variance.value_or(0.0) * 2.0 * cutoff_Hz / rate_Hz);
+  const double counts = data.encoder_resolution / data.lead * cutoff_Hz;
+  return std::min(kPaperDeadband_rad_s, std::max({kDeadbandShare * *top, noise, counts}));
 }
 
 /// Marks the samples whose speed keeps its sign and stays beyond the dead band for `reach` samples on both sides.
@@ -197,8 +212,7 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
                                                "{} ({} Hz)",
                                                motion.cutoff_Hz, record.path, 0.5 * motion.sample_rate_Hz));
   }
-  motion.deadband = options.deadband.value_or(data.kind == sim::DriveKind::rotary ? kPaperDeadband_rad_s : 0.0);
-  const bool sliding_only = motion.deadband > 0.0;
+  const bool sliding_only = options.deadband ? *options.deadband > 0.0 : data.kind == sim::DriveKind::rotary;
   const double samples_per_cutoff = motion.sample_rate_Hz / motion.cutoff_Hz;
   const auto usual = sliding_only ? std::size_t{1} : static_cast<std::size_t>(std::lround(samples_per_cutoff));
   motion.decimation = std::max<std::size_t>(1, options.decimation.value_or(usual));
@@ -213,6 +227,8 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
   motion.t_s = record.t_s;
   motion.travel = record.has_position() ? low_pass(record.x) : std::vector<double>(record.size());
   motion.speed = smooth_speed(record, data, motion.cutoff_Hz, options.by_speed);
+  motion.deadband = options.deadband ? *options.deadband
+                                     : usual_deadband(motion.speed, data, motion.cutoff_Hz, motion.sample_rate_Hz);
   motion.acceleration = central_difference(motion.speed, record.sample_period_s);
   DeliveredEffort delivered = delivered_effort(record, data, motion.cutoff_Hz, sliding_only, options.command_path);
   motion.effort = std::move(delivered.effort);

@@ -54,4 +54,18 @@ TEST(InverseModel, ASlowRippleCounts) {
   EXPECT_NEAR(host::relative_error(motor_with_ripple(1.0, 0.0), record), 0.5 / std::sqrt(2.0) / 1.25, 0.05);
 }
 
+/// Catches a dead band that swallows a slow axis whole: half a degree a second, and a hundredth of that.
+TEST(InverseModel, ASlowAxisHasAnErrorToo) {
+  for (const double slow : {0.03, 0.003}) {
+    host::Record record = turning(1.0, 0.0);
+    for (std::size_t k = 0; k < record.size(); ++k) {
+      const double t = record.t_s[k], w = slow * (10.0 + 2.0 * std::sin(2.0 * t)), a = slow * 4.0 * std::cos(2.0 * t);
+      record.x[k] = slow * (10.0 * t - std::cos(2.0 * t));
+      record.i_A[k] = 0.01 * a + 0.02 * w + 1.0;
+    }
+    EXPECT_LT(host::relative_error(motor_with_ripple(1.0, 0.0), record), 0.01);
+    EXPECT_NEAR(host::relative_error(motor_with_ripple(1.0, 0.5), record), 0.5, 0.1);
+  }
+}
+
 }  // namespace
