@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -33,6 +36,23 @@ void write_all(int file, std::string_view text, const std::string& path) {
   }
 }
 
+constexpr std::string_view kMark = ".axistool-", kEnding = ".partial";
+
+/// What a program that was killed left in the folder. A file that is being written is locked, and its writer lives.
+void remove_abandoned(const std::filesystem::path& folder) {
+  std::error_code fault;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, fault)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kMark) || !name.ends_with(kEnding)) continue;
+    const auto writer = static_cast<pid_t>(std::strtol(name.c_str() + kMark.size(), nullptr, 10));
+    if (writer <= 0 || ::kill(writer, 0) == 0 || errno != ESRCH) continue;
+    const int file = ::open(entry.path().c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(file);
+  }
+}
+
 /// A new file in the folder of `destination`, with its rights where it is there. Removed when writing ends by an
 /// exception. Messages name the output as the user did.
 class TemporaryFile {
@@ -40,11 +60,13 @@ class TemporaryFile {
   TemporaryFile(std::string destination, std::string name)
       : destination_(std::move(destination)), name_(std::move(name)) {
     const std::filesystem::path folder = std::filesystem::path(destination_).parent_path();
+    remove_abandoned(folder);
     for (int number = 0; descriptor_ < 0; ++number) {
-      path_ = (folder / fmt::format(".axistool-{}-{}.partial", ::getpid(), number)).string();
+      path_ = (folder / fmt::format("{}{}-{}{}", kMark, ::getpid(), number, kEnding)).string();
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
       if (descriptor_ < 0 && errno != EEXIST) fail(name_, "create a file beside it");
     }
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);
     struct stat old {};
     if (::stat(destination_.c_str(), &old) == 0) ::fchmod(descriptor_, old.st_mode & 0777);
   }

@@ -34,11 +34,20 @@ void protect(const std::string& argument) {
     host::protect_input(argument.substr(equals + 1));
 }
 
+void protect_in_device(const std::string& words) {
+  for (const std::string_view prefix : {"model:", "plant:"})
+    if (words.starts_with(prefix)) {
+      const std::string file = words.substr(prefix.size());
+      host::protect_input(file);
+      host::protect_input(file.substr(0, file.find(':')));
+    }
+}
+
 void check_outputs(const CLI::App& command) {
   std::map<std::string, std::string> taken;  // file -> the option that writes it
   for (const CLI::Option* option : command.get_options()) {
     const auto found = roles().find(option);
-    if (found == roles().end() || found->second == FileRole::input) continue;
+    if (found == roles().end() || found->second < FileRole::output) continue;
     for (const std::string& name : option->results()) {
       if (name == "-") continue;
       if (found->second == FileRole::output_folder) {
@@ -70,8 +79,9 @@ void check_options(const CLI::App& program) {
     for (const CLI::Option* option : command->get_options()) {
       require_finite(*option);
       const auto found = roles().find(option);
-      if (found == roles().end() || found->second != FileRole::input) continue;
-      for (const std::string& argument : option->results()) protect(argument);
+      if (found == roles().end() || found->second >= FileRole::output) continue;
+      for (const std::string& argument : option->results())
+        found->second == FileRole::device ? protect_in_device(argument) : protect(argument);
     }
     check_outputs(*command);
   }

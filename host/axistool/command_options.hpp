@@ -6,7 +6,12 @@
 
 namespace axistool {
 
-enum class FileRole { input, output, output_folder };
+enum class FileRole {
+  input,
+  device,  ///< an input where the words name a file: model:FILE, plant:FILE:COMMAND
+  output,
+  output_folder,
+};
 
 void note_role(const CLI::Option& option, FileRole role);
 

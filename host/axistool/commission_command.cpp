@@ -11,6 +11,7 @@
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/commission/commission.hpp"
+#include "host/commission/folder_lock.hpp"
 #include "host/external_plant/external_plant.hpp"
 #include "host/model/model_file.hpp"
 #include "host/shipped_files.hpp"
@@ -107,6 +108,7 @@ void begin_or_go_on(const CommissionArguments& arguments, const host::Commission
 }
 
 void run(const CommissionArguments& arguments) {
+  const host::FolderLock lock(arguments.folder);
   host::CommissionFolder folder(arguments.folder);
   begin_or_go_on(arguments, folder);
   const std::size_t from = arguments.from.empty() ? 0 : host::commission_step(arguments.from);
@@ -172,9 +174,10 @@ void add_commission(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("commission", "From an unknown axis to one that follows better: record, model, cause, remedy");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
-  command->add_option("-o,--output", arguments->folder, "folder for every result")->required();
-  command->add_option("--sim", arguments->model,
-                      "simulate this machine instead of using a board: a model file, or one that comes with axistool");
+  add_output(*command, "-o,--output", arguments->folder, "folder for every result", FileRole::output_folder)
+      ->required();
+  add_input(*command, "--sim", arguments->model,
+            "simulate this machine instead of using a board: a model file, or one that comes with axistool");
   command->add_option("--plant", arguments->plant, "program that is the machine, in lockstep (axis-plant/1)");
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive (default: that of --sim)");
   command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s in all");

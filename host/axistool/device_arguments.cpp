@@ -13,12 +13,15 @@
 namespace axistool {
 
 void add_device_options(CLI::App& command, DeviceArguments& arguments) {
-  command
-      .add_option("--device", arguments.device,
-                  "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH, model:FILE (simulated within this "
-                  "command), plant:DRIVE.toml:COMMAND (the same around a program); "
-                  "default: the only one on USB")
-      ->envname("AXIS_DEVICE");
+  CLI::Option* const device =
+      command
+          .add_option(
+              "--device", arguments.device,
+              "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH, model:FILE (simulated within this "
+              "command), plant:DRIVE.toml:COMMAND (the same around a program); "
+              "default: the only one on USB")
+          ->envname("AXIS_DEVICE");
+  note_role(*device, FileRole::device);
   command.add_flag_callback(
       "--sim", [&arguments] { arguments.device = "sim"; }, "the same as --device sim");
   command
@@ -41,15 +44,19 @@ host::BoardClient open_board(const DeviceArguments& arguments) {
 
 bool talks(const DeviceArguments& arguments) { return arguments.json != "-"; }
 
-void require_consent(const DeviceArguments& arguments, const std::string& question) {
-  if (arguments.yes) return;
+void require_consent(bool given, const std::string& question, std::string_view option) {
+  if (given) return;
   std::string answer;
   if (::isatty(STDIN_FILENO) == 1) {
     fmt::print(stderr, "{} [y/N] ", question);
     std::getline(std::cin, answer);
   }
   if (answer == "y" || answer == "yes") return;
-  throw host::Failure(host::ExitCode::refused, question + " Not done: answer y, or give --yes");
+  throw host::Failure(host::ExitCode::refused, fmt::format("{} Not done: answer y, or give {}", question, option));
+}
+
+void require_consent(const DeviceArguments& arguments, const std::string& question) {
+  require_consent(arguments.yes, question, "--yes");
 }
 
 std::uint8_t axis_mask(const std::vector<std::string>& names, std::size_t axes) {

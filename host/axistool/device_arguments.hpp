@@ -26,7 +26,10 @@ host::BoardClient open_board(const DeviceArguments& arguments);
 /// Prints on standard output unless it belongs to JSON alone.
 bool talks(const DeviceArguments& arguments);
 
-/// Asks on a terminal; elsewhere only --yes is a yes. Throws Failure(refused) on a no.
+/// Asks on a terminal, unless the consent is `given`; elsewhere only `option` gives it. Throws Failure(refused) on a
+/// no.
+void require_consent(bool given, const std::string& question, std::string_view option);
+/// By --yes.
 void require_consent(const DeviceArguments& arguments, const std::string& question);
 
 using host::axis_index;

@@ -164,9 +164,8 @@ void add_excite(CLI::App& app) {
   auto arguments = std::make_shared<ExciteArguments>();
   CLI::App* command = app.add_subcommand("excite", "Move an axis by an experiment, within a box -> record");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
-  command
-      ->add_option("KIND", arguments->kind,
-                   "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell; or a RUN.toml of plan")
+  add_input(*command, "KIND", arguments->kind,
+            "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell; or a RUN.toml of plan")
       ->required();
   command->add_option("NUMBERS", arguments->numbers, "of the kind: values, or name=value");
   command->add_option("--box", arguments->box,

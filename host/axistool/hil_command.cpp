@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/axistool/commands.hpp"
+#include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/hil/before_after_report.hpp"
 #include "host/hil/fault_trial.hpp"
@@ -17,6 +18,7 @@
 #include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/shipped_files.hpp"
+#include "host/visible_text.hpp"
 
 namespace axistool {
 
@@ -25,8 +27,20 @@ namespace {
 struct HilArguments {
   std::vector<std::string> scenarios, models;
   std::string output, json;
-  bool fault_page = false, list = false, before_after = false;
+  bool fault_page = false, list = false, before_after = false, allow_program = false;
 };
+
+/// Reads it, and asks before anything runs that the file names.
+host::Scenario agreed_scenario(const std::string& path, const HilArguments& arguments) {
+  host::Scenario scenario = host::read_scenario(path);
+  for (const std::string& command : host::programs_of(scenario))
+    require_consent(
+        arguments.allow_program,
+        fmt::format("{} runs this program on your computer: {}\nRun it?", path, host::visible_text(command)),
+        "--allow-program");
+  scenario.programs_allowed = true;
+  return scenario;
+}
 
 std::string stem_of(const std::string& scenario, const std::string& folder) {
   return (std::filesystem::path(folder) / std::filesystem::path(scenario).stem()).string();
@@ -91,7 +105,7 @@ void list_shipped() {
 void run_before_and_after(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
   if (arguments.scenarios.size() != 1 || models.empty())
     throw host::Failure(host::ExitCode::usage, "--before-after takes one scenario, and --model for what is new");
-  const host::Scenario scenario = host::read_scenario(arguments.scenarios.front());
+  const host::Scenario scenario = agreed_scenario(arguments.scenarios.front(), arguments);
   const host::Scenario changed = with_models(scenario, models);
   const host::ScenarioRun before = host::run_scenario(scenario), after = host::run_scenario(changed);
   if (!arguments.output.empty()) {
@@ -115,10 +129,12 @@ void run_before_and_after(const HilArguments& arguments, const std::vector<host:
 void run_all(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
   nlohmann::json all = nlohmann::json::array();
   std::vector<host::IndexLine> lines;
-  for (const std::string& path : arguments.scenarios) {
-    const host::Scenario scenario = with_models(host::read_scenario(path), models);
+  std::vector<host::Scenario> scenarios;
+  for (const std::string& path : arguments.scenarios)
+    scenarios.push_back(with_models(agreed_scenario(path, arguments), models));
+  for (const host::Scenario& scenario : scenarios) {
     const host::ScenarioRun result = host::run_scenario(scenario);
-    const std::string page = std::filesystem::path(path).stem().string() + ".html";
+    const std::string page = std::filesystem::path(scenario.path).stem().string() + ".html";
     lines.push_back(host::index_line(scenario, result, page));
     if (!arguments.output.empty()) write_files(scenario, result, arguments.output);
     all.push_back(host::scenario_json(scenario, result));
@@ -174,6 +190,8 @@ void add_hil(CLI::App& app) {
   command->add_flag("--list", arguments->list, "the shipped scenarios");
   command->add_flag("--before-after", arguments->before_after,
                     "run it as it is too, and write one page of both: before, and after --model");
+  command->add_flag("--allow-program", arguments->allow_program,
+                    "run the programs that scenarios name in place of drives, without asking");
   command->add_flag("--fault-page", arguments->fault_page,
                     "inject every fault and print the page of faults and reactions (Markdown)");
   command->footer(

@@ -86,7 +86,11 @@ struct Scenario {
   std::vector<ScenarioMove> moves;
   std::vector<ScenarioFault> faults;
   std::vector<Expectation> expectations;
+  bool programs_allowed = false;  ///< set by whoever agreed to what programs_of() names
 };
+
+/// The command lines that it runs, each once. A scenario may come from anywhere: nothing runs them unasked.
+std::vector<std::string> programs_of(const Scenario& scenario);
 
 /// Throws Failure(bad_input) naming file, line, field and remedy. Models named in it are read beside it.
 Scenario read_scenario(const std::string& path);

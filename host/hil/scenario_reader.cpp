@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include "host/exit_codes.hpp"
@@ -245,6 +246,14 @@ class ScenarioReader {
 };
 
 }  // namespace
+
+std::vector<std::string> programs_of(const Scenario& scenario) {
+  std::vector<std::string> commands;
+  for (const ScenarioAxis& axis : scenario.axes)
+    if (!axis.program.empty() && std::ranges::find(commands, axis.program) == commands.end())
+      commands.push_back(axis.program);
+  return commands;
+}
 
 Scenario parse_scenario(std::string_view text, const std::string& path) { return ScenarioReader(text, path).read(); }
 

@@ -12,6 +12,8 @@
 #include "host/hil/commissioning.hpp"
 #include "host/hil/expectation_check.hpp"
 #include "host/hil/recorder.hpp"
+#include "host/known_by_current.hpp"
+#include "host/visible_text.hpp"
 
 namespace host {
 
@@ -45,6 +47,10 @@ void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxis
   std::map<std::string, std::vector<std::size_t>> served;
   for (std::size_t i = 0; i < axes.size(); ++i)
     if (!scenario.axes[i].program.empty()) served[scenario.axes[i].program].push_back(i);
+  if (!served.empty() && !scenario.programs_allowed)
+    throw Failure(ExitCode::refused,
+                  fmt::format("{}: it runs the program '{}', which nobody has agreed to: read it, then allow it",
+                              scenario.path, visible_text(served.begin()->first)));
   for (const auto& [command, places] : served) {
     const double period_s = axes[places.front()].drive.data.sample_period_s;
     const auto plant = std::make_shared<ExternalPlant>(command, places.size(), period_s, kPatience);
@@ -248,6 +254,7 @@ bool ScenarioRun::misses_aim() const {
 }
 
 ScenarioRun run_scenario(const Scenario& scenario) {
+  for (const ScenarioAxis& axis : scenario.axes) require_volts(axis.drive.data, axis.drive.name, "a scenario");
   std::array<sim::DriveDescription, hal::kAxisCount> believed;
   std::array<MachineAxis, hal::kAxisCount> axes;
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {

@@ -51,7 +51,8 @@ struct ScenarioRun {
 std::uint64_t commissioning_seed(const Scenario& scenario, std::size_t axis);
 
 /// Time 0 is when both axes have passed their self-test and been enabled; a scenario whose store is damaged from 0 on
-/// begins before that. Deterministic by the scenario's seed.
+/// begins before that. Deterministic by the scenario's seed. Throws Failure(refused) where it runs programs that are
+/// not allowed.
 ScenarioRun run_scenario(const Scenario& scenario);
 
 }  // namespace host

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -44,8 +45,27 @@ TEST(AnotherProgramsMachine, StandsInForADriveOfAScenario) {
                                          << "[[move]]\nat_s = 0.1\nkind = \"jog\"\naxis = \"x\"\nspeed_mm_s = 20\n"
                                          << "[[expect]]\naxis = \"x\"\nsignal = \"position_mm\"\nat_least = 15\n"
                                          << "[[expect]]\naxis = \"x\"\nsignal = \"tracking_um\"\nat_least = 1\n";
-  const ProgramRun run = run_axistool("hil " + folder.path("own.toml"));
+  const ProgramRun run = run_axistool("hil --allow-program " + folder.path("own.toml"));
   EXPECT_EQ(run.exit_code, 0) << run.output;
+}
+
+/// A scenario from elsewhere is a file, not a program. Nothing of it may hide from who is asked, either.
+TEST(AnotherProgramsMachine, OfAScenarioRunsOnlyWhereThatIsAgreedTo) {
+  const TemporaryFolder folder;
+  const std::string trace = folder.path("trace");
+  std::ofstream(folder.path("own.toml")) << "format = \"axis-scenario/1\"\nname = \"own\"\nduration_s = 0.1\n"
+                                         << "[x]\ndrive = \"paper x\"\n"
+                                         << "[y]\ndrive = \"program: touch " << trace << "; # \\u001b[2K\"\n"
+                                         << "data_sheet = \"paper y\"\n";
+  for (const char* how : {"", " --before-after --model x=/dev/null", " circle"}) {
+    const ProgramRun refused = run_axistool("hil " + folder.path("own.toml") + how, "</dev/null 2>&1");
+    EXPECT_EQ(refused.exit_code, 8) << how;
+    EXPECT_THAT(refused.output, HasSubstr("touch " + trace + "; # \\x1b[2K"));
+    EXPECT_THAT(refused.output, HasSubstr("--allow-program"));
+    EXPECT_FALSE(std::filesystem::exists(trace)) << how;
+  }
+  EXPECT_EQ(run_axistool("hil --allow-program " + folder.path("own.toml")).exit_code, 3);  // it ends at once
+  EXPECT_TRUE(std::filesystem::exists(trace));
 }
 
 TEST(AnotherProgramsMachine, CannotBeBlockedByAScenario) {

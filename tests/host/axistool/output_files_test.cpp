@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -59,6 +60,22 @@ TEST_F(OutputFiles, NoCommandOverwritesItsInput) {
            "import" + r + " -o" + r,
        })
     expect_inputs_kept(line);
+}
+
+/// Files that stand in a positional of several meanings, or in the name of a device.
+TEST_F(OutputFiles, NoBoardCommandOverwritesItsInput) {
+  const std::string m = " " + model, linked = folder.path("linked.toml");
+  fs::create_symlink("m.toml", linked);
+  const std::string device = " --device model:" + model, by_link = " --device model:" + linked;
+  for (const std::string& line :
+       std::vector<std::string>{"excite x" + m + " -o" + m, "excite x" + m + " -o " + linked,
+                                "excite x" + m + " -o " + folder.path("new") + " --json" + m, "backup" + m + device,
+                                "backup" + m + by_link, "backup " + linked + device, "info --json" + m + device,
+                                "info --json" + m + " --device plant:" + model + ":cat", "sim --x" + m + " --flash" + m,
+                                "sim --x" + m + " --flash " + linked})
+    expect_inputs_kept(line);
+  const ProgramRun run = run_program("AXIS_DEVICE=model:" + model + " \"" AXISTOOL_PROGRAM "\" backup" + m);
+  EXPECT_EQ(run.exit_code, 2) << run.output;
 }
 
 TEST_F(OutputFiles, AnInputIsKnownUnderEveryName) {
@@ -154,6 +171,18 @@ TEST_F(OutputFiles, NothingIsLeftBesideAnOutput) {
   std::size_t files = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path(""))) ++files;
   EXPECT_EQ(files, 4u) << "model, two records, parameters";
+}
+
+/// What a program that was killed left is cleaned by the next one; what a living one writes is not touched.
+TEST_F(OutputFiles, PartialFilesOfTheDeadGo) {
+  const pid_t dead = ::fork();
+  if (dead == 0) ::_exit(0);
+  ::waitpid(dead, nullptr, 0);
+  const std::string left = folder.write(".axistool-" + std::to_string(dead) + "-0.partial", "half"),
+                    living = folder.write(".axistool-" + std::to_string(::getpid()) + "-0.partial", "half");
+  ASSERT_EQ(run_axistool("design " + model + " -o " + folder.path("p.toml")).exit_code, 0);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(living));
 }
 
 TEST_F(OutputFiles, ASimulatedBoardSparesWhatIsNoSocket) {

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "host/commission/folder_lock.hpp"
+#include "host/exit_codes.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -19,6 +21,16 @@ TEST(CommissionFolder, NamesNoPageBeforeItsOwnIsWritten) {
   EXPECT_TRUE(copied.document().at("page").is_null());
   EXPECT_TRUE(host::CommissionFolder(copy).document().at("page").is_null());
   EXPECT_EQ(host::CommissionFolder(first).document().at("page"), first + "/page.html");
+}
+
+/// Two commissionings at once would mix their records.
+TEST(FolderLock, IsOneCommissioningsAtATime) {
+  const TemporaryFolder folder;
+  {
+    const host::FolderLock first(folder.path("x"));
+    EXPECT_THROW(host::FolderLock(folder.path("x")), host::Failure);
+  }
+  EXPECT_NO_THROW(host::FolderLock(folder.path("x")));
 }
 
 }  // namespace

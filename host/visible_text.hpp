@@ -1,0 +1,13 @@
+// Text from files, as a terminal may show it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace host {
+
+/// Printable ASCII stays; every other byte and the backslash are written as \xNN, so that no escape sequence, line feed
+/// or direction mark hides a part of what is shown.
+std::string visible_text(std::string_view text);
+
+}  // namespace host
