@@ -6,8 +6,10 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
+#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/capture.hpp"
+#include "host/device/capture_journal.hpp"
 #include "host/device/motion.hpp"
 #include "host/device/quantity.hpp"
 #include "host/device/triggered_capture.hpp"
@@ -59,18 +61,22 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
   return settings;
 }
 
+const std::string& name_of_drive(const CaptureArguments& arguments) {
+  return arguments.drive.empty() ? arguments.axis : arguments.drive;
+}
+
 void write(const CaptureArguments& arguments, const host::Capture& capture, const host::CaptureSettings& settings) {
-  host::Record record =
-      host::capture_record(capture, settings, arguments.drive.empty() ? arguments.axis : arguments.drive);
+  host::Record record = host::capture_record(capture, settings, name_of_drive(arguments));
   host::write_record(record, arguments.output);
   nlohmann::json document{{"format", "axis-capture/1"}, {"file", arguments.output},
                           {"rows", record.size()},      {"sample_period_s", record.sample_period_s},
-                          {"lost_rows", capture.lost},  {"dropped_by_board", capture.dropped_by_board}};
+                          {"lost_rows", capture.lost},  {"dropped_by_board", capture.dropped_by_board},
+                          {"cut_short", interrupted()}};
   if (capture.trigger_s) document["trigger_s"] = *capture.trigger_s;
   if (!arguments.json.empty()) write_json(document, arguments.json);
   if (talks(arguments))
-    fmt::print("{} rows at {:g} Hz in {}, {} lost\n", record.size(), 1.0 / record.sample_period_s, arguments.output,
-               capture.lost);
+    fmt::print("{} rows at {:g} Hz in {}, {} lost{}\n", record.size(), 1.0 / record.sample_period_s, arguments.output,
+               capture.lost, interrupted() ? "; ended by a signal" : "");
 }
 
 /// In the board's own memory, at loop rate, whatever the way to the computer carries.
@@ -88,7 +94,8 @@ void run_on_board(const CaptureArguments& arguments, host::BoardClient& board, h
   if (wanted.trigger.axis != firmware::kAnyAxis && wanted.trigger.axis >= board.axis_count())
     throw host::Failure(host::ExitCode::usage, fmt::format("{}: the board has no such axis", arguments.trigger));
   if (arguments.dry_run) return;
-  write(arguments, host::run_triggered_capture(board, wanted, [] { return false; }), wanted.capture);
+  catch_interrupts();
+  write(arguments, host::run_triggered_capture(board, wanted, interrupted), wanted.capture);
 }
 
 void run(const CaptureArguments& arguments) {
@@ -98,6 +105,11 @@ void run(const CaptureArguments& arguments) {
   const host::CaptureSettings settings = settings_of(arguments, values);
   if (arguments.last || host::is_board_trigger(arguments.trigger)) return run_on_board(arguments, board, settings);
   host::require_capturable(values, settings);
+  if (!values.axis(settings.axis).get<"drive.fitted">() && talks(arguments))
+    fmt::print(stderr,
+               "axistool: axis {} is not fitted: counts and volts have the board's initial scales, and nothing moves; "
+               "set-params what `design` wrote first\n",
+               arguments.axis);
   const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
   if (arguments.dry_run) {
     if (talks(arguments))
@@ -113,16 +125,26 @@ void run(const CaptureArguments& arguments) {
     host::enable_and_wait(board, mask);
   }
   host::Capture capture;
+  host::CaptureJournal journal(arguments.output, settings, name_of_drive(arguments));
   {
     host::Progress progress("capture", std::max<std::size_t>(1, static_cast<std::size_t>(seconds * rate_Hz)));
     std::size_t shown = 0;
-    capture = host::run_capture(board, settings, [&](std::size_t rows) {
-      if (rows > shown) progress.advance(rows - shown);
-      shown = std::max(shown, rows);
-    });
+    catch_interrupts();
+    try {
+      capture = host::run_capture(board, settings, [&](const host::Capture& so_far) {
+        const std::size_t rows = so_far.number.size();
+        if (rows > shown) progress.advance(rows - shown);
+        shown = std::max(shown, rows);
+        journal.keep(so_far);
+        return !interrupted();
+      });
+    } catch (const host::Failure& failure) {
+      throw host::Failure(failure.code, failure.what() + journal.remark());
+    }
   }
   if (enables) host::disable_and_wait(board, mask);
   write(arguments, capture, settings);
+  journal.remove();
   host::require_no_loss(capture, arguments.output);
 }
 
@@ -132,7 +154,7 @@ void add_capture(CLI::App& app) {
   auto arguments = std::make_shared<CaptureArguments>();
   CLI::App* command = app.add_subcommand("capture", "Record an axis at loop rate, as it moves -> record");
   add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
-  command->add_option("--axis", arguments->axis, "x or y")->capture_default_str();
+  command->add_option("AXIS,--axis", arguments->axis, "x, y, …")->capture_default_str();
   command
       ->add_option("--for", arguments->duration_s,
                    "seconds, from the trigger if there is one; default: 1, or the jogs'")

@@ -3,7 +3,7 @@
 
 namespace axistool {
 
-/// From now on Ctrl-C and SIGTERM are for interrupted() to tell.
+/// From now on Ctrl-C, SIGTERM and SIGHUP are for interrupted() to tell.
 void catch_interrupts();
 
 /// They end the program again, at once.

@@ -36,20 +36,19 @@ class CaptureRun {
       if (settings.channels[i] == settings.trigger->channel) trigger_column_ = i;
   }
 
-  Capture run(const std::function<void(std::size_t)>& progress) {
+  Capture run(const CaptureWatch& watch) {
     firmware::CaptureRequest request;
     for (const firmware::Channel channel : settings_.channels)
       request.channels[settings_.axis] |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(channel));
     request.every = settings_.every;
     board_.start_capture(request);
     try {
-      fetch(progress);
+      fetch(watch);
     } catch (...) {
       end_quietly();
       throw;
     }
     if (!settings_.jogs.empty()) board_.stop();
-    if (settings_.trigger) capture_.trigger_s = (trigger_number_ - capture_.number.front()) * capture_.row_period_s;
     capture_.dropped_by_board = board_.stop_capture().dropped;
     capture_.lost = lost_rows(capture_.number);
     return std::move(capture_);
@@ -63,7 +62,7 @@ class CaptureRun {
     return sum;
   }
 
-  void fetch(const std::function<void(std::size_t)>& progress) {
+  void fetch(const CaptureWatch& watch) {
     const auto began = board_.now();
     auto heard = began;
     next_jog_ = began;
@@ -74,7 +73,7 @@ class CaptureRun {
       if (samples) last_row_ = now;
       steer(now);
       if (now - heard > kHeartbeat) {
-        settings_.jogs.empty() ? board_.heartbeat() : watch();  // the capture, too, is its living client's
+        settings_.jogs.empty() ? board_.heartbeat() : examine();  // the capture, too, is its living client's
         heard = now;
       }
       if (!triggered_ && now - began > std::chrono::duration<double>(settings_.patience_s))
@@ -83,7 +82,10 @@ class CaptureRun {
           2.0 + std::chrono::duration<double>(board_.patience()).count() + 20.0 * capture_.row_period_s;
       if (now - std::max(last_row_, began) > std::chrono::duration<double>(silence_s))
         throw Failure(ExitCode::time_out, "the board sends no more samples" + board_.other_users());
-      if (progress) progress(capture_.number.size());
+      if (!watch || watch(capture_)) continue;
+      if (!triggered_ || capture_.number.empty())
+        throw Failure(ExitCode::refused, triggered_ ? "ended before a row came" : "ended before the trigger came");
+      return;
     }
   }
 
@@ -101,7 +103,7 @@ class CaptureRun {
   }
 
   /// A heartbeat that also tells whether the axis still runs.
-  void watch() {
+  void examine() {
     if (board_.status().axis.at(settings_.axis).fault != 0)
       throw Failure(ExitCode::device_fault, "the axis stopped with a fault: `axistool faults` tells cause and remedy");
   }
@@ -123,7 +125,7 @@ class CaptureRun {
       was_short_ = was_short_ || !beyond;
       // While waiting not at every row: erasing at the front moves all others.
       if (triggered_ || capture_.number.size() > before_ + 1000) keep_last(before_ + 1);
-      trigger_number_ = number;
+      if (triggered_) capture_.trigger_s = (number - capture_.number.front()) * capture_.row_period_s;
     }
     if (triggered_) ++after_;
   }
@@ -151,7 +153,6 @@ class CaptureRun {
   Capture capture_;
   std::size_t wanted_ = 0, before_ = 0, after_ = 0;
   std::size_t trigger_column_ = 0;
-  std::uint32_t trigger_number_ = 0;
   bool triggered_ = false;
   bool was_short_ = false;  ///< a trigger is a crossing: some row was not beyond the level
   std::size_t jog_ = 0;
@@ -227,9 +228,8 @@ std::size_t lost_rows(const std::vector<std::uint32_t>& numbers) {
   return lost;
 }
 
-Capture run_capture(BoardClient& board, const CaptureSettings& settings,
-                    const std::function<void(std::size_t)>& progress) {
-  return CaptureRun(board, settings).run(progress);
+Capture run_capture(BoardClient& board, const CaptureSettings& settings, const CaptureWatch& watch) {
+  return CaptureRun(board, settings).run(watch);
 }
 
 Record capture_record(const Capture& capture, const CaptureSettings& settings, const std::string& drive) {

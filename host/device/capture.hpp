@@ -47,10 +47,13 @@ struct Capture {
   std::vector<std::uint32_t> number;  ///< of each row; a jump is a loss
   std::vector<std::vector<double>> channel;
   double row_period_s = 0.0;
-  std::optional<double> trigger_s;  ///< from the first row to the trigger
+  std::optional<double> trigger_s;  ///< from the first row to the trigger; empty before it, too
   std::size_t lost = 0;             ///< rows between the first and the last that did not arrive
   std::uint32_t dropped_by_board = 0;
 };
+
+/// Told the capture so far, some hundred times a second; false ends it, and what has come is the capture.
+using CaptureWatch = std::function<bool(const Capture&)>;
 
 /// Rows of one report of so many channels. Throws Failure(protocol) for a part of one.
 std::size_t rows_in(const BoardClient::Samples& samples, std::size_t channels);
@@ -68,11 +71,10 @@ void require_capturable(const firmware::ParameterValues& values, const CaptureSe
 /// Rows that were lost are a failure, of code protocol: `where` names what has the gap.
 void require_no_loss(const Capture& capture, const std::string& where);
 
-/// Runs a capture. `progress` is told the rows so far. Throws Failure: time_out (no trigger), what BoardClient throws,
-/// device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and the board to end
-/// the capture.
-Capture run_capture(BoardClient& board, const CaptureSettings& settings,
-                    const std::function<void(std::size_t)>& progress = {});
+/// Runs a capture. Throws Failure: time_out (no trigger), refused (ended before the trigger, or before a row), what
+/// BoardClient throws, device_fault when the axis stops during the jogs. However it ends, the axis is told to stop and
+/// the board to end the capture.
+Capture run_capture(BoardClient& board, const CaptureSettings& settings, const CaptureWatch& watch = {});
 
 /// As a record: t_s from the rows' numbers, 0 at the first row.
 Record capture_record(const Capture& capture, const CaptureSettings& settings, const std::string& drive);

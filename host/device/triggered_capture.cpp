@@ -53,10 +53,14 @@ Channel channel_called(std::string_view name, sim::DriveKind kind) {
   }
 }
 
-/// "20um", "0.5V", "12": in the drive's own unit.
-double level_of(std::string_view text, sim::DriveKind kind) {
+/// "20um", "0.5V"; "12" where the channel's name tells the unit, or there is none.
+double level_of(std::string_view text, sim::DriveKind kind, bool has_unit_in_name) {
   const std::optional<Quantity> written = parse_quantity(trim_blanks(text));
   const std::string_view unit = written ? trim_blanks(written->unit) : "";
+  if (written && unit.empty() && !has_unit_in_name)
+    throw Failure(ExitCode::usage,
+                  fmt::format("{}: a level without unit; write it behind the number: um, mm, m, mm/s, m/s, rad/s or V",
+                              trim_blanks(text)));
   const bool is_own = unit.empty() || unit == "V" || unit == "rad/s" || unit == "m/s";
   const double factor = is_own ? 1.0 : length_factor(unit == "mm/s" ? "mm" : unit, kind);
   if (!written || factor == 0.0 || !std::isfinite(written->value))
@@ -188,7 +192,8 @@ BoardTrigger parse_board_trigger(std::string_view text, sim::DriveKind kind) {
     trigger.kind = TriggerKind::edge;
     trigger.channel = channel_called(name, kind);
     trigger.falling = event[sign] == '<';
-    trigger.level = level_of(event.substr(sign + 1), kind);
+    trigger.level = level_of(event.substr(sign + 1), kind,
+                             trigger.channel == Channel::flags || name == channel_name(trigger.channel, kind));
   } else if (name == "fault") {
     trigger.kind = TriggerKind::fault;
   } else if (name == "motion") {

@@ -130,8 +130,10 @@ host::Record record_of_axis(const Device& device, const std::string& axis, doubl
   if (length_s == 0.0)
     for (const host::JogStep& jog : settings.jogs) length_s += jog.duration_s;
   const double rows_wanted = std::max(1.0, length_s * static_cast<double>(values.get<"control.rate">()));
-  const host::Capture capture = host::run_capture(
-      board, settings, [&](std::size_t rows) { done(std::min(1.0, static_cast<double>(rows) / rows_wanted)); });
+  const host::Capture capture = host::run_capture(board, settings, [&](const host::Capture& so_far) {
+    done(std::min(1.0, static_cast<double>(so_far.number.size()) / rows_wanted));
+    return true;
+  });
   host::require_no_loss(capture, "the record");
   return host::capture_record(capture, settings, axis);
 }

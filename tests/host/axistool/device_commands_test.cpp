@@ -163,14 +163,27 @@ TEST_F(DeviceCommands, ATriggerKeepsWhatWasBefore) {
 
 TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
   std::thread puller([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     board_.end(SIGKILL);
   });
   const ProgramRun capture = run("capture -o " + file("long.csv") + " --for 60");
   puller.join();
   EXPECT_EQ(capture.exit_code, 3) << capture.output;
   EXPECT_FALSE(std::filesystem::exists(file("long.csv")));
+  EXPECT_GT(host::read_record(file("long.csv.unfinished")).size(), 400u) << "what came is on disk";
   EXPECT_EQ(run("info").exit_code, 3) << "nobody is there";
+}
+
+/// Catches a capture that a signal ends without a file.
+TEST_F(DeviceCommands, ASignalEndsACaptureWithWhatCame) {
+  const ProgramRun done = run_program("timeout -s INT 2 \"" AXISTOOL_PROGRAM "\" capture" + board_.device() + "-o " +
+                                          file("cut.csv") + " --for 3600 --json -",
+                                      "2>/dev/null");
+  EXPECT_EQ(done.exit_code, 124) << "timeout had to send it";
+  EXPECT_TRUE(nlohmann::json::parse(done.output)["cut_short"].get<bool>());
+  const host::Record record = host::read_record(file("cut.csv"));
+  EXPECT_GT(record.size(), 500u);
+  EXPECT_FALSE(std::filesystem::exists(file("cut.csv.unfinished")));
 }
 
 TEST_F(DeviceCommands, TellAboutTheBoard) {

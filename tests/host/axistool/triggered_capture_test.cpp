@@ -65,6 +65,7 @@ TEST_F(BoardTrigger, SaysWhatIsWrongWithAnEvent) {
   };
   EXPECT_THAT(failure("x.positon_error > 20um").output, HasSubstr("position_error"));
   EXPECT_EQ(failure("x.position_error > 20kg").exit_code, 2);
+  EXPECT_EQ(failure("x.position_error > 20").exit_code, 2) << "20 of what?";
   EXPECT_EQ(failure("any.motion").exit_code, 2);
   EXPECT_EQ(failure("x.position_error > 20um").exit_code, 7) << "it does not come";
   EXPECT_EQ(board_.run("capture --last -o " + file("c.csv")).exit_code, 8) << "there is none";
