@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -14,6 +13,9 @@
 #include "host/external_plant/external_plant.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
+#include "host/open_board.hpp"
+#include "host/output_target.hpp"
+#include "host/own_folder.hpp"
 #include "host/simulated_board/socket_board.hpp"
 #include "host/simulated_board/usb_board.hpp"
 #include "host/simulated_board/usual_wiring.hpp"
@@ -30,15 +32,13 @@ struct SimArguments {
   std::uint64_t seed = 1;
   double patience_s = 10.0;
   bool forget = false, usb = false;
+  std::string printed;
 };
 
 std::atomic<bool> stop = false;
 
 std::string default_flash_file() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  const char* home = std::getenv("HOME");
-  if (state != nullptr && *state != '\0') return std::string(state) + "/axis/simulated-flash.bin";
-  return std::string(home != nullptr ? home : "/tmp") + "/.local/state/axis/simulated-flash.bin";
+  return host::own_folder("XDG_STATE_HOME", ".local/state") + "/axis/simulated-flash.bin";
 }
 
 void make_folder_of(const std::string& flash_file) {
@@ -76,7 +76,20 @@ void tell(const std::string& place, const std::string& flash_file, const std::st
   std::fflush(stdout);
 }
 
+/// What an engineer would know of the machine: its data sheet, as --drive of excite and commission take it.
+void print_drive(const SimArguments& arguments) {
+  const std::uint8_t axis = host::axis_index(arguments.printed, arguments.axes);
+  sim::DriveDescription sheet = drive(arguments.models.at(axis), axis).drive;
+  sheet.name = arguments.printed;
+  sheet.effects.clear();
+  fmt::print("{}", host::format_model(sheet));
+}
+
 void run(SimArguments arguments) {
+  if (!arguments.printed.empty()) {
+    print_drive(arguments);
+    return;
+  }
   if (arguments.socket.empty()) arguments.socket = host::default_socket_path();
   host::SimulatedDeviceOptions options;
   options.seed = arguments.seed;
@@ -86,6 +99,7 @@ void run(SimArguments arguments) {
   if (!arguments.forget) {
     options.flash_file = arguments.flash.empty() ? default_flash_file() : arguments.flash;
     make_folder_of(options.flash_file);
+    host::output_target(options.flash_file);
   }
   host::SimulatedDevice device(options);
   std::signal(SIGINT, [](int) { stop = true; });
@@ -138,11 +152,14 @@ void add_sim(CLI::App& app) {
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();
+  command->add_option("--print-drive", arguments->printed,
+                      "print the data sheet of this axis (x, y, …), for --drive of other commands, and end");
   command->footer(
       "Each axis has a home switch 25 mm from where it is at power-up and, if rotary, an index pulse each turn.\n"
       "Examples:\n"
       "  axistool sim &\n"
       "  axistool info --device sim\n"
+      "  axistool sim --print-drive x > x-drive.toml\n"
       "  sudo axistool sim --usb --serial BENCH-1 &\n"
       "  axistool sim --x my-model.toml --forget --socket /tmp/board.socket\n"
       "  axistool sim --axes 1 --x data-sheet.toml --plant 'python3 05-own-plant.py' --forget");

@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "host/exit_codes.hpp"
+#include "host/own_folder.hpp"
 
 namespace host {
 
@@ -108,11 +109,7 @@ std::unique_ptr<ReportLink> connect_to_socket(const std::string& path) {
   return std::make_unique<SocketLink>(std::move(socket), path);
 }
 
-std::string default_socket_path() {
-  const char* folder = std::getenv("XDG_RUNTIME_DIR");
-  if (folder != nullptr && *folder != '\0') return std::string(folder) + "/axis-sim.socket";
-  return fmt::format("/tmp/axis-sim-{}.socket", ::getuid());
-}
+std::string default_socket_path() { return own_folder("XDG_RUNTIME_DIR", ".local/state/axis") + "/axis-sim.socket"; }
 
 void remove_socket(const std::string& path) {
   if (is_socket(path)) ::unlink(path.c_str());
@@ -126,8 +123,10 @@ OwnedDescriptor listen_at_socket(const std::string& path) {
   require_no_other_file(path);
   ::unlink(path.c_str());
   OwnedDescriptor socket = new_socket();
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(socket.get(), 4) != 0)
+  const mode_t usual = ::umask(0077);  // whoever may connect may move the board's axes
+  const int bound = ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  ::umask(usual);
+  if (bound != 0 || ::listen(socket.get(), 4) != 0)
     throw Failure(ExitCode::permission, fmt::format("{}: {}", path, std::strerror(errno)));
   return socket;
 }
