@@ -2,13 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/device_check.hpp"
+#include "host/exit_codes.hpp"
 #include "host/link/hid_library.hpp"
+#include "host/link/udev_rule.hpp"
+#include "host/link/usb_boards.hpp"
 #include "host/report/terminal.hpp"
 
 namespace axistool {
@@ -25,8 +31,43 @@ host::Tone tone_of(host::CheckResult result) {
                                                   : host::Tone::bad;
 }
 
+void print(const std::vector<host::DeviceCheck>& checks, std::FILE* where) {
+  const host::Terminal terminal = host::terminal_of(where);
+  for (const host::DeviceCheck& check : checks) {
+    fmt::print(where, "{}  {:<18} {}\n", host::coloured(text_of(check.result), tone_of(check.result), terminal),
+               check.what, check.found);
+    if (!check.remedy.empty()) fmt::print(where, "      {}\n", check.remedy);
+  }
+}
+
+/// Without a board there is the way to it: what is in order, and what to look at, in turn.
+void tell_the_way(const DeviceArguments& arguments) {
+  if (!arguments.device.empty() && !arguments.device.starts_with("usb")) return;
+  std::vector<host::DeviceCheck> checks;
+  const auto add = [&](bool is_good, std::string what, std::string found, std::string remedy) {
+    checks.push_back({is_good ? host::CheckResult::good : host::CheckResult::attention, std::move(what),
+                      std::move(found), is_good ? "" : std::move(remedy)});
+  };
+  const std::size_t boards = host::find_usb_boards().size();
+  add(boards > 0, "boards on USB", fmt::format("{}", boards),
+      "power: the board's own supply on, its light on? cable: one that carries data, straight to the computer; "
+      "bootloader: BOOT0 low, then reset; `lsusb` shows whether the computer sees anything new");
+  const bool has_rule = std::filesystem::exists(host::kUdevRuleFile);
+  add(has_rule, "udev rule", has_rule ? host::kUdevRuleFile : "not installed",
+      "sudo axistool udev-rule --install lets users open a board");
+  add(false, "without a board", "a simulated one", "axistool sim, in another window; then --device sim");
+  print(checks, stderr);
+}
+
 void run(const DeviceArguments& arguments) {
-  host::BoardClient board = open_board(arguments);  // rights and presence: its failures have their remedies
+  std::optional<host::BoardClient> opened;
+  try {
+    opened.emplace(open_board(arguments));  // rights and presence: its failures have their remedies
+  } catch (const host::Failure& failure) {
+    if (failure.code == host::ExitCode::no_such_device) tell_the_way(arguments);
+    throw;
+  }
+  host::BoardClient& board = *opened;
   std::vector<host::DeviceCheck> checks = host::check_device(board);
   if (board.name().starts_with("usb:") && host::hid_library().backend == host::HidBackend::hidraw)
     checks.insert(checks.begin(), host::check_opening());
@@ -41,12 +82,7 @@ void run(const DeviceArguments& arguments) {
     write_json({{"format", "axis-doctor/1"}, {"device", board.name()}, {"checks", rows}}, arguments.json);
   }
   if (!talks(arguments)) return;
-  const host::Terminal terminal = host::terminal_of(stdout);
-  for (const host::DeviceCheck& check : checks) {
-    fmt::print("{}  {:<18} {}\n", host::coloured(text_of(check.result), tone_of(check.result), terminal), check.what,
-               check.found);
-    if (!check.remedy.empty()) fmt::print("      {}\n", check.remedy);
-  }
+  print(checks, stdout);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
@@ -46,8 +48,12 @@ void describe_board(const InfoArguments& arguments) {
   const firmware::IdentityPayload identity = board.identify();
   const host::BoardState status = board.status();
   const firmware::TimingPayload timing = board.timing(false);
-  if (!arguments.json.empty()) write_json(host::board_json(board.name(), identity, status, timing), arguments.json);
-  if (talks(arguments)) fmt::print("{}", host::board_text(board.name(), identity, status, timing));
+  std::optional<firmware::ParameterValues> values;
+  if (identity.schema_hash == firmware::kSchemaHash) values = board.read_values();
+  const firmware::ParameterValues* known = values ? &*values : nullptr;
+  if (!arguments.json.empty())
+    write_json(host::board_json(board.name(), identity, status, timing, known), arguments.json);
+  if (talks(arguments)) fmt::print("{}", host::board_text(board.name(), identity, status, timing, known));
 }
 
 }  // namespace

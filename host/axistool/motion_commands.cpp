@@ -1,6 +1,8 @@
 // axistool enable, disable, jog, move: a board's axes in motion.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -9,6 +11,8 @@
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/motion.hpp"
+#include "host/exit_codes.hpp"
+#include "host/parameters/parameter_names.hpp"
 
 namespace axistool {
 
@@ -19,7 +23,12 @@ struct MotionArguments : DeviceArguments {
   std::string axis;
   double value = 0.0, duration_s = 1.0;
   bool relative = false, take_over = false, here = false;
+  std::string mode;
+  double speed = 0.0;
 };
+
+/// By homing.mode.
+constexpr std::array<const char*, 4> kHomingModes{"none", "switch", "index", "both"};
 
 double position_of(host::BoardClient& board, std::uint8_t axis, const firmware::ParameterValues& values) {
   const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
@@ -100,11 +109,36 @@ void add_take_over(CLI::App& command, MotionArguments& arguments) {
   command.add_flag("--take-over", arguments.take_over, "even while another program moves the axes: it loses them");
 }
 
+/// What finds home, from now on: set where the loop is open, and closed again. Consent as for `enable`.
+void set_homing(const MotionArguments& arguments, host::BoardClient& board, std::uint8_t axis) {
+  const auto mask = static_cast<std::uint8_t>(1u << axis);
+  require_consent(arguments,
+                  fmt::format("Close the control loop of axis {} and look for home? It moves.", arguments.axis));
+  if (host::are_enabled(board, mask)) host::disable_and_wait(board, mask);
+  firmware::ParameterValues values = board.read_values();
+  const auto set = [&](const char* name, double value) {
+    values.set(host::require_place(fmt::format("{}.{}", arguments.axis, name)), static_cast<float>(value));
+  };
+  if (!arguments.mode.empty())
+    set("homing.mode", static_cast<double>(std::ranges::find(kHomingModes, arguments.mode) - kHomingModes.begin()));
+  if (arguments.speed != 0.0) set("homing.velocity", arguments.speed);
+  board.write_values(values);
+  host::enable_and_wait(board, mask);
+}
+
 void home(const MotionArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
   board.require_same_table();
+  const bool sets = !arguments.mode.empty() || arguments.speed != 0.0;
+  if (sets && !arguments.dry_run) set_homing(arguments, board, axis);
   const firmware::ParameterValues values = board.read_values();
+  const auto mode = static_cast<std::size_t>(values.axis(axis).get<"homing.mode">());
+  if (mode == 0 && !arguments.here && arguments.mode.empty())
+    throw host::Failure(host::ExitCode::refused,
+                        fmt::format("nothing tells axis {} where home is (homing.mode is 0): axistool home {} --mode "
+                                    "switch, index or both; or --here, where it stands there",
+                                    arguments.axis, arguments.axis));
   catch_interrupts();
   if (!arguments.dry_run) {
     if (arguments.take_over) board.take_over();
@@ -115,12 +149,14 @@ void home(const MotionArguments& arguments) {
   }
   const bool homed = (board.status().axis.at(axis).flags & firmware::kAxisHomed) != 0;
   const double at = position_of(board, axis, values);
-  report(arguments, "home", {{"axis", arguments.axis}, {"homed", homed}, {"at", at}});
+  report(arguments, "home", {{"axis", arguments.axis}, {"homed", homed}, {"at", at}, {"mode", kHomingModes.at(mode)}});
   if (!talks(arguments)) return;
   if (arguments.dry_run)
     fmt::print("would {}\n", arguments.here ? "take the place where the axis stands for home" : "look for home");
   else
-    fmt::print("{} {}, at {:.4f}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)", at);
+    fmt::print("{} {}{}, at {:.4f}{}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)",
+               arguments.here ? std::string(" where it stands") : fmt::format(" by {}", kHomingModes.at(mode)), at,
+               sets ? "; `axistool save` keeps its mode" : "");
 }
 
 }  // namespace
@@ -167,13 +203,22 @@ void add_home(CLI::App& app) {
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
   command->add_flag("--here", arguments->here,
                     "the axis stands at homing.position: your word for it, where homing.mode is 0");
+  command
+      ->add_option(
+          "--mode", arguments->mode,
+          "what finds home: switch, index, or both (switch and then index); sets homing.mode and closes the loop")
+      ->check(CLI::IsMember({"switch", "index", "both"}));
+  command->add_option("--speed", arguments->speed,
+                      "towards the switch or index, mm/s (linear drive: m/s), negative the other way; sets "
+                      "homing.velocity");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);
   command->footer(
-      "Examples:\n  axistool set-params x.homing.mode=3 x.homing.velocity=20 && axistool enable x && axistool home x\n"
+      "Examples:\n  axistool home x --mode both --speed 20 --yes\n  axistool home x\n"
       "  axistool home y --here\n"
-      "By switch (homing.mode 1), index (2), or switch and then index (3). Until an axis is homed it takes no moves to "
+      "By homing.mode: switch (1), index (2), or switch and then index (3). Until an axis is homed it takes no moves "
+      "to "
       "a\nposition, and travel limits, cogging and friction along the travel do not act. A reset forgets home.");
   command->callback([arguments] { home(*arguments); });
 }

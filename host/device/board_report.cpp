@@ -28,6 +28,20 @@ const char* fault_name(std::uint8_t fault) {
   return firmware::fault_info(static_cast<firmware::AxisFault>(fault)).name;
 }
 
+struct Place {
+  double value;
+  const char* unit;
+};
+
+/// Nothing of an axis whose counts mean nothing yet.
+std::optional<Place> place_of(const BoardState& status, std::size_t axis, const firmware::ParameterValues* values) {
+  if (values == nullptr || (status.axis[axis].flags & firmware::kAxisFitted) == 0) return {};
+  const auto drive = values->axis(axis);
+  const double resolution = static_cast<double>(drive.get<"drive.encoder_resolution">());
+  return Place{static_cast<double>(status.axis[axis].counts()) * resolution,
+               drive.get<"drive.lead">() == 1.0F ? "m" : "mm"};
+}
+
 }  // namespace
 
 std::string state_text(const firmware::AxisStatus& axis) {
@@ -71,7 +85,8 @@ std::string fault_text(const firmware::AxisStatus& axis) {
 }
 
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
-                          const BoardState& status, const firmware::TimingPayload& timing) {
+                          const BoardState& status, const firmware::TimingPayload& timing,
+                          const firmware::ParameterValues* values) {
   nlohmann::json axes = nlohmann::json::array();
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
@@ -84,6 +99,8 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
                     {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
                     {"at_rest", (now.flags & firmware::kAxisAtRest) != 0},
                     {"homed", (now.flags & firmware::kAxisHomed) != 0}});
+    if (const auto place = place_of(status, axis, values))
+      axes.back().update({{"position", place->value}, {"position_unit", place->unit}});
   }
   return {{"format", "axis-board/1"},
           {"device", device},
@@ -107,7 +124,7 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
 }
 
 std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status,
-                       const firmware::TimingPayload& timing) {
+                       const firmware::TimingPayload& timing, const firmware::ParameterValues* values) {
   std::string text =
       fmt::format("device       {}\nboard        {}{}, version {} {}\nnumbers      {}\nparameters   table {:#010x}{}\n",
                   device, text_of(identity.board),
@@ -123,11 +140,14 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
   if ((status.flags & firmware::kBoardStopPressed) != 0) text += "emergency stop is pressed\n";
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
-    text += fmt::format("axis {}       {}, {} counts{}{}\n", firmware::kAxisNames[axis], state_text(now), now.counts(),
-                        (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
-                        : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
-                                                                  : " from where it was (not homed)",
-                        now.fault == 0 ? "" : ", " + fault_text(now));
+    const auto place = place_of(status, axis, values);
+    text += fmt::format(
+        "axis {}       {}, {}{}{}\n", firmware::kAxisNames[axis], state_text(now),
+        place ? fmt::format("{:.4f} {}", place->value, place->unit) : fmt::format("{} counts", now.counts()),
+        (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
+        : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
+                                                  : " from where it was (not homed)",
+        now.fault == 0 ? "" : ", " + fault_text(now));
   }
   if (const auto problem = store_problem(status)) text += *problem + "\n";
   return text;

@@ -2,11 +2,45 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "firmware/core/excitation/excitation_run.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
+
+namespace {
+
+/// What the capture shows of encoder and tachometer: least squares of the travel over the angle of each sample.
+std::string disagreement(const ExcitationOutcome& outcome, double lead) {
+  const Record record = capture_record(outcome.capture, outcome.settings, "");
+  const std::string general = "encoder and tachometer show different motion";
+  if (!record.has_position() || !record.has_speed() || record.size() < 3 || !(lead > 0.0)) return general;
+  double travel_2 = 0.0, angle_2 = 0.0, both = 0.0;
+  for (std::size_t k = 1; k < record.size(); ++k) {
+    const double travel = record.x[k] - record.x[k - 1];
+    const double by_speed = lead * 0.5 * (record.w[k] + record.w[k - 1]) * record.sample_period_s;
+    travel_2 += travel * travel;
+    angle_2 += by_speed * by_speed;
+    both += travel * by_speed;
+  }
+  constexpr double kAlike = 0.8, kDead = 1e-3;
+  if (travel_2 <= kDead * kDead * angle_2)
+    return "the tachometer shows motion and the encoder stands: it is dead, or not on this axis";
+  if (angle_2 <= kDead * kDead * travel_2)
+    return "the encoder shows motion and the tachometer none: it is dead, or not on this axis";
+  const double alike = both / std::sqrt(travel_2 * angle_2), factor = both / angle_2;
+  if (alike < -kAlike) return "encoder and tachometer run against each other: one of them is reversed";
+  if (alike > kAlike)
+    return fmt::format(
+        "the encoder shows {:.3g} times the tachometer's motion: drive.encoder_resolution, drive.lead or "
+        "tachometer.gain is not this drive's (--drive DRIVE.toml gives them)",
+        factor);
+  return general + ", unlike in course too: one of them is not on this axis";
+}
+
+}  // namespace
 
 void require_completed(BoardClient& board, std::uint8_t axis, const ExcitationOutcome& outcome,
                        const std::string& kept) {
@@ -25,9 +59,8 @@ void require_completed(BoardClient& board, std::uint8_t axis, const ExcitationOu
                     fmt::format("the axis {}: `axistool doctor` says why{}", end_name(outcome.state), where));
     case ExcitationEnd::blind:
       throw Failure(ExitCode::refused,
-                    "encoder and tachometer show different motion: one of them is reversed, dead, or not on this "
-                    "axis; mend that first" +
-                        where);
+                    disagreement(outcome, static_cast<double>(board.read_values().axis(axis).get<"drive.lead">())) +
+                        "; mend that first" + where);
     case ExcitationEnd::no_motion:
       throw Failure(ExitCode::refused,
                     "nothing moved under the largest command: free the axis, look at motor, amplifier, brake and "
