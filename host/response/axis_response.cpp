@@ -89,9 +89,9 @@ bool is_one_of_a_drive(const ResponseLine& line, const FrequencyResponse& respon
     const double size = std::abs(line.plant(channel)), variance = line.covariance(channel, channel).real();
     if (!(size > kLeast && size < kMost && variance >= 0.0 && variance < kMost * kMost)) return false;
   }
-  return std::isfinite(line.noise) && std::isfinite(line.nonlinearity) &&
-         std::isfinite(std::abs(line.covariance(0, 1))) && line.coherence >= 0.0 && line.coherence <= 1.0 &&
-         line.degrees >= 0.0 && line.degrees < kMost;
+  const auto is_sized = [](double value) { return value >= 0.0 && value < kMost; };
+  return is_sized(line.noise) && is_sized(line.nonlinearity) && is_sized(line.degrees) && line.coherence >= 0.0 &&
+         line.coherence <= 1.0 && std::isfinite(std::abs(line.covariance(0, 1)));
 }
 
 /// Throws Failure(bad_input) naming the first entry that no measurement gives.

@@ -33,7 +33,8 @@ json document() {
 /// The numbers and lists of a document, by their pointers.
 std::vector<json::json_pointer> places(const json& document) {
   std::vector<json::json_pointer> found;
-  for (const auto& [path, value] : document.flatten().items()) {
+  const json flat = document.flatten();
+  for (const auto& [path, value] : flat.items()) {
     found.emplace_back(path);
     for (json::json_pointer above = found.back(); !above.empty(); above.pop_back())
       if (found.size() < 5000) found.push_back(above);
@@ -72,7 +73,7 @@ TEST(ResponseFile, OfAnyJsonIsReadOrRefused) {
   const std::vector<json::json_pointer> all = places(good);
   const std::vector<json> values = {nullptr, true, -1, 0, 1e308, 5e-324, "x", json::array(), json::object(), 1u << 31U};
   std::mt19937 random(3);
-  for (int trial = 0; trial < 150; ++trial) {
+  for (int trial = 0; trial < 12; ++trial) {
     json bent = good;
     for (auto times = 1 + random() % 3; times > 0; --times) {
       const json::json_pointer& place = all[random() % all.size()];
