@@ -38,6 +38,7 @@ from .errors import (
 )
 from .model import Model
 from .record import Record
+from .residuals import Residuals, residuals
 from .sources import Progress
 
 __all__ = [
@@ -61,6 +62,7 @@ __all__ = [
     "ProtocolError",
     "Record",
     "Refused",
+    "Residuals",
     "Rung",
     "TimeOut",
     "UsageError",
@@ -74,6 +76,7 @@ __all__ = [
     "identify",
     "improve",
     "predict",
+    "residuals",
     "set_parameters",
     "simulated_board",
 ]

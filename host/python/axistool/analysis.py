@@ -16,6 +16,7 @@ from . import _host
 from .model import Model
 from .record import Record
 from .sources import ModelLike, Progress, RecordLike, Records, model_source, record_source, record_sources
+from .tables import html_table
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,11 @@ class Identification:
     warnings: Sequence[str]
     json: Mapping[str, Any]
 
+    def _repr_html_(self) -> str:
+        rows = [(name, one.value, *one.ci95) for name, one in self.parameters.items()]
+        return html_table(["parameter", "value", "95 % from", "to"], rows,
+                          f"{self.model.name}: {100.0 * self.relative_error:.2g} % of the torque or force unexplained")
+
 
 @dataclass(frozen=True)
 class ChannelError:
@@ -44,8 +50,14 @@ class ChannelError:
 class Comparison:
     combined: float  # error over floor; about 1 for a perfect model
     channels: Mapping[str, ChannelError]
-    relative_error: float | None  # of the inverse model; None where the axis never slides
+    relative_error: float | None  # of the inverse model; None where the axis does not move
     json: Mapping[str, Any]
+
+    def _repr_html_(self) -> str:
+        rows = [(name, one.rms, one.floor, one.rms / one.floor if one.floor > 0.0 else "", one.fit)
+                for name, one in self.channels.items()]
+        return html_table(["channel", "rms", "noise floor", "times", "fit, %"], rows,
+                          f"{self.combined:.3g} times the noise floor")
 
 
 @dataclass(frozen=True)
@@ -65,6 +77,10 @@ class Diagnosis:
     next_experiment: str
     candidates: Sequence[Candidate]
     json: Mapping[str, Any]
+
+    def _repr_html_(self) -> str:
+        rows = [(" and ".join(one.kinds), one.before, one.after, one.confidence) for one in self.candidates]
+        return html_table(["effect", "before", "after", "confidence"], rows, f"{self.status}: {self.explanation}")
 
 
 @dataclass(frozen=True)
@@ -100,6 +116,10 @@ class Improvement:
     stopped_because: str
     json: Mapping[str, Any]
 
+    def _repr_html_(self) -> str:
+        rows = [(", ".join(one.added) or "as it came", one.train, one.validate) for one in self.ladder]
+        return html_table(["with", "training", "validation"], rows, self.stopped_because)
+
 
 @dataclass(frozen=True)
 class Design:
@@ -114,7 +134,13 @@ class Design:
 
 def identify(records: Records, drive: ModelLike | None = None, method: str | None = None) -> Identification:
     """Inertia (or mass), viscous and Coulomb friction. `drive`: data sheet. `method`: "sliding-ls", "unbiased-ls" or
-    "ls". Raises Refused where the axis hardly moved."""
+    "ls". Raises Refused where the axis hardly moved.
+
+    >>> found = identify("steps.csv", drive="drive.toml")
+    >>> low, high = found.parameters["J_kg_m2"].ci95  # kg m^2
+    >>> low < found.parameters["J_kg_m2"].value < high
+    True
+    """
     sheet = None if drive is None else model_source(drive)
     text, model = _host.identify(record_sources(records), sheet, method or "")
     answer = json.loads(text)
@@ -124,7 +150,12 @@ def identify(records: Records, drive: ModelLike | None = None, method: str | Non
 
 
 def compare(model: ModelLike, records: Records, window_s: float | None = None) -> Comparison:
-    """How well a model predicts records from their recorded command alone, over windows of `window_s`."""
+    """How well a model predicts records from their recorded command alone, over windows of `window_s` (s).
+
+    >>> compared = compare("x.toml", "jog.csv")
+    >>> compared.channels["x_mm"].rms > compared.channels["x_mm"].floor > 0.0  # mm
+    True
+    """
     window_s = _host.WINDOW_S if window_s is None else window_s
     answer = json.loads(_host.compare(model_source(model), record_sources(records), window_s))
     channels = {name: ChannelError(one["rms"], one["floor"], one["fit"]) for name, one in answer["channels"].items()}
@@ -132,7 +163,12 @@ def compare(model: ModelLike, records: Records, window_s: float | None = None) -
 
 
 def predict(model: ModelLike, record: RecordLike, window_s: float | None = None) -> Record:
-    """The record's rows beside the model's: x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s)."""
+    """The record's rows beside the model's: x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s).
+
+    >>> rows = predict("x.toml", "jog.csv")
+    >>> rows["x_pred_mm"].shape == rows["x_mm"].shape
+    True
+    """
     window_s = _host.WINDOW_S if window_s is None else window_s
     columns, header = _host.predict(model_source(model), record_source(record), window_s)
     return Record(columns, header)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from .model import Model
 from .record import Record
 
-RecordLike: TypeAlias = Record | str | os.PathLike[str]
+# Record.of takes all of them; Any stands for a pandas DataFrame or an array with named fields.
+RecordLike: TypeAlias = Record | str | os.PathLike[str] | Mapping[str, Any] | Any
 ModelLike: TypeAlias = Model | str | os.PathLike[str]
 Records: TypeAlias = RecordLike | Iterable[RecordLike]
 # Called now and then, in the caller's thread, with the share that is done (0 to 1) and what is being done; what it raises
@@ -23,16 +24,25 @@ RecordSource: TypeAlias = str | tuple[Mapping[str, NDArray[np.float64]], Mapping
 ModelSource: TypeAlias = str | tuple[str]
 
 
+def as_record(given: RecordLike) -> Record:
+    """Raises TypeError, with the way to make one, for what is none."""
+    return Record.of(given)
+
+
 def record_source(record: RecordLike) -> RecordSource:
-    return (record.columns, record.header) if isinstance(record, Record) else os.fspath(record)
+    if isinstance(record, (str, os.PathLike)):
+        return os.fspath(record)
+    one = as_record(record)
+    return (one.columns, one.header)
 
 
 def record_sources(records: Records | None) -> list[RecordSource]:
     if records is None:
         return []
-    if isinstance(records, (Record, str, os.PathLike)):
-        return [record_source(records)]
-    return [record_source(one) for one in records]
+    if isinstance(records, Iterable) and not isinstance(records, (str, Mapping)) and not hasattr(records, "dtype"):
+        if not hasattr(records, "to_numpy"):  # a DataFrame is one record
+            return [record_source(one) for one in records]
+    return [record_source(records)]
 
 
 def model_source(model: ModelLike) -> ModelSource:
