@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host/diagnose/diagnosis_figures.hpp"
+
 namespace host {
 namespace {
 
@@ -47,6 +49,36 @@ TEST(LadderChart, BeginsWithTheModelAsGiven) {
   ASSERT_EQ(chart.rows.size(), 3u);
   EXPECT_EQ(chart.rows[0].label, "as given");
   EXPECT_EQ(chart.rows[0].values, (std::vector<double>{10.0, 18.6}));
+}
+
+JudgedCandidate candidate(const std::string& kind, double after) {
+  JudgedCandidate judged;
+  judged.kinds = {kind};
+  judged.before = 10.0;
+  judged.after = judged.train_after = after;
+  return judged;
+}
+
+// Catches pairs of equal bars for whatever changes nothing, and a rival that stands far from what it cannot be told
+// from.
+TEST(Candidates, RivalsStandTogetherAndWhatChangesNothingIsFolded) {
+  Diagnosis diagnosis;
+  diagnosis.before_train = diagnosis.before_validate = 10.0;
+  diagnosis.candidates = {candidate("cogging", 1.0), candidate("stribeck", 5.0), candidate("torque_ripple", 1.02),
+                          candidate("backlash", 9.9), candidate("compliance", 9.8)};
+  diagnosis.verdict.status = Status::ambiguous;
+  diagnosis.verdict.effects = {"cogging", "torque_ripple"};
+  diagnosis.verdict.alternatives = {{"cogging", "torque_ripple"}};
+  Report report("test");
+  add_candidates(report, diagnosis);
+  const std::string html = report.html();
+  const std::string page = html.substr(html.find("<div class=\"blocks\">"));
+  std::size_t last = 0;
+  for (const char* text : {"Cogging", "Torque ripple", "Stribeck", "<details>", "Backlash", "on a spring"}) {
+    const std::size_t at = page.find(text, last);
+    ASSERT_NE(at, std::string::npos) << text;
+    last = at;
+  }
 }
 
 }  // namespace
