@@ -25,13 +25,14 @@ install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION s
 
 # The Python package, of the component "python": in the Debian package python3-axistool. Debian's Python looks in another
 # folder below /usr/local than below /usr.
-find_package(Python3 REQUIRED COMPONENTS Interpreter)  # that of host/python
-set(AXIS_PYTHON_DIR "lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages" CACHE STRING
-    "Where Python looks for packages, below the prefix")
-install(DIRECTORY "${AXIS_ROOT}/host/python/axistool" DESTINATION "${AXIS_PYTHON_DIR}" COMPONENT python
-  FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
-install(TARGETS axis_python LIBRARY DESTINATION "${AXIS_PYTHON_DIR}/axistool" COMPONENT python)
-install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/python3-axistool COMPONENT python)
+if(TARGET axis_python)
+  set(AXIS_PYTHON_DIR "lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages" CACHE STRING
+      "Where Python looks for packages, below the prefix")
+  install(DIRECTORY "${AXIS_ROOT}/host/python/axistool" DESTINATION "${AXIS_PYTHON_DIR}" COMPONENT python
+    FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  install(TARGETS axis_python LIBRARY DESTINATION "${AXIS_PYTHON_DIR}/axistool" COMPONENT python)
+  install(FILES "${DOCUMENTS}/changelog.gz" "${DOCUMENTS}/copyright" DESTINATION share/doc/python3-axistool COMPONENT python)
+endif()
 
 # The library for C++, of the component "development": find_package(axis), target axis::host.
 set(FOR_CPP COMPONENT development)
@@ -70,17 +71,21 @@ axis board.
 
 It sets the parameters of boards over USB, moves their axes and captures
 records; a simulated board takes the place of a real one for trying it out.")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-axistool)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-math(EXPR NEXT_PYTHON "${Python3_VERSION_MINOR} + 1")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${NEXT_PYTHON}), python3-numpy, libhidapi-hidraw0")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "axistool, libmatio11")  # the udev rule and the shipped drive come with the program
-set(CPACK_DEBIAN_PYTHON_DESCRIPTION "identify feed drives from Python
+if(TARGET axis_python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-axistool)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  math(EXPR NEXT_PYTHON "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${NEXT_PYTHON}), python3-numpy, libhidapi-hidraw0")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "axistool, libmatio11")  # the udev rule and the shipped drive come with the program
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "identify feed drives from Python
 The analysis of axistool as functions of Python with typed results: records
 as NumPy arrays, models, identify, compare, diagnose, add, improve, design,
 and captures from boards. The figures are those of the command line.")
-# Byte code comes and goes with the package, as dh_python3 has it.
-set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${AXIS_ROOT}/cmake/package/postinst;${AXIS_ROOT}/cmake/package/prerm")
+  # Byte code comes and goes with the package, as dh_python3 has it.
+  set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${AXIS_ROOT}/cmake/package/postinst;${AXIS_ROOT}/cmake/package/prerm")
+else()
+  set(CPACK_COMPONENTS_ALL axistool)
+endif()
 include(CPack)

@@ -1,8 +1,10 @@
 # Compiler flags that every target of the project shares. Warnings are errors.
 add_library(axis_flags INTERFACE)
 target_include_directories(axis_flags INTERFACE "${AXIS_ROOT}")
-target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
-                                            -ffp-contract=off)
+target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic
+                       # Among sources compiled together a local name may be one of another source.
+                       $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Werror
+                       -ffp-contract=off)
 if(AXIS_SANITIZE)
   target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
                          -O1 -g1)

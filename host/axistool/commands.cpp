@@ -7,12 +7,12 @@ void add_sheet(CLI::App& app);
 void add_export(CLI::App& app);
 
 namespace {
-host::ExitCode ending = host::ExitCode::done;
+host::ExitCode status_at_end = host::ExitCode::done;
 }
 
-void end_with(host::ExitCode code) { ending = code; }
+void end_with(host::ExitCode code) { status_at_end = code; }
 
-int exit_status() { return static_cast<int>(ending); }
+int exit_status() { return static_cast<int>(status_at_end); }
 
 void add_all_commands(CLI::App& app) {
   add_open(app);

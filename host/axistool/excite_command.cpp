@@ -143,7 +143,7 @@ void run(const ExciteArguments& arguments) {
   host::require_completed(board, axis, outcome, arguments.output + " holds what there is");
 }
 
-std::string footer() {
+std::string kinds_footer() {
   std::string text =
       "Examples:\n"
       "  axistool excite x steps --box travel=40,speed=150,volts=3,time=5 --drive x.toml -o steps.csv\n"
@@ -183,7 +183,7 @@ void add_excite(CLI::App& app) {
       ->check(CLI::Range(0, 60));
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
-  command->footer(footer());
+  command->footer(kinds_footer());
   command->callback([arguments] { run(*arguments); });
 }
 

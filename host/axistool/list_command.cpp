@@ -22,7 +22,7 @@ bool simulated_board_listens() {
   }
 }
 
-void run(const DeviceArguments& arguments) {
+void list_boards(const DeviceArguments& arguments) {
   nlohmann::json boards = nlohmann::json::array();
   const auto add = [&](const std::string& device, const std::string& product, const std::string& path) {
     if (arguments.device.empty() || arguments.device == device)
@@ -50,7 +50,7 @@ void add_list(CLI::App& app) {
   command->add_option("--device", arguments->device, "only this one: usb:SERIAL or sim");
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool list --json -\nExit code 3: there is none.");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { list_boards(*arguments); });
 }
 
 }  // namespace axistool

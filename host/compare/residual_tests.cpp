@@ -23,7 +23,7 @@ namespace {
 using Values = std::vector<double>;
 
 /// Fewer samples in a set tell nothing of a dependence.
-constexpr std::size_t kFewestSamples = 100;
+constexpr std::size_t kFewestTested = 100;
 
 /// A sudden breakaway counts as so many times the median size at most: one must not hide what recurs.
 constexpr double kMostMedians = 6.0;
@@ -305,7 +305,7 @@ void look_near_reversals(const std::array<const ResidualEffort*, 2>& sets, const
   double all = 0.0, near = 0.0;
   for (const ResidualEffort* samples : sets)
     for (const double travel : samples->since_reversal) travelled.push_back(std::abs(travel));
-  if (travelled.size() < kFewestSamples) return;
+  if (travelled.size() < kFewestTested) return;
   const auto edge = travelled.begin() + static_cast<long>(kNearest * static_cast<double>(travelled.size()));
   std::ranges::nth_element(travelled, edge);
   for (const ResidualEffort* samples : sets)
@@ -321,7 +321,7 @@ void look_near_reversals(const std::array<const ResidualEffort*, 2>& sets, const
 
 ResidualTests test(const Half& first, const Half& second, const sim::DataSheet& data, bool has_position) {
   ResidualTests tests;
-  if (std::min(first.value.size(), second.value.size()) < kFewestSamples) return tests;
+  if (std::min(first.value.size(), second.value.size()) < kFewestTested) return tests;
   if (!(sum_of_squares(first.value) > 0.0) || !(sum_of_squares(second.value) > 0.0)) return tests;
   tests.rms = std::sqrt(sum_of_squares(second.value) / static_cast<double>(second.value.size()));
 

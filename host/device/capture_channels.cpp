@@ -21,7 +21,7 @@ struct ChannelNames {
   std::string_view rotary, linear;
 };
 
-constexpr std::array<ChannelNames, firmware::kChannels> kNames{{
+constexpr std::array<ChannelNames, firmware::kChannels> kChannelNames{{
     {Channel::dac_code, "u_V", "u_V"},
     {Channel::counts, "x_mm", "x_m"},
     {Channel::tachometer_velocity, "w_rad_s", "v_m_s"},
@@ -47,12 +47,12 @@ std::int64_t extend(std::int64_t last, std::uint32_t word) {
 }  // namespace
 
 std::string channel_name(Channel channel, sim::DriveKind kind) {
-  return std::string(name_of(kNames[static_cast<std::size_t>(channel)], kind));
+  return std::string(name_of(kChannelNames[static_cast<std::size_t>(channel)], kind));
 }
 
 Channel channel_named(std::string_view name, sim::DriveKind kind) {
   std::vector<std::string_view> known;
-  for (const ChannelNames& names : kNames) {
+  for (const ChannelNames& names : kChannelNames) {
     if (name_of(names, kind) == name) return names.channel;
     known.push_back(name_of(names, kind));
   }

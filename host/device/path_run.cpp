@@ -60,10 +60,10 @@ std::vector<std::byte> bytes_of(const PathWord& node, bool is_last, const PathSc
   return bytes;
 }
 
-/// Rows of all axes as they come.
-class Rows {
+/// PathRows of all axes as they come.
+class PathRows {
  public:
-  Rows(BoardClient& board, const firmware::ParameterValues& values, const PathScale& scale, PathCapture& capture)
+  PathRows(BoardClient& board, const firmware::ParameterValues& values, const PathScale& scale, PathCapture& capture)
       : board_(board), capture_(capture), unit_mm_(scale.unit_mm) {
     const bool fixed_point = board.identify().fixed_point != 0;
     const BoardState status = board.status();
@@ -195,7 +195,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
   const auto start = positions(board.open_path(open_request(scale.scale, units, relative)), scale.scale);
   const PathWords words = path_words(path, scale.scale, units, start);
   Stream stream(board, words, scale.scale);
-  std::optional<Rows> rows;
+  std::optional<PathRows> rows;
   try {
     while (stream.sent_s() < kHeadStart_s && stream.send()) continue;
     if (captures) {

@@ -12,10 +12,10 @@ namespace host {
 
 namespace {
 
-constexpr double kDeviations = 2.0;
-constexpr double kMoved = 0.1;
-constexpr double kLeastGain = 0.05;
-constexpr std::size_t kWindows = 200;
+constexpr double kFarOff = 2.0;
+constexpr double kWantsToMove = 0.1;
+constexpr double kLeastGainOfFreed = 0.05;
+constexpr std::size_t kWindowsOfCheck = 200;
 
 std::string name_of(const sim::EffectEntry& entry, const std::string& id, sim::DriveKind kind) {
   return fmt::format("{} {}", entry.kind, sim::find_effect(entry.kind)->parameter(id)->key(kind));
@@ -30,7 +30,7 @@ std::vector<DataSheetConflict> data_sheet_conflicts(const sim::DriveDescription&
     holds = holds || !entry.held.empty();
     for (const auto& [id, belief] : entry.believed) {
       const double off = std::abs(entry.at(id) - belief.value) / belief.deviation;
-      if (off <= kDeviations || entry.held.contains(id)) continue;
+      if (off <= kFarOff || entry.held.contains(id)) continue;
       const std::string name = name_of(entry, id, fitted.data.kind);
       conflicts.push_back({name, belief.value, entry.at(id),
                            fmt::format("The data fight the data sheet: {} came out as {:.4g}, {:.1f} deviations from "
@@ -42,14 +42,14 @@ std::vector<DataSheetConflict> data_sheet_conflicts(const sim::DriveDescription&
   sim::DriveDescription free = fitted;
   for (sim::EffectEntry& entry : free.effects) entry.held.clear();
   RecordSet few = set;
-  few.stride = std::max<std::size_t>(few.stride, set.used_windows() / kWindows);
+  few.stride = std::max<std::size_t>(few.stride, set.used_windows() / kWindowsOfCheck);
   free = fit_model(free, few).model;
   const double before = error_of(sim::Drive(fitted), few).robust, after = error_of(sim::Drive(free), few).robust;
-  if (!(after < (1.0 - kLeastGain) * before)) return conflicts;
+  if (!(after < (1.0 - kLeastGainOfFreed) * before)) return conflicts;
   for (std::size_t k = 0; k < fitted.effects.size(); ++k)
     for (const std::string& id : fitted.effects[k].held) {
       const double known = fitted.effects[k].at(id), wanted = free.effects[k].at(id);
-      if (std::abs(wanted - known) <= kMoved * std::abs(known)) continue;
+      if (std::abs(wanted - known) <= kWantsToMove * std::abs(known)) continue;
       const std::string name = name_of(fitted.effects[k], id, fitted.data.kind);
       conflicts.push_back({name, known, wanted,
                            fmt::format("The data fight the data sheet: {} is held at {:.4g}; free, it would be {:.4g}, "

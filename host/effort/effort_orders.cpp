@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// An order stays when it takes this part of what is left of the squared error, in training and in judging alike.
-constexpr double kLeastGain = 0.015;
+constexpr double kLeastGainOfOrder = 0.015;
 constexpr std::size_t kMostOrders = 12;
 constexpr int kMostWholeOrders = 120;
 
@@ -71,7 +71,7 @@ OrderChoice select(const EffortRows& rows, const MatrixXd& base, const VectorXd&
   constexpr int kMostRefusals = 3;
   while (choice.orders.size() < kMostOrders && refusals < kMostRefusals) {
     int best = 0;
-    double most_gain = kLeastGain * train_left;
+    double most_gain = kLeastGainOfOrder * train_left;
     for (int order = 1; order <= most; ++order) {
       if (out[static_cast<std::size_t>(order)]) continue;
       const Index c = base.cols() + 2 * (Index{order} - 1);
@@ -96,7 +96,7 @@ OrderChoice select(const EffortRows& rows, const MatrixXd& base, const VectorXd&
       further.taken.push_back(k);
     }
     const double judged = further.left_judge();
-    if (judged > (1.0 - kLeastGain) * judge_left) {
+    if (judged > (1.0 - kLeastGainOfOrder) * judge_left) {
       ++refusals;
       continue;
     }

@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// A further knot must take this part of the judging rows' squared error.
-constexpr double kLeastGain = 0.01;
+constexpr double kLeastGainOfCurve = 0.01;
 
 /// Travel since the motion last turned over, at the rows.
 VectorXd travel_since_reversal(const EffortRows& rows) {
@@ -171,7 +171,7 @@ std::optional<FreeCurveFit> fitted_with_as_many_knots_as_pay(const EffortScreen&
   std::optional<FreeCurveFit> best;
   for (const std::size_t count : {3U, 5U, 8U, 12U, 17U, 25U}) {
     std::optional<FreeCurveFit> fit = fitted(screen, over, *coordinate, count);
-    const double limit = best ? std::sqrt(1.0 - kLeastGain) * best->model.validate : screen.best().validate;
+    const double limit = best ? std::sqrt(1.0 - kLeastGainOfCurve) * best->model.validate : screen.best().validate;
     if (fit && fit->model.validate < limit) best = std::move(fit);
   }
   return best;

@@ -11,7 +11,7 @@ namespace host {
 
 namespace {
 
-constexpr std::size_t kFewestRows = 50;
+constexpr std::size_t kFewestSharedRows = 50;
 constexpr double kShortest_s = 0.1;
 /// Different readings of a stretch that has motion in it: a rest, or a creep of some encoder steps, may repeat itself.
 constexpr std::size_t kFewestReadings = 15;
@@ -45,7 +45,7 @@ RecordOverlap record_overlap(const Record& first, const Record& second) {
   for (const auto channel : kMeasured)
     if ((first.*channel).empty() != (second.*channel).empty()) return overlap;
   const auto length =
-      std::max(kFewestRows, static_cast<std::size_t>(std::lround(kShortest_s / second.sample_period_s)));
+      std::max(kFewestSharedRows, static_cast<std::size_t>(std::lround(kShortest_s / second.sample_period_s)));
   if (first.size() < length || second.size() < length) return overlap;
   const std::vector<std::uint64_t> a = row_hashes(first), b = row_hashes(second);
 

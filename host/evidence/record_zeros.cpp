@@ -21,7 +21,7 @@ using Amplitude = std::complex<double>;
 constexpr double kStrong = 0.1, kFurther = 0.03;
 /// Sizes agree within this factor, and the two halves of a record within this part of the size: nothing but what is
 /// fixed to the travel does, however little of the whole it is.
-constexpr double kAlike = 1.5, kSteady = 0.5;
+constexpr double kAlikeFriction = 1.5, kSteady = 0.5;
 /// Patterns agree, at the best shift. Without one they differ for sure where the phase is off by 45 degrees; once a
 /// zero is known to be lost, 15 degrees tell.
 constexpr double kAgrees = 0.9, kDiffers = 0.7, kSame = 0.97;
@@ -169,7 +169,7 @@ SharedPattern shared_pattern(const TravelResidual& first, const TravelResidual& 
     const PeriodPeak here = peak_at(signals[0], period), there = peak_at(signals[1], period);
     const Amplitude a = amplitude_of(here), b = amplitude_of(there);
     const double share = std::min(here.share, there.share);
-    const bool alike = std::max(std::abs(a), std::abs(b)) < kAlike * std::min(std::abs(a), std::abs(b));
+    const bool alike = std::max(std::abs(a), std::abs(b)) < kAlikeFriction * std::min(std::abs(a), std::abs(b));
     if (share < (shared.here.period.empty() ? kStrong : kFurther) || !alike) continue;
     if (!is_steady(first, weight, period) || !is_steady(second, weight, period)) continue;
     shared.share = std::max(shared.share, share);

@@ -21,12 +21,12 @@ constexpr double kConstantSpeed = 0.1;
 constexpr double kBelievedSteps = 2.0;
 
 /// Acceleration is taken over so many samples to each side.
-constexpr std::size_t kReach = 3;
+constexpr std::size_t kRowsAround = 3;
 
 std::vector<double> acceleration_of(const std::vector<double>& w, double period_s) {
   std::vector<double> acceleration(w.size());
   for (std::size_t k = 0; k < w.size(); ++k) {
-    const std::size_t from = k - std::min(k, kReach), to = std::min(w.size() - 1, k + kReach);
+    const std::size_t from = k - std::min(k, kRowsAround), to = std::min(w.size() - 1, k + kRowsAround);
     acceleration[k] = (w[to] - w[from]) / (static_cast<double>(to - from) * period_s);
   }
   return acceleration;

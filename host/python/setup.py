@@ -11,14 +11,14 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 PROJECT = Path(__file__).resolve().parents[2]
-LIST = PROJECT / "cmake" / "packages" / "build.txt"
+LISTS = [PROJECT / "cmake" / "packages" / name for name in ("build.txt", "python.txt")]
 
 
 def missing_packages() -> list[str]:
     """Of Debian; elsewhere CMake says what it lacks."""
     if shutil.which("dpkg-query") is None:
         return []
-    wanted = [line.split("#")[0].strip() for line in LIST.read_text().splitlines()]
+    wanted = [line.split("#")[0].strip() for one in LISTS for line in one.read_text().splitlines()]
     known = subprocess.run(["dpkg-query", "-W", "-f", "${db:Status-Status} ${Package}\n", *filter(None, wanted)],
                            capture_output=True, text=True).stdout
     return [name for name in wanted if name and f"installed {name}\n" not in known]
@@ -28,7 +28,7 @@ class BuildModule(build_ext):
     def build_extension(self, extension: Extension) -> None:
         tree = Path(os.environ.get("AXIS_BUILD") or PROJECT / "build")
         if not (tree / "CMakeCache.txt").exists():
-            if not LIST.exists():
+            if not LISTS[0].exists():
                 sys.exit(f"axistool: {PROJECT} is not the project, whose C++ library this package is built of: install "
                          "from its own folder host/python, or name a build tree in the variable AXIS_BUILD")
             if missing := missing_packages():

@@ -33,7 +33,7 @@ constexpr double kAnswerOfWatch = 0.4;  ///< peak of its position, of the follow
                                         ///< answer twice as much as its rigid model says
 constexpr double kWindow = 0.85;        ///< of half the travel that the board turns round in
 constexpr double kLinesPerOctave = 6.0;  ///< wanted
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 class Planner {
  public:
@@ -139,7 +139,7 @@ class Planner {
 
   /// Position and speed of the rigid axis in its loop, from the controller's output.
   Eigen::Vector2cd answer_per_volt(double f_Hz) const {
-    const Complex z = std::polar(1.0, kTwoPi * f_Hz * static_cast<double>(parameters_.sample_period_s));
+    const Complex z = std::polar(1.0, kFullTurn * f_Hz * static_cast<double>(parameters_.sample_period_s));
     const auto& drive = parameters_.drive;
     const Complex speed = static_cast<double>(drive.Bd2) / (z - static_cast<double>(drive.Ad22));
     const Complex position = (static_cast<double>(drive.Ad12) * speed + static_cast<double>(drive.Bd1)) / (z - 1.0);

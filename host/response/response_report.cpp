@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr double kGoodModulus = 0.5;  ///< usual aim: the sensitivity's peak below 6 dB
 constexpr double kPoorModulus = 0.35;
 constexpr double kNyquistReach = 2.5;  ///< what of the open loop is drawn about -1
@@ -26,7 +26,7 @@ double decibels(double value) { return 20.0 * std::log10(std::max(value, std::nu
 std::vector<double> unwrapped(const std::vector<Complex>& values) {
   std::vector<double> phase;
   for (const Complex& value : values) {
-    const double next = std::arg(value) * kDegrees;
+    const double next = std::arg(value) * kDegreesPerRadian;
     phase.push_back(phase.empty() ? next : next + 360.0 * std::round((phase.back() - next) / 360.0));
   }
   const double turns = phase.empty() ? 0.0 : 360.0 * std::ceil(phase[phase.size() / 2] / 360.0);
@@ -59,7 +59,7 @@ ScatterSeries magnitude_of(const Curve& curve) {
 ScatterSeries phase_of(const Curve& curve) {
   ScatterSeries series{curve.name, curve.role, curve.style, curve.f_Hz, unwrapped(curve.values), {}, {}};
   for (std::size_t i = 0; i < curve.half_width.size(); ++i) {
-    const double reach = std::atan2(curve.half_width[i], std::abs(curve.values[i])) * kDegrees;
+    const double reach = std::atan2(curve.half_width[i], std::abs(curve.values[i])) * kDegreesPerRadian;
     series.lower.push_back(series.y[i] - reach);
     series.upper.push_back(series.y[i] + reach);
   }
@@ -170,7 +170,7 @@ std::vector<Complex> sensitivity(const std::vector<Complex>& L) {
 ScatterSeries circle(const std::string& name, SeriesRole role, Complex centre, double radius) {
   ScatterSeries series{name, role, SeriesStyle::points, {}, {}, {}, {}};
   for (int i = 0; i < 360; ++i) {
-    const Complex at = centre + std::polar(radius, i / kDegrees);
+    const Complex at = centre + std::polar(radius, i / kDegreesPerRadian);
     series.x.push_back(at.real());
     series.y.push_back(at.imag());
   }

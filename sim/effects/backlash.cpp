@@ -7,7 +7,9 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.second_mass = second_mass_of(entry); }
+void install_backlash(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  drive.second_mass = second_mass_of(entry);
+}
 
 }  // namespace
 
@@ -59,7 +61,7 @@ const EffectInfo backlash{
         "Worn nut, key, coupling, gear or rack: up to 20 um in a ball screw, 10 to 200 um in racks and worm gears "
         "(textbook)",
     .remedy = "Renew or preload the nut; clamp the coupling; backlash compensation",
-    .install = install,
+    .install = install_backlash,
 };
 
 }  // namespace sim::effects

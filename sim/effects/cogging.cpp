@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_cogging(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Harmonics harmonic(entry);
   drive.finest_period = std::min(drive.finest_period, harmonic.finest_period());
   drive.load_effort.push_back([harmonic](double, double x) { return harmonic(x); });
@@ -59,7 +59,7 @@ const EffectInfo cogging{
         "Magnets pulling at the slots of the motor (orders: slots, poles, their common multiples); balls passing in "
         "the screw (orders that are no whole numbers)",
     .remedy = "Skewed or ironless motor; cogging table over the motor angle, aligned anew after homing",
-    .install = install,
+    .install = install_cogging,
 };
 
 }  // namespace sim::effects

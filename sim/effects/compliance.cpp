@@ -7,7 +7,9 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.second_mass = second_mass_of(entry); }
+void install_compliance(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  drive.second_mass = second_mass_of(entry);
+}
 
 }  // namespace
 
@@ -56,7 +58,7 @@ const EffectInfo compliance{
         "Coupling, screw and nut, thrust bearing, belt; the first axial mode of a screw drive lies at 30 to 300 Hz "
         "(textbook)",
     .remedy = "Stiffer coupling or bearing; notch filter; limit the jerk",
-    .install = install,
+    .install = install_compliance,
 };
 
 }  // namespace sim::effects

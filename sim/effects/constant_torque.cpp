@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_constant_torque(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double torque = entry.at("torque");
   drive.load_effort.push_back([torque](double, double) { return torque; });
 }
@@ -37,7 +37,7 @@ const EffectInfo constant_torque{
         "zero command to tell it from an offset of the electronics",
     .origin = "Gravity on an inclined or vertical axis, a counterweight out of balance, a cable under tension",
     .remedy = "Trim the counterweight; feed the weight forward",
-    .install = install,
+    .install = install_constant_torque,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_coulomb(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.friction[0].coulomb += entry.either("positive", "level");
   drive.friction[1].coulomb += entry.either("negative", "level");
 }
@@ -57,7 +57,7 @@ const EffectInfo coulomb{
         "the level; half their sum belongs to offsets",
     .origin = "Guideways, wipers, preloaded nut and bearings",
     .remedy = "Check preload, wipers and gib adjustment; feed the level forward",
-    .install = install,
+    .install = install_coulomb,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_coulomb_asymmetry(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double asymmetry = entry.at("asymmetry");
   drive.direction_factor[0].level *= 1.0 + asymmetry;
   drive.direction_factor[1].level *= 1.0 - asymmetry;
@@ -39,7 +39,7 @@ const EffectInfo coulomb_asymmetry{
         "a constant torque acts while standing, friction only against motion",
     .origin = "Wiper lips, one-sided preload of a double nut, tilted gibs. 2 to 20 % of the level (textbook)",
     .remedy = "Check wipers and the nut's preload in both directions; feed friction forward by direction",
-    .install = install,
+    .install = install_coulomb_asymmetry,
 };
 
 }  // namespace sim::effects

@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_current_loop_lag(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.current_lag_s = 1.0 / (2.0 * std::numbers::pi * entry.at("bandwidth"));
 }
 
@@ -36,7 +36,7 @@ const EffectInfo current_loop_lag{
     .origin =
         "Gains of the current loop, winding inductance, low bus voltage: time constants of 0.1 to 2 ms (textbook)",
     .remedy = "Tune the current loop; raise the bus voltage",
-    .install = install,
+    .install = install_current_loop_lag,
 };
 
 }  // namespace sim::effects

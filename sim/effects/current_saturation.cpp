@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
+void install_current_saturation(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   const double per_limit = data.kind == DriveKind::rotary ? data.torque_constant_Nm_per_A : 1.0;
   const double limit = per_limit * entry.at("limit");
   drive.effort_limit.push_back([limit](double effort, double) { return std::clamp(effort, -limit, limit); });
@@ -38,7 +38,7 @@ const EffectInfo current_saturation{
     .separate_by = "The same motion at half the amplitude; the same torque at low speed tells it from a voltage limit",
     .origin = "Peak or thermal limit of the amplifier, a limit left in from commissioning",
     .remedy = "Raise the limit if motor and screw bear it; else lower acceleration and jerk of the reference",
-    .install = install,
+    .install = install_current_saturation,
 };
 
 }  // namespace sim::effects

@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_dac_dead_zone(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double width = entry.at("width");
   drive.command.push_back(
       [width](double u_V) { return std::abs(u_V) <= width ? 0.0 : u_V - std::copysign(width, u_V); });
@@ -40,7 +40,7 @@ const EffectInfo dac_dead_zone{
         "Output stage of converter or amplifier, deliberate dead band of the drive: 0.1 to 2 % of full scale "
         "(textbook)",
     .remedy = "Switch the dead band off; replace the output stage; add the width to the command",
-    .install = install,
+    .install = install_dac_dead_zone,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_dac_offset(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double offset = entry.at("offset");
   drive.command.push_back([offset](double u_V) { return u_V + offset; });
 }
@@ -35,7 +35,7 @@ const EffectInfo dac_offset{
     .separate_by = "Voltmeter at the converter with zero command. Motion alone never tells it from a constant torque",
     .origin = "Drift of the converter or of the amplifier's input: 0.1 to 2 % of full scale (textbook)",
     .remedy = "Trim the offset; check earth and shielding of the command line",
-    .install = install,
+    .install = install_dac_offset,
 };
 
 }  // namespace sim::effects

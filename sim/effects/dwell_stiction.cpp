@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_dwell_stiction(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.dwell_gain = entry.at("gain");
   drive.dwell_time_s = entry.at("time_constant");
 }
@@ -44,7 +44,7 @@ const EffectInfo dwell_stiction{
     .remedy =
         "A wobble of a few micrometres during long rests; an oil impulse before the start; hydrostatic or rolling "
         "guides",
-    .install = install,
+    .install = install_dwell_stiction,
 };
 
 }  // namespace sim::effects

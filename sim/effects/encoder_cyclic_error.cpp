@@ -7,7 +7,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_encoder_cyclic_error(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.encoder_error.push_back(Harmonics(entry));
 }
 
@@ -55,7 +55,7 @@ const EffectInfo encoder_cyclic_error{
         "Eccentric disc or coupling (once a turn), interpolation of the signals (once a grating period), lead error of "
         "the screw: 1 to 50 um (textbook)",
     .remedy = "Centre the disc; correct offset, gain and phase of the signals; error table over the travel",
-    .install = install,
+    .install = install_encoder_cyclic_error,
 };
 
 }  // namespace sim::effects

@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
+void install_external_torque(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   const double torque = entry.at("torque"), start = entry.at("start"), end = start + entry.at("duration");
   // A sample counts by the part of it that the torque acts in: a fit can then move the edges by less than a sample.
   const double period_s = data.sample_period_s;
@@ -57,7 +57,7 @@ const EffectInfo external_torque{
         "the time",
     .origin = "Cutting force, a collision, a chip, somebody leaning on the table",
     .remedy = "Leave that stretch out of the fit; never let it into a friction model",
-    .install = install,
+    .install = install_external_torque,
 };
 
 }  // namespace sim::effects

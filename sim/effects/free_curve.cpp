@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_free_curve(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Curve curve(entry);
   if (entry.over == "speed") {
     drive.sliding_friction.push_back([curve](int side, double speed) {
@@ -70,7 +70,7 @@ const EffectInfo free_curve{
         "effort (tach_gain, tach_offset, tach_lag, tach_ripple, encoder_cyclic_error)",
     .origin = "Whatever the catalogue does not hold, or holds in another shape",
     .remedy = "The curve itself serves a feed-forward, over speed and position",
-    .install = install,
+    .install = install_free_curve,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,9 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.friction_memory_s = entry.at("time"); }
+void install_friction_lag(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  drive.friction_memory_s = entry.at("time");
+}
 
 }  // namespace
 
@@ -35,7 +37,7 @@ const EffectInfo friction_lag{
         "friction that falls with speed there is nothing to see",
     .origin = "The lubricant film needs time to build up and to drain: 1 to 50 ms (textbook)",
     .remedy = "Thinner oil; avoid quick changes of speed at creep",
-    .install = install,
+    .install = install_friction_lag,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.inertia = entry.at("J"); }
+void install_inertia(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.inertia = entry.at("J"); }
 
 }  // namespace
 
@@ -35,7 +35,7 @@ const EffectInfo inertia{
         "Rotor, coupling, screw, table, workpiece. A payload changes it by 1 to 30 % (textbook). A wrong torque "
         "constant changes it together with every friction value, by the same factor",
     .remedy = "Enter the payload, or identify again after a change of workpiece or fixture",
-    .install = install,
+    .install = install_inertia,
 };
 
 }  // namespace sim::effects

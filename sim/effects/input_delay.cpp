@@ -6,7 +6,9 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.delay_s += entry.at("delay"); }
+void install_input_delay(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  drive.delay_s += entry.at("delay");
+}
 
 }  // namespace
 
@@ -36,7 +38,7 @@ const EffectInfo input_delay{
         "Field bus, converter cycle, time stamps of another clock: 0.1 to 2 ms (textbook); 0.9 ms was measured on a "
         "public linear axis",
     .remedy = "Shorter cycle; synchronise bus and converter; align the clocks of the log",
-    .install = install,
+    .install = install_input_delay,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_load_dependent_friction(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.transmitted_share += entry.at("coefficient");
 }
 
@@ -36,7 +36,7 @@ const EffectInfo load_dependent_friction{
         "Efficiency of screw, gear or belt: 5 to 15 % of the torque in ball screws, more in strain-wave gears "
         "(textbook)",
     .remedy = "Check screw alignment, nut and gear lubrication",
-    .install = install,
+    .install = install_load_dependent_friction,
 };
 
 }  // namespace sim::effects

@@ -10,7 +10,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
+void install_nonlinear_viscous(const EffectEntry& entry, const DataSheet& data, Drive& drive) {
   // The reference speed only gives the coefficient a readable unit.
   const double reference = data.kind == DriveKind::rotary ? 10.0 : 0.1;
   const double coefficient = entry.at("coefficient");
@@ -79,7 +79,7 @@ const EffectInfo nonlinear_viscous{
         "Churning grease, turbulent oil, fan losses (p above 1); shear-thinning grease, which flattens (on a public "
         "linear axis p of 1/3 to 1/2 was measured). 5 to 30 % at top speed (textbook)",
     .remedy = "Less grease or a lighter grade; take the curve into the feed-forward",
-    .install = install,
+    .install = install_nonlinear_viscous,
 };
 
 }  // namespace sim::effects

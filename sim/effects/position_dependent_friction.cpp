@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_position_dependent_friction(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Harmonics harmonic(entry);
   drive.finest_period = std::min(drive.finest_period, harmonic.finest_period());
   drive.level_factor.push_back([harmonic](double, double x) { return std::max(0.0, 1.0 + harmonic(x)); });
@@ -58,7 +58,7 @@ const EffectInfo position_dependent_friction{
         "Guideway wear in the middle of the stroke, gib or rail misalignment, bent screw. 10 to 30 % of the level "
         "(textbook)",
     .remedy = "Check straightness, gib and lubrication where friction is high",
-    .install = install,
+    .install = install_position_dependent_friction,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_presliding(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.bristles = Bristles{entry.at("sigma0"), entry.at("sigma1")};
 }
 
@@ -48,7 +48,7 @@ const EffectInfo presliding{
         "Rolling guides, preloaded balls, seals that roll before they slip. Breakaway after 5 to 100 um on rolling "
         "guides (textbook)",
     .remedy = "Reversal compensation that knows the breakaway distance; less preload",
-    .install = install,
+    .install = install_presliding,
 };
 
 }  // namespace sim::effects

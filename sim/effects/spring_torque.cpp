@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_spring_torque(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double stiffness = entry.at("stiffness"), centre = entry.at("centre");
   drive.load_effort.push_back([=](double, double x) { return -stiffness * (x - centre); });
 }
@@ -42,7 +42,7 @@ const EffectInfo spring_torque{
         "Slow strokes over the full travel, both ways, with the cable chain or bellows disconnected and connected",
     .origin = "Cable chain, bellows, hoses: 5 to 50 N at the table (textbook)",
     .remedy = "Relieve the cable chain; feed the slope forward",
-    .install = install,
+    .install = install_spring_torque,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_stribeck(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const auto set = [&entry](FrictionSide& side, const char* level, const char* omega1, const char* omega2) {
     side.breakaway += entry.either(level, "static");
     side.omega1 = entry.either(omega1, "omega1");
@@ -123,7 +123,7 @@ const EffectInfo stribeck{
     .remedy =
         "Way oil with friction modifier, shorter lubrication intervals; friction feed-forward at reversals; rolling or "
         "hydrostatic guides",
-    .install = install,
+    .install = install_stribeck,
 };
 
 }  // namespace sim::effects

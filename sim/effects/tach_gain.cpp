@@ -6,7 +6,9 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.tach_gain *= entry.at("gain"); }
+void install_tach_gain(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  drive.tach_gain *= entry.at("gain");
+}
 
 }  // namespace
 
@@ -33,7 +35,7 @@ const EffectInfo tach_gain{
         "cancels",
     .origin = "Ageing magnets, a potentiometer out of trim, the wrong scale: 0.5 to 2 % (textbook)",
     .remedy = "Calibrate against the encoder",
-    .install = install,
+    .install = install_tach_gain,
 };
 
 }  // namespace sim::effects

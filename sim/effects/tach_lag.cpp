@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_tach_lag(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.tach_lag_s = 1.0 / (2.0 * std::numbers::pi * entry.at("bandwidth"));
 }
 
@@ -37,7 +37,7 @@ const EffectInfo tach_lag{
         "the encoder alone, a lag of the drive delays both",
     .origin = "Ripple filter behind the tachometer, slow A/D conversion",
     .remedy = "A faster filter, or model it in the observer",
-    .install = install,
+    .install = install_tach_lag,
 };
 
 }  // namespace sim::effects

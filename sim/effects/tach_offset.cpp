@@ -6,7 +6,9 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) { drive.tach_offset += entry.at("offset"); }
+void install_tach_offset(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+  drive.tach_offset += entry.at("offset");
+}
 
 }  // namespace
 
@@ -31,7 +33,7 @@ const EffectInfo tach_offset{
     .separate_by = "Read the tachometer at standstill, before and after a run",
     .origin = "Offset of the A/D converter or of the amplifier in front of it",
     .remedy = "Trim, or subtract the reading at standstill",
-    .install = install,
+    .install = install_tach_offset,
 };
 
 }  // namespace sim::effects

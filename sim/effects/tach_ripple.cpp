@@ -7,7 +7,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_tach_ripple(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   drive.tach_ripple.push_back(Harmonics(entry));
 }
 
@@ -52,7 +52,7 @@ const EffectInfo tach_ripple{
         "shows in both",
     .origin = "Commutator bars, eccentric or skewed mounting of the tachometer: 1 to 3 % (textbook)",
     .remedy = "Align the tachometer; filter at the ripple's order; take the speed from the encoder",
-    .install = install,
+    .install = install_tach_ripple,
 };
 
 }  // namespace sim::effects

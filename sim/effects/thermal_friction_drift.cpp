@@ -7,7 +7,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_thermal_friction_drift(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double tau = entry.at("time_constant"), b = entry.at("viscous_change"), c = entry.at("coulomb_change");
   const double cold_s = entry.has("cold_start") ? entry.at("cold_start") : 0.0;
   drive.level_factor.push_back([=](double t_s, double) { return 1.0 + c * (1.0 - decay((t_s - cold_s) / tau)); });
@@ -67,7 +67,7 @@ const EffectInfo thermal_friction_drift{
         "Lubricant warming up in nut, bearings and guideways: viscous friction falls by 30 to 60 % in 10 to 40 min "
         "(textbook)",
     .remedy = "Warm-up cycle before precision work; less preload; a temperature-dependent feed-forward",
-    .install = install,
+    .install = install_thermal_friction_drift,
 };
 
 }  // namespace sim::effects

@@ -9,7 +9,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_torque_ripple(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const Harmonics harmonic(entry);
   drive.finest_period = std::min(drive.finest_period, harmonic.finest_period());
   drive.effort_factor.push_back([harmonic](double x) { return 1.0 + harmonic(x); });
@@ -58,7 +58,7 @@ const EffectInfo torque_ripple{
         "Commutation, back-EMF that is no sine (sixth order of the pole pair), current sensors out of balance (first "
         "and second order)",
     .remedy = "Calibrate the current sensors' offsets and gains; ripple table over the motor angle",
-    .install = install,
+    .install = install_torque_ripple,
 };
 
 }  // namespace sim::effects

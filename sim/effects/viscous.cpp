@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_viscous(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   for (FrictionSide& side : drive.friction) side.viscous += entry.at("B");
 }
 
@@ -37,7 +37,7 @@ const EffectInfo viscous{
         "Lubricant in guideways, nut and bearings; eddy currents and iron losses in the motor. Falls by 30 to 60 % as "
         "the drive warms up (textbook)",
     .remedy = "Check grade and amount of lubricant; identify at working temperature",
-    .install = install,
+    .install = install_viscous,
 };
 
 }  // namespace sim::effects

@@ -6,7 +6,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_viscous_asymmetry(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double asymmetry = entry.at("asymmetry");
   drive.direction_factor[0].viscous *= 1.0 + asymmetry;
   drive.direction_factor[1].viscous *= 1.0 - asymmetry;
@@ -37,7 +37,7 @@ const EffectInfo viscous_asymmetry{
         "Oil pumped one way by screw or seals; amplifier or sensor gain that differs by sign. On a public linear axis "
         "18 % was measured, which a fit without it took for an offset",
     .remedy = "Check seals, screw cover and amplifier balance; compensate by direction",
-    .install = install,
+    .install = install_viscous_asymmetry,
 };
 
 }  // namespace sim::effects

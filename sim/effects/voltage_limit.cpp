@@ -8,7 +8,7 @@ namespace sim::effects {
 
 namespace {
 
-void install(const EffectEntry& entry, const DataSheet&, Drive& drive) {
+void install_voltage_limit(const EffectEntry& entry, const DataSheet&, Drive& drive) {
   const double stall = entry.at("stall"), no_load = entry.at("no_load_speed");
   drive.effort_limit.push_back([=](double effort, double w) {
     const double forward = std::max(0.0, stall * (1.0 - w / no_load));
@@ -48,7 +48,7 @@ const EffectInfo voltage_limit{
     .separate_by = "The same torque at low speed, and braking from top speed; log the bus voltage",
     .origin = "Supply voltage against back-EMF; sagging bus while several axes accelerate",
     .remedy = "Higher bus voltage or another winding; lower rapid traverse or its acceleration",
-    .install = install,
+    .install = install_voltage_limit,
 };
 
 }  // namespace sim::effects
