@@ -139,7 +139,7 @@ std::string Report::html(std::size_t trace_budget) const {
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{} · axistool</title>\n"
       "<link rel=\"icon\" href=\"data:,\">\n<style>\n",
       content_policy, escape_html(title_));
   page += assets::dygraphs_style();
