@@ -62,7 +62,7 @@ void add_commission(CLI::App& app);
 /// All of them, by their names.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
-/// What is said to a name that is none of theirs: with the nearest one.
+/// Error message for an unknown command, with the closest match.
 std::string no_command(const CLI::App& app, const std::string& name);
 
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).

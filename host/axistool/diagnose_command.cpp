@@ -31,8 +31,7 @@ void print(const host::Diagnosis& diagnosis) {
     fmt::print("No --validate: one of {} blocks of {:.2g} s of motion was kept back to judge.\n",
                diagnosis.blocks.every, diagnosis.blocks.block_s);
   if (!diagnosis.not_searched.empty())
-    fmt::print("Not searched to the end, their fits used up what a fit may simulate: {}\n",
-               fmt::join(diagnosis.not_searched, ", "));
+    fmt::print("Search incomplete (simulation budget exhausted) for: {}\n", fmt::join(diagnosis.not_searched, ", "));
   fmt::print("Error over floor (1 is perfect)      train  validation\n");
   fmt::print("  model as given                {:10.3f} {:10.3f}\n", diagnosis.given_train, diagnosis.given_validate);
   fmt::print("  base parameters re-fitted     {:10.3f} {:10.3f}\n", diagnosis.before_train, diagnosis.before_validate);
@@ -90,7 +89,7 @@ void add_diagnose(CLI::App& app) {
   arguments->add_to(*command);
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   add_input(*command, "--believed", arguments->beliefs,
-            "what was believed before a planned run that is among --train: JSON of plan or diagnose");
+            "prior odds: the JSON that plan or diagnose wrote before a planned run that is among --train");
   command->footer(
       "Example:\n  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
       "After a planned run (`axistool plan`, `excite x run.toml -o run.csv`), whose odds then decide:\n"

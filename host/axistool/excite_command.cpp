@@ -48,10 +48,11 @@ firmware::ParameterValues scaled_values(const ExciteArguments& arguments, host::
   if (!values.axis(axis).get<"drive.fitted">() && !arguments.as_set && host::has_initial_scales(values, axis))
     throw host::Failure(
         host::ExitCode::refused,
-        fmt::format("axis {} has its initial parameters: nobody knows what a count or a volt is. Give the data sheet "
-                    "with --drive DRIVE.toml, or set {}.drive.encoder_resolution and the like, or say --as-set if the "
-                    "initial values are right",
-                    arguments.axis, arguments.axis));
+        fmt::format(
+            "axis {} has its initial parameters, so counts and volts have no known scale. Give the data sheet "
+            "with --drive DRIVE.toml, or set {}.drive.encoder_resolution and the other scales, or give --as-set "
+            "if the initial values are right",
+            arguments.axis, arguments.axis));
   return values;
 }
 

@@ -108,9 +108,9 @@ void add_import(CLI::App& app) {
                    "make even samples of this period (s); jitter, gaps and method are stated in the record")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--unwrap", options->unwrap,
-                   "COLUMN=RANGE: this column begins again after so much (a counter that runs over, an angle within a "
-                   "turn); the steps back are taken out")
+      ->add_option(
+          "--unwrap", options->unwrap,
+          "COLUMN=RANGE: the column wraps at RANGE (a counter that overflows, an angle within a turn); unwrap it")
       ->expected(1);
   command->add_option("--drive", options->drive, "name of the drive, for the record's header");
   CLI::Option* list = command->add_flag("--list", options->list, "show what the log holds, and write nothing");

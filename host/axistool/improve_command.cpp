@@ -1,4 +1,4 @@
-// axistool improve: diagnose and add until nothing earns its place; axistool add: one effect at a word.
+// axistool improve: diagnose and add until no further effect is significant; axistool add: one effect at a word.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -77,7 +77,7 @@ void run_add(const InsightArguments& arguments, const std::string& kind, const s
 
 void add_improve(CLI::App& app) {
   auto arguments = std::make_shared<InsightArguments>();
-  CLI::App* command = app.add_subcommand("improve", "diagnose and add effects until nothing earns its place");
+  CLI::App* command = app.add_subcommand("improve", "diagnose and add effects until no further effect is significant");
   arguments->add_to(*command);
   add_output(*command, "-o,--output", arguments->output, "the improved model")->required();
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");

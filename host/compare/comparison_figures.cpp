@@ -46,7 +46,8 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
     predictions.push_back(predict_all_rows(one.model, one.set.records[record_index].prepared));
   TimePlot plot;
   plot.title = "Measured and predicted: " + file_name(record);
-  plot.caption = "Predictions restart at every window: what grows from there to the next one is what a model lacks.";
+  plot.caption =
+      "The prediction restarts from the measurement at every window; error that grows within a window is model error.";
   plot.t_s = record.t_s;
   const auto add = [&](const char* quantity, const char* unit, const std::vector<double>& measured,
                        std::vector<double> Prediction::*channel) {

@@ -174,8 +174,8 @@ void add_where_it_fails(std::span<const ComparedModel> models, Report& report) {
   }
   const std::vector<ErrorRegion>& where = models.front().comparison.where;
   report.section("Where it fails",
-                 "Each chart shares out the same squared error, in units of the floor. Where a region's part of the "
-                 "error exceeds its part of the samples, something is missing there.");
+                 "Each chart splits the total squared error by region, in units of the noise floor. Where a region's "
+                 "share of the error exceeds its share of the samples, the model lacks something there.");
   for (const auto& [partition, title] :
        {std::pair("regime", "By what the axis does"), std::pair("direction", "By direction"),
         std::pair("speed", "By speed"), std::pair("position", "By position along the travel"),

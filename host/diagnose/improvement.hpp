@@ -1,4 +1,4 @@
-// Diagnose and add, again and again, until nothing earns its place on validation data: the ladder of errors.
+// Diagnose and add, again and again, until no effect is significant on validation data: the errors, step by step.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
                     const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt,
                     int most_rungs = kMostRungs);
 
-/// The model with one effect added at its best fit, whether or not it earns its place; every parameter carries its 95 %
+/// The model with one effect added at its best fit, whether or not it is significant; every parameter carries its 95 %
 /// interval and `from`. Throws Failure(usage) where the effect cannot be added to this model or seen in these records.
 struct Addition {
   JudgedCandidate judged;

@@ -24,7 +24,7 @@ enum class Knowledge {
 
 struct ScenarioAxis {
   sim::DriveDescription drive;
-  std::string program;  ///< moves in place of the drive's effects, of which then nothing is known; empty: none
+  std::string program;  ///< external plant program; if set, the simulated effects are ignored
   Knowledge knowledge = Knowledge::truth;
   sim::DriveDescription believed;  ///< for Knowledge::model
   bool zero_phase = true;

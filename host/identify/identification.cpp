@@ -85,10 +85,10 @@ void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& esti
       const Estimate level = common_level(*estimate.positive, *estimate.negative);
       entry.parameters = {{"level", level.value}};
       entry.ci95 = {{"level", level.ci95}};
-      warnings.push_back(
-          fmt::format("the model has half the difference of {} and {} as the friction of both "
-                      "directions, {} = {:.4g}; their sum stays for constant_torque or dac_offset",
-                      key("positive"), key("negative"), key("level"), std::max(0.0, level.value)));
+      warnings.push_back(fmt::format(
+          "{} and {} differ too much for friction alone. The model has their mean for both "
+          "directions, {} = {:.4g}; the rest is probably weight (constant_torque) or an offset (dac_offset)",
+          key("positive"), key("negative"), key("level"), std::max(0.0, level.value)));
     }
     for (auto& [id, value] : entry.parameters) {
       const sim::ParameterInfo& parameter = *info.parameter(id);

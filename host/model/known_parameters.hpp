@@ -10,7 +10,8 @@ namespace host {
 
 /// The model with the parameters named in `held` held, and with a belief in those of `believed`, each "KEY=DEVIATION".
 /// A key is that of the model file ("J_kg_m2"), with its effect before it ("cogging.period_mm") where several effects
-/// have it. Throws Failure(usage) for a key that the model does not hold, and for a deviation that is none.
+/// have it. Throws Failure(usage) for a key that the model does not hold, and where the standard deviation is not
+/// positive.
 sim::DriveDescription with_knowledge(sim::DriveDescription model, const std::vector<std::string>& held,
                                      const std::vector<std::string>& believed);
 

@@ -19,7 +19,7 @@ struct Rival {
 /// "cogging", "backlash + input_delay"
 std::string rival_name(const std::vector<std::string>& kinds);
 
-/// Fits every explanation to the records, whether or not it earns its place. All are equally probable. Throws
+/// Fits every explanation to the records, whether or not it is significant. All are equally probable. Throws
 /// Failure(usage) for an effect that is unknown or cannot be added to this model, Failure(bad_input) for records that
 /// cannot be compared. `known`: a model of one of them that is fitted already. What they share is fitted from there,
 /// and from the best of them, as well as from nothing: two that look alike must not part because one fit was stuck.

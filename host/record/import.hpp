@@ -12,7 +12,7 @@
 
 namespace host {
 
-/// A column that begins again after `range`, in its own unit: a counter that runs over, an angle within a turn.
+/// A column that wraps at `range`, in its own unit: a counter that overflows, an angle within a turn.
 struct Unwrapping {
   std::string column;
   double range = 0.0;

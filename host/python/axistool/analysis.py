@@ -222,7 +222,7 @@ def improve(
     absent: Iterable[str] = (),
     progress: Progress | None = None,
 ) -> Improvement:
-    """Adds effects while each earns its place on validation data; the arguments are those of diagnose."""
+    """Adds effects while each is significant on validation data; the arguments are those of diagnose."""
     text, better = _host.improve(model_source(model), record_sources(train), record_sources(validate),
                                  list(hold), _beliefs(prior), list(absent), progress)
     answer = json.loads(text)
