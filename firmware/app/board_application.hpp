@@ -11,6 +11,7 @@
 #include "firmware/app/capture_stream.hpp"
 #include "firmware/app/excitation_service.hpp"
 #include "firmware/app/motion_owner.hpp"
+#include "firmware/app/parameters/parameter_change.hpp"
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
 #include "firmware/app/path_service.hpp"
@@ -70,7 +71,7 @@ class BoardApplication {
 
   /// Takes the staged set over, as a whole or not at all.
   Status commit(RefusedValuePayload& refused) {
-    const std::size_t changed = change_that_needs_standstill();
+    const std::size_t changed = change_that_needs_standstill(active_, staged_);
     if (changed < active_.size() && any_enabled()) {
       refused = {.key = key_at(changed).code, .bits = std::bit_cast<std::uint32_t>(staged_.at(changed))};
       return Status::drive_enabled;
@@ -84,7 +85,9 @@ class BoardApplication {
       return Status::bad_value;
     }
     if (staged_ == active_) return Status::ok;
-    const auto displaced = axes_whose_counts_change_meaning();
+    std::array<bool, kAxes> displaced;
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
+      displaced[axis] = do_counts_change_meaning(active_.axis(axis), staged_.axis(axis));
     active_ = staged_;
     active_crc_ = set_crc(active_);
     if (changed == active_.size() && set_fits_) {
@@ -140,6 +143,7 @@ class BoardApplication {
     refused = axes_.enable(mask);
     if (refused == Axes::kAxes) {
       axes_.board().host_heard();  // before the next period watches for it
+      axes_.board().forget_left_alone();
       return Status::ok;
     }
     return axes_[refused].state() == SupervisorState::ready ? Status::not_standing : refusal(refused);
@@ -211,8 +215,9 @@ class BoardApplication {
       if (axes_[axis].is_or_will_be_on()) return Status::drive_enabled;
       if (!is_fitted(axis)) {
         const float per_count = request.drive_velocity / request.speed;
-        axes_[axis].configure_bare(
-            bare_axis_parameters<Scalar>(active_.axis(axis), rate_Hz(), per_count, request.drive_velocity));
+        const auto bare =
+            bare_axis_parameters<Scalar>(active_.axis(axis), rate_Hz(), per_count, request.drive_velocity);
+        if (axes_[axis].configure_bare(bare) != Refusal::none) return Status::malformed;
       }
     }
     excitation_.start();
@@ -317,23 +322,30 @@ class BoardApplication {
     return trigger_.read(first, payload);
   }
 
+  /// Axes that stood were disabled after host.standing_timeout, and not enabled since.
+  bool was_left_alone() const { return axes_.board().was_left_alone(); }
+
   /// The state of an axis at one instant.
-  AxisStatus axis_status(std::size_t axis) {
-    const typename Board::ControlShutOut guard;
-    const auto& seen = axes_[axis].telemetry();
+  AxisStatus axis_status(std::size_t axis) const {
     AxisStatus status;
-    status.counts_low = static_cast<std::uint32_t>(seen.encoder_counts);
-    status.counts_high = static_cast<std::int32_t>(seen.encoder_counts >> 32);
-    status.velocity = velocity_of_drive(axis, seen.estimate.velocity);
-    status.state = static_cast<std::uint8_t>(axes_[axis].state());
-    status.fault = static_cast<std::uint8_t>(axes_[axis].fault());
-    status.second_fault = static_cast<std::uint8_t>(axes_[axis].second_fault());
-    const LimitingReasons limiting = axes_[axis].limiting();
-    status.flags = static_cast<std::uint8_t>(
-        (is_fitted(axis) ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
-        (limiting.velocity_limited ? kAxisVelocityLimited : 0) |
-        (axes_[axis].is_at_rest() && !axes_[axis].is_homing() ? kAxisAtRest : 0) |
-        (axes_[axis].is_homed() ? kAxisHomed : 0) | (axes_[axis].is_homing() ? kAxisHoming : 0));
+    Scalar velocity;
+    {
+      const typename Board::ControlShutOut guard;
+      const auto& seen = axes_[axis].telemetry();
+      velocity = seen.estimate.velocity;
+      status.counts_low = static_cast<std::uint32_t>(seen.encoder_counts);
+      status.counts_high = static_cast<std::int32_t>(seen.encoder_counts >> 32);
+      status.state = static_cast<std::uint8_t>(axes_[axis].state());
+      status.fault = static_cast<std::uint8_t>(axes_[axis].fault());
+      status.second_fault = static_cast<std::uint8_t>(axes_[axis].second_fault());
+      const LimitingReasons limiting = axes_[axis].limiting();
+      status.flags = static_cast<std::uint8_t>(
+          (is_fitted(axis) ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
+          (limiting.velocity_limited ? kAxisVelocityLimited : 0) |
+          (axes_[axis].is_at_rest() && !axes_[axis].is_homing() ? kAxisAtRest : 0) |
+          (axes_[axis].is_homed() ? kAxisHomed : 0) | (axes_[axis].is_homing() ? kAxisHoming : 0));
+    }
+    status.velocity = velocity_of_drive(axis, velocity);  // takes its time, and the control interrupt runs again
     return status;
   }
 
@@ -351,6 +363,7 @@ class BoardApplication {
     payload.position_error = word_of(sample.position_error);
     payload.velocity_estimate = word_of(sample.estimate.velocity);
     payload.disturbance = word_of(sample.estimate.disturbance);
+    payload.index_way = static_cast<std::uint32_t>(axes_[axis].index_way());
     return true;
   }
 
@@ -413,28 +426,6 @@ class BoardApplication {
     if (!store_is_usable()) return;
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
-  }
-
-  std::array<bool, kAxes> axes_whose_counts_change_meaning() const {
-    std::array<bool, kAxes> changed{};
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      const AxisValues was = active_.axis(axis), is = staged_.axis(axis);
-      changed[axis] = was.get<"drive.encoder_resolution">() != is.get<"drive.encoder_resolution">() ||
-                      was.get<"homing.mode">() != is.get<"homing.mode">() ||
-                      was.get<"homing.velocity">() != is.get<"homing.velocity">() ||
-                      was.get<"homing.position">() != is.get<"homing.position">();
-    }
-    return changed;
-  }
-
-  /// The number of values when there is none.
-  std::size_t change_that_needs_standstill() const {
-    for (std::size_t place = 0; place < active_.size(); ++place) {
-      const bool changed =
-          std::bit_cast<std::uint32_t>(active_.at(place)) != std::bit_cast<std::uint32_t>(staged_.at(place));
-      if (changed && rule_at(place).change == ParameterChange::while_disabled) return place;
-    }
-    return active_.size();
   }
 
   Status refusal(std::size_t axis) const {

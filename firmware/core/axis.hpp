@@ -100,6 +100,26 @@ class Axis {
   }
   constexpr bool is_open_loop() const { return is_open_loop_; }
 
+  /// A sensor that fails no longer opens the loop: whoever steps the axis sees telemetry().fault and decides.
+  constexpr void leave_sensors_to_supervisor() { decides_on_sensors_ = false; }
+
+  /// One control period without estimate and reference: `volts` to the converter, and of the sensors what can be read;
+  /// `velocity` stands for the estimate's.
+  [[gnu::noinline]] constexpr void step_with_command(const hal::EncoderReading& encoder, Scalar volts,
+                                                     Scalar velocity) {
+    telemetry_.encoder_travel = encoder.valid ? counter_.advance(encoder.counts) : 0;
+    telemetry_.encoder_counts = counter_.counts();
+    telemetry_.estimate = estimator_.at_rest(counter_.counts());
+    telemetry_.estimate.velocity = velocity;
+    if (parameters_.tachometer_fitted) {
+      const hal::TachometerReading tachometer = hal_.tachometer().read();
+      if (tachometer.valid) telemetry_.tachometer_velocity = velocity_of(tachometer);
+    }
+    hold_reference_here();
+    excitation_V_ = volts;
+    put_out_excitation();
+  }
+
   constexpr void clear_fault() {
     telemetry_.fault = AxisFault::none;
     is_synchronised_ = false;
@@ -240,15 +260,14 @@ class Axis {
 
   constexpr bool measure(const hal::EncoderReading& encoder) {
     if (!is_synchronised_ && !is_configured_) return false;
-    if (!encoder.valid) return latch(AxisFault::encoder_invalid);
+    if (!encoder.valid) return lose(AxisFault::encoder_invalid);
     if (!is_synchronised_) synchronise(encoder);
     telemetry_.encoder_travel = counter_.advance(encoder.counts);
     telemetry_.encoder_counts = counter_.counts();
     if (parameters_.tachometer_fitted) {
       const hal::TachometerReading tachometer = hal_.tachometer().read();
-      if (!tachometer.valid) return latch(AxisFault::tachometer_invalid);
-      telemetry_.tachometer_velocity =
-          Traits::times(tachometer.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
+      if (!tachometer.valid) return lose(AxisFault::tachometer_invalid);
+      telemetry_.tachometer_velocity = velocity_of(tachometer);
       estimator_.update(telemetry_.estimate, model_input_V_, telemetry_.encoder_counts, telemetry_.tachometer_velocity);
     } else {
       estimator_.update(telemetry_.estimate, model_input_V_, telemetry_.encoder_counts);
@@ -329,6 +348,17 @@ class Axis {
     if (!hal_.dac().write(word.code)) latch(AxisFault::dac_write_failed);
   }
 
+  constexpr Scalar velocity_of(const hal::TachometerReading& reading) const {
+    return Traits::times(reading.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
+  }
+
+  /// Latches the first fault, and opens the loop unless that is somebody else's to decide. Always false.
+  [[gnu::noinline]] constexpr bool lose(AxisFault fault) {
+    if (decides_on_sensors_ || !telemetry_.enabled) return latch(fault);
+    if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
+    return false;
+  }
+
   /// Latches the first fault and opens the loop. Always false, for the caller to return.
   constexpr bool latch(AxisFault fault) {
     if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
@@ -353,6 +383,7 @@ class Axis {
   AxisTelemetry<Scalar> telemetry_{};
   bool is_configured_ = false;
   bool is_synchronised_ = false;
+  bool decides_on_sensors_ = true;
   bool is_open_loop_ = false;
   bool is_closed_loop_ = false;  ///< enabled, and not in open loop
   Scalar excitation_V_{};

@@ -40,6 +40,8 @@ enum class AxisFault : std::uint8_t {
   amplifier_not_ready = 30,
   index_mismatch = 31,
   moved_while_starting = 32,
+  homing_index_near_switch = 33,
+  drive_not_off = 34,
 };
 
 }  // namespace firmware

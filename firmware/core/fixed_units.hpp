@@ -101,7 +101,8 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
               .creep_velocity = fixed(p.homing.creep_velocity / unit.travel_velocity),
               .travel = p.homing.travel,
               .index_travel = p.homing.index_travel,
-              .position = p.homing.position};
+              .position = p.homing.position,
+              .turn = p.homing.turn};
   q.sequence = p.sequence;
   q.monitors = fixed_limits(p.monitors, unit);
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);

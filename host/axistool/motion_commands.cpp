@@ -83,6 +83,21 @@ void jog(const MotionArguments& arguments) {
                interrupted() ? " (interrupted)" : "");
 }
 
+/// The limits of travel as a board has them at first are no limits: nobody has said how far this axis goes.
+void ask_without_travel(const MotionArguments& arguments, const firmware::AxisValues& values, double way) {
+  const auto is_initial = [&](std::string_view name, float value) {
+    return value == std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name)->initial;
+  };
+  if (!is_initial("monitor.travel_min", values.get<"monitor.travel_min">()) ||
+      !is_initial("monitor.travel_max", values.get<"monitor.travel_max">()) ||
+      std::abs(way) <= static_cast<double>(values.get<"homing.travel">()))
+    return;
+  require_consent(arguments,
+                  fmt::format("Move {} by {:g}, which is more than homing.travel = {:g}, although nobody has set "
+                              "monitor.travel_min and monitor.travel_max?",
+                              arguments.axis, way, values.get<"homing.travel">()));
+}
+
 void move(const MotionArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   const std::uint8_t axis = axis_index(arguments.axis, board.axis_count());
@@ -93,6 +108,7 @@ void move(const MotionArguments& arguments) {
   const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
   if (std::abs(target / resolution) > 9e15)
     throw host::Failure(host::ExitCode::usage, fmt::format("{:g} is too far for the axis to count", target));
+  if (!arguments.dry_run) ask_without_travel(arguments, values.axis(axis), target - before);
   catch_interrupts();
   if (!arguments.dry_run && arguments.take_over) board.take_over();
   const double way = arguments.relative ? arguments.value : target;

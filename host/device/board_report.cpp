@@ -120,6 +120,7 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
           {"reset_cause", reset_text(status.reset_cause)},
           {"resets", status.resets},
           {"emergency_stop", (status.flags & firmware::kBoardStopPressed) != 0},
+          {"left_alone", (status.flags & firmware::kBoardLeftAlone) != 0},
           {"axes", axes}};
 }
 
@@ -138,6 +139,8 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
                         timing.cycles_average, timing.cycles_worst, 1e-6 * timing.processor_Hz);
   text += fmt::format("last reset   {}; {} since power on\n", reset_text(status.reset_cause), status.resets);
   if ((status.flags & firmware::kBoardStopPressed) != 0) text += "emergency stop is pressed\n";
+  if ((status.flags & firmware::kBoardLeftAlone) != 0)
+    text += "the axes were disabled after host.standing_timeout without a program\n";
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
     const auto place = place_of(status, axis, values);

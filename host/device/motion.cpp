@@ -67,6 +67,24 @@ void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bo
   if (interrupted) stop_and_wait(board, axis);
 }
 
+/// By how much to move the switch, which the fault's own text cannot say: half a turn before the pulse is best.
+[[noreturn]] void refuse_switch(BoardClient& board, std::uint8_t axis) {
+  const firmware::ParameterValues all = board.read_values();
+  const firmware::AxisValues values = all.axis(axis);
+  const auto row = board.fault_row(axis, 0);
+  const double count = static_cast<double>(values.get<"drive.encoder_resolution">());
+  const double spacing = count * values.get<"encoder.index_spacing">();
+  const double turn = spacing > 0.0 ? spacing : static_cast<double>(values.get<"homing.index_travel">());
+  const double way = count * (row ? row->index_way : 0);
+  const double ahead = values.get<"homing.velocity">() < 0 ? -1.0 : 1.0;
+  throw Failure(
+      ExitCode::device_fault,
+      fmt::format("axis {}: homing_index_near_switch: the index pulse comes {:.4g} behind the place where the "
+                  "home switch acts, of a turn of {:.4g}: another time the switch may choose the next pulse. "
+                  "Remedy: move the switch by {:+.4g} along the axis; then `axistool clear-faults`",
+                  firmware::kAxisNames.at(axis), way, turn, ahead * (way - turn / 2.0)));
+}
+
 }  // namespace
 
 void require_no_fault(const BoardState& status, std::uint8_t axis) {
@@ -134,7 +152,13 @@ void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono
 
 void home_and_wait(BoardClient& board, std::uint8_t axis, const std::function<bool()>& stop) {
   board.home(axis, false);
-  wait_for_rest(board, axis, stop);
+  try {
+    wait_for_rest(board, axis, stop);
+  } catch (const Failure&) {
+    constexpr auto kNear = static_cast<std::uint8_t>(firmware::AxisFault::homing_index_near_switch);
+    if (board.status().axis.at(axis).fault == kNear) refuse_switch(board, axis);
+    throw;
+  }
 }
 
 void move_and_wait(BoardClient& board, std::uint8_t axis, std::int64_t counts, bool relative,

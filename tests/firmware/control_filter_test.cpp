@@ -14,6 +14,8 @@
 
 namespace {
 
+using firmware_test::kLead_mm_per_rad;
+using firmware_test::kPaperX;
 using firmware_test::paper_values;
 using firmware_test::set;
 
@@ -125,6 +127,41 @@ TYPED_TEST(ControlFilter, IsRefusedWhereTheLoopDoesNotStandIt) {
   }
   EXPECT_GT(refused, 50);
   EXPECT_GT(accepted, 50);
+}
+
+/// Bounded algebra in single precision: as right at 20 kHz, where a slow loop's poles crowd at 1. The paper's x axis as
+/// a continuous drive, sampled as fast; its loop placed at 8 Hz, damped by 0.8.
+TEST(ControlFilterAtAFastRate, IsJudgedAsInDoublePrecision) {
+  constexpr double kPeriod_s = 5e-5, kLoop_Hz = 8.0, kDamping = 0.8;
+  const double pole = -std::log(kPaperX.Ad22) / 1e-3, gain = kPaperX.Bd2 / (1.0 - kPaperX.Ad22) * pole;
+  const double a22 = std::exp(-pole * kPeriod_s), a12 = kLead_mm_per_rad * (1.0 - a22) / pole;
+  const double b2 = gain * (1.0 - a22) / pole, b1 = kLead_mm_per_rad * gain / pole * (kPeriod_s - (1.0 - a22) / pole);
+  const double w = 2.0 * std::numbers::pi * kLoop_Hz, radius = std::exp(-kDamping * w * kPeriod_s);
+  const double trace = 2.0 * radius * std::cos(w * std::sqrt(1.0 - kDamping * kDamping) * kPeriod_s);
+  const double k1 = (1.0 - trace + radius * radius) / (b1 * (1.0 - a22) + b2 * a12);
+  const double k2 = (2.0 - trace - (1.0 - a22) - b1 * k1) / b2;
+  int refused = 0, accepted = 0;
+  for (double low_pass_Hz = 4.0; low_pass_Hz < 400.0; low_pass_Hz *= 1.1) {
+    firmware::ParameterValues values = paper_values();
+    set(values, "x.drive.sample_period", kPeriod_s);
+    set(values, "x.low_pass.on", 1);
+    set(values, "x.low_pass.frequency", low_pass_Hz);
+    auto p = firmware::axis_parameters<float>(values.axis(0));
+    p.drive = {static_cast<float>(a12), static_cast<float>(a22), static_cast<float>(b1), static_cast<float>(b2)};
+    p.Kc = {static_cast<float>(k1), static_cast<float>(k2)};
+    const double largest = largest_pole(p);
+    const double share = (1.0 - radius * radius) / 20.0;  // a tenth of the loop's own decay
+    const bool is_sound = firmware::are_filters_sound(p);
+    (is_sound ? accepted : refused) += 1;
+    if (largest > 1.0 - 0.9 * share) {
+      EXPECT_FALSE(is_sound) << low_pass_Hz;
+    }
+    if (largest < 1.0 - 1.1 * share) {
+      EXPECT_TRUE(is_sound) << low_pass_Hz;
+    }
+  }
+  EXPECT_GT(refused, 5);
+  EXPECT_GT(accepted, 5);
 }
 
 TYPED_TEST(ControlFilter, IsRefusedNearHalfTheControlRate) {

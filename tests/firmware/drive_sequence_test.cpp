@@ -144,6 +144,42 @@ TEST_F(Sequence, AFaultThatDropsTheEnableAppliesTheBrakeInTheSamePeriod) {
   EXPECT_FALSE(lines(axis).brake_released);
 }
 
+TEST_F(Sequence, AnAmplifierThatStaysReadyAfterTheDropHasItsPowerCut) {
+  DrivenAxis axis(parameters(true, false));
+  run_until_enabled(axis);
+  ASSERT_TRUE(axis.axis.disable());
+  run(axis, 60);
+  ASSERT_FALSE(lines(axis).on);
+  EXPECT_FALSE(axis.axis.must_cut_power()) << "a contact takes a while";
+  run(axis, 100);
+  EXPECT_EQ(axis.axis.fault(), AxisFault::drive_not_off);
+  EXPECT_TRUE(axis.axis.must_cut_power());
+  ASSERT_TRUE(axis.axis.clear_fault());
+  EXPECT_FALSE(axis.axis.must_cut_power());
+}
+
+TEST_F(Sequence, AnAmplifierThatOpensItsContactInTimeIsBelieved) {
+  DrivenAxis axis(parameters(true, false));
+  run_until_enabled(axis);
+  ASSERT_TRUE(axis.axis.disable());
+  for (int k = 0; k < 300; ++k) {
+    run(axis, 1);
+    lines(axis).ready = lines(axis).on;
+  }
+  EXPECT_EQ(axis.axis.state(), SupervisorState::ready);
+}
+
+/// A welded enable with a converter that is stuck.
+TEST_F(Sequence, AnAxisThatGainsSpeedAfterTheDropHasItsPowerCut) {
+  DrivenAxis axis(parameters(false, false));
+  run_until_enabled(axis);
+  axis.stuck_V = 2.0;
+  lines(axis).faulted = true;
+  run(axis, 60);
+  EXPECT_EQ(axis.axis.fault(), AxisFault::drive_fault);
+  EXPECT_TRUE(axis.axis.must_cut_power());
+}
+
 TEST_F(Sequence, AnAmplifierThatIsReadyNoLongerIsAFault) {
   DrivenAxis axis(parameters(true, true));
   run_until_enabled(axis);

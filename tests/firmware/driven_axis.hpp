@@ -33,7 +33,7 @@ class DrivenAxis {
     for (int k = 0; k < periods; ++k) {
       const PaperAxis& drive = kPaperX;
       const double offset_V = io.drive_enable().on ? amplifier_offset_V : 0.0;
-      const double u_V = io.dac().code * kDacResolution_V + offset_V;
+      const double u_V = io.dac().code * kDacResolution_V + offset_V + stuck_V;
       x_mm_ += drive.Ad12 * w_rad_s_ + drive.Bd1 * u_V;
       w_rad_s_ = drive.Ad22 * w_rad_s_ + drive.Bd2 * u_V;
     }
@@ -42,6 +42,7 @@ class DrivenAxis {
     io.tachometer().reading.code = static_cast<std::int32_t>(std::lround(64.0 * w_rad_s_));
   }
   double at_mm() const { return x_mm_; }
+  double stuck_V = 0.0;             ///< that the drive gets whatever the enable says
   double amplifier_offset_V = 0.0;  ///< or what a stuck converter puts out beside its word; while enabled
 
   firmware::boards::ValueAxis io;

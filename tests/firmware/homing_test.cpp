@@ -73,6 +73,26 @@ TEST(Homing, TakesTheFirstIndexBehindTheSwitch) {
   EXPECT_EQ(rail.found, 560);
 }
 
+/// Pulses are multiples of the spacing; the switch acts at 500. Within an eighth of a turn of a pulse, on either side,
+/// the switch is refused, and the way that moves it is told.
+TEST(Homing, RefusesASwitchThatActsNearAPulse) {
+  struct Case {
+    double spacing;
+    AxisFault fault;
+    double way;
+  };
+  for (const Case& c :
+       {Case{63.0, AxisFault::homing_index_near_switch, 4.0}, Case{71.0, AxisFault::homing_index_near_switch, 68.0},
+        Case{70.0, AxisFault::none, 60.0}, Case{51.0, AxisFault::none, 10.0}}) {
+    Rail rail;
+    rail.index_spacing = c.spacing;
+    auto parameters = Rail::parameters(HomingMode::switch_and_index);
+    parameters.turn = static_cast<std::int64_t>(c.spacing);
+    EXPECT_EQ(rail.run(parameters), c.fault) << c.spacing;
+    EXPECT_NEAR(static_cast<double>(rail.sequence.index_way()), c.way, 1.0) << c.spacing;
+  }
+}
+
 TEST(Homing, ByTheIndexAloneCreepsToTheNext) {
   Rail rail;
   rail.place = 10.0;

@@ -22,13 +22,12 @@ constexpr HomingParameters<float> homing(const AxisValues& v) {
   h.creep_velocity = v.get<"homing.creep_velocity">();
   h.travel = whole_counts(v.get<"homing.travel">(), encoder_resolution);
   h.index_travel = whole_counts(v.get<"homing.index_travel">(), encoder_resolution);
+  h.turn = v.get<"encoder.index_spacing">();
   h.position = nearest_counts(v.get<"homing.position">(), encoder_resolution);
   return h;
 }
 
-constexpr DriveSequenceParameters sequence(const AxisValues& v) {
-  const float sample_period_s = v.get<"drive.sample_period">();
-  const float samples_a_second = 1.0F / sample_period_s;
+constexpr DriveSequenceParameters sequence(const AxisValues& v, float samples_a_second) {
   const auto samples = [=](float time_s) { return ScalarTraits<float>::nearest_product(time_s, samples_a_second); };
   return {.ready_input = v.get<"amplifier.ready_input">(),
           .brake_fitted = v.get<"brake.fitted">(),
@@ -146,7 +145,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.acceleration_limit = v.get<"limits.acceleration">();
   p.jerk_limit = v.get<"limits.jerk">();
   p.homing = homing(v);
-  p.sequence = sequence(v);
+  p.sequence = sequence(v, 1.0F / p.sample_period_s);
   p.monitors = monitor_limits<float>([&](auto id) { return v.with_id<decltype(id)::value>(); }, p.encoder_resolution,
                                      p.sample_period_s);
   return p;

@@ -17,7 +17,8 @@ inline constexpr float kLittle = 1e-4F;
 /// that the box allows; both 0 where the tachometer's scale is not known, and below 0 where there is no tachometer.
 ///
 /// The estimate is the encoder's, smoothed (an alpha-beta filter with 1/2 and 1/10), for a model without effort. The
-/// sensors are held against each other where their scales are known; everything else is the box's to judge.
+/// sensors are held against each other where their scales are known; everything else is the box's to judge. Amplifier
+/// and brake are the axis's own: their parameters count here as they do in a closed loop.
 constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float rate_Hz, float velocity_per_count,
                                                     float velocity) {
   AxisParameters<float> p;
@@ -47,6 +48,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v, float r
   m.travel_max_counts = std::int64_t{1} << 31;
   m.saturation_samples = std::numeric_limits<std::int32_t>::max();
   m.capture_stride = capture_stride(rate_Hz);
+  p.sequence = axis_values::sequence(v, rate_Hz);
   // References do not move; a stop that does not come to rest ends after about a second.
   const auto half_second = static_cast<Increment>(static_cast<std::int32_t>(rate_Hz) / 2);
   p.motion = {.velocity = kOneCount * 1000,

@@ -141,7 +141,8 @@ struct StatusPayload {
 static_assert(sizeof(StatusPayload) == kPayloadSize);
 inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8,
                               kBoardYours = 16,  ///< the asking client owns the axes that are enabled
-    kBoardOthers = 32;                           ///< another one does
+    kBoardOthers = 32,                           ///< another one does
+    kBoardLeftAlone = 64;                        ///< axes that stood were disabled after host.standing_timeout
 
 /// Since start-up, or since the last request that asked to begin anew.
 struct TimingPayload {
@@ -305,6 +306,7 @@ struct FaultRowPayload {
   std::uint32_t position_error = 0;
   std::uint32_t velocity_estimate = 0;
   std::uint32_t disturbance = 0;
+  std::uint32_t index_way = 0;  ///< counts from the home switch to the next index pulse, by the last search for both
 };
 
 }  // namespace firmware

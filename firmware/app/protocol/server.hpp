@@ -293,6 +293,7 @@ class ProtocolServer {
     unsigned flags = app_.has_unsaved_changes() ? kBoardUnsaved : 0;
     if (app_.board().emergency_stop().is_pressed()) flags |= kBoardStopPressed;
     if (app_.capture().is_running()) flags |= kBoardCapturing;
+    if (app_.was_left_alone()) flags |= kBoardLeftAlone;
     if (boot_.simulated) flags |= kBoardSimulated;
     if (app_.any_enabled()) flags |= app_.is_owner(client) ? kBoardYours : kBoardOthers;
     board.flags = static_cast<std::uint8_t>(flags);

@@ -32,7 +32,7 @@ extern "C" void control_interrupt() {
   board.acknowledge_control();
   application.control_period();
   liveness.control_ran();
-  board.control_has_run(liveness.supervisor_ran_lately());
+  board.control_has_run(liveness.supervisor_ran_lately() && !application.axes().must_cut_power());
   remember(application.axes(), survival_record().running);
   control_cycles.end();
 }

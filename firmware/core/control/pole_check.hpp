@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/control/filter_loop.hpp"
 
 namespace firmware {
 
@@ -116,33 +117,21 @@ constexpr PoleProblem loop_problem(const AxisParameters<Scalar>& p) {
   return poles::check(poles::of_loop(p), poles::real(p.monitors.load_share) * (kLoadTime_s / kLongestMode_s));
 }
 
-/// The loop with its filters, let go from where it was held, the estimate being right: within ten times as long as the
-/// loop without them takes to come to a twentieth it must be there, and what is left must go on shrinking. In the
-/// axis's own arithmetic, whose rounding is forgiven.
+/// The characteristic polynomial of the loop with its filters has all its roots within the circle of the loop's own
+/// decay over kSlowerWithFilters (filter_loop.hpp): no mode of it may take as many times longer than the loop alone.
 template <typename Scalar>
 [[gnu::noinline]] constexpr bool settles_with_filters(const AxisParameters<Scalar>& p) {
-  constexpr float kTimes = 60.0f;  // ten times ln 20, of modes that lose half of 1 - z1 z2 a sample
-  constexpr std::int32_t kLongest = 1 << 16;
+  constexpr float kSlowerWithFilters = 10.0f;
   const poles::Quadratic loop = poles::of_loop(p);
-  const float wanted = kTimes / (loop.linear - loop.constant);
-  const std::int32_t quarter =
-      (wanted < static_cast<float>(kLongest) ? static_cast<std::int32_t>(wanted) : kLongest) / 4;
-  ControlFilters<Scalar> filters;
-  filters.configure(p.filters);
-  constexpr Scalar kStart = Scalar(64), kShrinks = Scalar(0.8f), kRounding = Scalar(0.004f);
-  Scalar position = kStart, velocity{}, before{}, peak = kStart;
-  for (int part = 0; part < 4; ++part) {
-    before = peak;
-    peak = Scalar(0);
-    for (std::int32_t k = 0; k <= quarter; ++k) {
-      const Scalar u = filters.next(Scalar(0) - p.Kc[0] * position - p.Kc[1] * velocity);
-      position = position + p.drive.Ad12 * velocity + p.drive.Bd1 * u;
-      velocity = p.drive.Ad22 * velocity + p.drive.Bd2 * u;
-      const Scalar away = ScalarTraits<Scalar>::magnitude(position);
-      if (!(away <= peak)) peak = away;
-    }
-  }
-  return peak < Scalar(kStart * Scalar(0.05f)) && peak < before * kShrinks + kRounding;
+  const float decay = poles::real(Scalar(1) - p.drive.Ad22);
+  const float a12 = poles::real(p.drive.Ad12), b1 = poles::real(p.drive.Bd1), b2 = poles::real(p.drive.Bd2);
+  FilterLoop joined({0.0f, decay, 1.0f}, {poles::real(p.Kc[0]) * (b1 * decay + a12 * b2),
+                                          poles::real(p.Kc[0]) * b1 + poles::real(p.Kc[1]) * b2, 0.0f});
+  for (const BiquadParameters<Scalar>& filter : p.filters)
+    if (filter.on)
+      joined.add(poles::real(filter.a1), poles::real(filter.a2), poles::real(filter.of_band), filter.is_low_pass);
+  // A pair loses half of 1 - z1 z2 a sample.
+  return joined.settles(0.5f * (loop.linear - loop.constant) / kSlowerWithFilters);
 }
 
 /// A filter that is switched on makes sense, and the loop stands it.

@@ -24,6 +24,7 @@ struct HomingParameters {
   std::int64_t travel = 0;        ///< longest way of each search, > 0
   std::int64_t index_travel = 0;  ///< way within which an index pulse comes: a turn and a little more, > 0
   std::int64_t position = 0;      ///< of the place that is found
+  std::int64_t turn = 0;          ///< from one index pulse to the next; 0: not known, at most index_travel
 };
 
 /// What one control period saw.
@@ -45,6 +46,10 @@ struct HomingAction {
   AxisFault fault = AxisFault::none;  ///< failed
 };
 
+/// An index pulse must lie farther than this part of a turn, 2^-n, from the switch: a switch that acts a little earlier
+/// or later must not choose another pulse.
+inline constexpr int kIndexMarginShift = 3;
+
 /// Drives onto the switch at the speed of the search, off it again, and onto it once more at creep; an index is awaited
 /// in the same direction, so that backlash and hysteresis are always on the same side. An axis that begins on its
 /// switch leaves it first. Every way has its longest: the sequence ends, with a place or with a fault.
@@ -65,6 +70,8 @@ class HomingSequence {
   constexpr void abandon() { phase_ = Phase::idle; }
   constexpr bool is_active() const { return phase_ != Phase::idle; }
   constexpr const HomingParameters<Scalar>& parameters() const { return parameters_; }
+  /// Counts from the switch's edge to the index pulse that came next, whatever the sense; of the last search by both.
+  constexpr std::int64_t index_way() const { return index_way_; }
 
   /// Once a control period while active.
   constexpr HomingAction<Scalar> next(const HomingInputs& seen) {
@@ -90,7 +97,7 @@ class HomingSequence {
         if (parameters_.mode == HomingMode::switch_and_index) return enter(Phase::awaiting_index, seen);
         return stop_at(seen.counts);
       case Phase::awaiting_index:
-        return seen.index_seen ? stop_at(seen.index_counts)
+        return seen.index_seen ? take_index(seen.index_counts)
                                : go_on(seen, parameters_.index_travel, AxisFault::homing_index_not_found);
       case Phase::stopping:
         break;
@@ -130,6 +137,16 @@ class HomingSequence {
     return {.step = HomingStep::failed, .fault = otherwise};
   }
 
+  constexpr HomingAction<Scalar> take_index(std::int64_t found) {
+    if (parameters_.mode != HomingMode::switch_and_index) return stop_at(found);
+    index_way_ = found > begin_ ? found - begin_ : begin_ - found;
+    const std::int64_t turn = parameters_.turn > 0 ? parameters_.turn : parameters_.index_travel;
+    const std::int64_t margin = turn >> kIndexMarginShift;
+    if (index_way_ >= margin && index_way_ <= turn - margin) return stop_at(found);
+    phase_ = Phase::idle;
+    return {.step = HomingStep::failed, .fault = AxisFault::homing_index_near_switch};
+  }
+
   constexpr HomingAction<Scalar> stop_before(Phase next) {
     phase_ = Phase::stopping;
     next_ = next;
@@ -146,6 +163,7 @@ class HomingSequence {
   Phase next_ = Phase::idle;
   std::int64_t begin_ = 0;
   std::int64_t found_ = 0;
+  std::int64_t index_way_ = 0;
 };
 
 }  // namespace firmware

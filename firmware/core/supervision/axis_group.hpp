@@ -26,10 +26,11 @@ class AxisGroup {
   constexpr BoardAxis& operator[](std::size_t index) { return axes_[index]; }
   constexpr const BoardAxis& operator[](std::size_t index) const { return axes_[index]; }
   constexpr BoardWatch& board() { return board_; }
+  constexpr const BoardWatch& board() const { return board_; }
 
   /// One control period; each axis follows its own reference.
   constexpr void step(const BoardInputs& inputs) {
-    const AxisFault outer = board_.watch(inputs, [this] { return outputs_on(); });
+    const AxisFault outer = watch_board(inputs);
     const Readings readings = read_encoders();
     if (outer == AxisFault::control_overrun) bridge_gap(readings);
 #pragma GCC unroll 4
@@ -38,7 +39,7 @@ class AxisGroup {
 
   /// One control period; an interpolator leads all axes.
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
-    const AxisFault outer = board_.watch(inputs, [this] { return outputs_on(); });
+    const AxisFault outer = watch_board(inputs);
     const Readings readings = read_encoders();
     if (outer == AxisFault::control_overrun) bridge_gap(readings);
     for (std::size_t i = 0; i < kAxes; ++i)
@@ -54,6 +55,13 @@ class AxisGroup {
     for (std::size_t i = 0; i < kAxes; ++i)
       if (is_named(i)) axes_[i].enable();
     return kAxes;
+  }
+
+  /// As of SupervisedAxis, of any axis.
+  constexpr bool must_cut_power() const {
+    for (const BoardAxis& axis : axes_)
+      if (axis.must_cut_power()) return true;
+    return false;
   }
 
   constexpr bool outputs_on() const {
@@ -72,6 +80,14 @@ class AxisGroup {
   template <std::size_t... index>
   constexpr Readings read_encoders(std::index_sequence<index...>) {
     return {axes_[index].read_encoder()...};
+  }
+
+  constexpr AxisFault watch_board(const BoardInputs& inputs) {
+    return board_.watch(
+        inputs, [this] { return outputs_on(); },
+        [this] {
+          for (BoardAxis& axis : axes_) axis.disable();
+        });
   }
 
   /// The periods that were lost.

@@ -83,6 +83,13 @@ class AxisMonitors {
   /// Positions are counted from another origin now.
   constexpr void forget_travel() { travel_.restart(); }
 
+  /// Magnitude of the speed by the slower sensor: what both show is no sensor's fault.
+  constexpr Scalar slowest(const AxisTelemetry<Scalar>& seen) const {
+    const Scalar encoder = magnitude(Traits::times(seen.encoder_travel, velocity_per_count_));
+    const Scalar tachometer = magnitude(seen.tachometer_velocity);
+    return tachometer_fitted_ && tachometer < encoder ? tachometer : encoder;
+  }
+
   /// While the loop is open there is nothing to follow, and no control signal that a broken state would show in.
   constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
     restart_motion();

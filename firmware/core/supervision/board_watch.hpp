@@ -54,14 +54,19 @@ class BoardWatch {
     silent_samples_ = 0;
   }
   constexpr void host_heard() { silent_samples_ = 0; }
+  /// The axes are enabled anew.
+  constexpr void forget_left_alone() { was_left_alone_ = false; }
   /// While somebody brings the axes to rest because of it in a better way than each for itself, silence is no fault.
   constexpr void excuse_silence(bool excused) { excuses_silence_ = excused; }
-  /// The host is silent for too long, and the outputs are on.
+  /// The host is silent for too long while it commands motion, and the outputs are on.
   constexpr bool is_host_lost() const { return is_host_lost_; }
+  /// Since the last forget_left_alone(), axes that stood were disabled because nobody wanted anything of them.
+  constexpr bool was_left_alone() const { return was_left_alone_; }
 
-  /// The worst fault of this period. Silence matters only while `outputs_on()`, which is asked only where it matters.
-  template <std::invocable OutputsOn>
-  constexpr AxisFault watch(const BoardInputs& inputs, OutputsOn outputs_on) {
+  /// The worst fault of this period. Silence matters only while `outputs_on()`, which is asked only where it matters:
+  /// of axes that move it is a fault, and of those that stand a reason to `disable()` them.
+  template <std::invocable OutputsOn, std::invocable Disable>
+  constexpr AxisFault watch(const BoardInputs& inputs, OutputsOn outputs_on, Disable disable) {
     const bool late = is_primed_ && inputs.now_us - last_us_ > limits_.longest_period_us;
     last_us_ = inputs.now_us;
     is_primed_ = true;
@@ -72,14 +77,18 @@ class BoardWatch {
     if (silent_samples_ < (host_commands_ ? limits_.heartbeat_samples : limits_.standing_samples)) {
       ++silent_samples_;
     } else if (outputs_on()) {
-      is_host_lost_ = true;
-      return excuses_silence_ ? AxisFault::none : AxisFault::host_heartbeat_lost;
+      is_host_lost_ = host_commands_;
+      if (host_commands_) return excuses_silence_ ? AxisFault::none : AxisFault::host_heartbeat_lost;
+      was_left_alone_ = true;
+      disable();
+      return AxisFault::none;
     }
     is_host_lost_ = false;
     return AxisFault::none;
   }
   constexpr AxisFault watch(const BoardInputs& inputs, bool outputs_on) {
-    return watch(inputs, [outputs_on] { return outputs_on; });
+    return watch(
+        inputs, [outputs_on] { return outputs_on; }, [] {});
   }
 
  private:
@@ -88,7 +97,7 @@ class BoardWatch {
   std::uint32_t last_us_ = 0;
   std::int32_t silent_samples_ = 0;
   bool host_commands_ = false;
-  bool excuses_silence_ = false, is_host_lost_ = false;
+  bool excuses_silence_ = false, is_host_lost_ = false, was_left_alone_ = false;
   bool is_primed_ = false;
 };
 

@@ -50,6 +50,8 @@ class EffortMonitor {
     return motion != AxisFault::none ? motion : watch_swing(seen.feedback_V);
   }
 
+  /// What the command has been on average: what holds a load.
+  constexpr Scalar load_V() const { return load_V_; }
   /// Mean square of the swinging part of the feedback, V^2.
   constexpr Scalar swing() const { return power_; }
 

@@ -43,7 +43,7 @@ struct FollowingError {
                 "drive is weak",
        .remedy = "free the axis; check load and amplifier; lower acceleration; raise the limit only if the high-water "
                  "mark of sound moves is near it",
-       .reaction = FaultReaction::drop_enable},
+       .reaction = FaultReaction::sensor_stop},
   });
   template <typename Scalar>
   struct Limits {
@@ -89,13 +89,13 @@ struct Disagreement {
        .cause = "encoder and tachometer report different speeds: one is dead, reversed, offset, or its wires are "
                 "swapped",
        .remedy = "turn the shaft by hand and compare both readings; calibrate the tachometer; check coupling and wires",
-       .reaction = FaultReaction::drop_enable,
+       .reaction = FaultReaction::sensor_stop,
        .loses_position = true},
       {.fault = AxisFault::encoder_jump,
        .name = "encoder_jump",
        .cause = "the encoder left the drive's motion within one sample: wires cut or interchanged, counts lost, noise",
        .remedy = "check shield and earth, the encoder's frequency limit and its supply",
-       .reaction = FaultReaction::drop_enable,
+       .reaction = FaultReaction::sensor_stop,
        .loses_position = true},
   });
   template <typename Scalar>

@@ -2,40 +2,29 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <type_traits>
-#include <utility>
 
 #include "firmware/core/axis.hpp"
 #include "firmware/core/motion/homing.hpp"
+#include "firmware/core/supervision/axis_index.hpp"
 #include "firmware/core/supervision/axis_monitors.hpp"
 #include "firmware/core/supervision/capture_ring.hpp"
 #include "firmware/core/supervision/drive_sequence.hpp"
+#include "firmware/core/supervision/drop_watch.hpp"
 #include "firmware/core/supervision/fault_table.hpp"
-#include "firmware/core/supervision/index_monitor.hpp"
+#include "firmware/core/supervision/increment_limits.hpp"
+#include "firmware/core/supervision/sensor_stop.hpp"
 #include "firmware/core/supervision/standstill.hpp"
 #include "firmware/core/supervision/stop_end.hpp"
 #include "firmware/core/supervision/supervised_check.hpp"
+#include "firmware/core/supervision/supervised_hal.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
 
 namespace firmware {
 
-/// An axis's hardware and its switches.
-template <typename T>
-concept SupervisedHal = hal::AxisHal<T> && requires(T& axis) {
-  requires hal::LimitInputs<std::remove_reference_t<decltype(axis.limits())>>;
-};
-
-/// What holds the motion back without being a fault.
-struct LimitingReasons {
-  bool saturated = false;         ///< the D/A converter is at its limit
-  bool velocity_limited = false;  ///< a jog asked for more than the velocity limit, and got that limit
-};
-
 template <typename Scalar, SupervisedHal Hal>
 class SupervisedAxis {
  public:
-  explicit constexpr SupervisedAxis(Hal& hal) : hal_(hal), axis_(hal) {}
+  explicit constexpr SupervisedAxis(Hal& hal) : hal_(hal), axis_(hal) { axis_.leave_sensors_to_supervisor(); }
 
   /// Takes new parameters and begins the self-test, or says what is wrong and keeps the old. Only while the outputs are
   /// off.
@@ -45,10 +34,11 @@ class SupervisedAxis {
     return error == Refusal::none ? take(parameters) : error;
   }
 
-  /// Likewise for an axis that has no controller yet and is to be excited in open loop alone: gains and thresholds mean
-  /// nothing, and whoever lets it be enabled otherwise is wrong.
+  /// Likewise for an axis without a controller, to be excited in open loop alone: gains and thresholds mean nothing.
   constexpr Refusal configure_bare(const AxisParameters<Scalar>& parameters) {
-    return outputs_are_on(state_) ? Refusal::controller_is_enabled : take(parameters);
+    if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
+    const Refusal error = check_sequence(parameters.sequence);
+    return error == Refusal::none ? take(parameters) : error;
   }
 
   // What comes of a request shows in the next control period. False where the state does not allow it.
@@ -70,7 +60,7 @@ class SupervisedAxis {
   constexpr bool clear_fault() {
     if (state_ != SupervisorState::fault) return false;
     fault_ = second_fault_ = AxisFault::none;
-    is_fault_new_ = false;
+    is_fault_new_ = must_cut_power_ = false;
     axis_.clear_fault();
     capture_.restart();
     begin_self_test();
@@ -90,14 +80,15 @@ class SupervisedAxis {
     is_interpolated_ = false;
     return state_ == SupervisorState::enabled && !homing_.is_active() && axis_.start(plan);
   }
-  /// A homed axis plans no move beyond its travel; an axis that is not homed knows of none.
+  /// A homed axis plans no move beyond its travel; one that is not homed none that is longer than all of it.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
     if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_to(target);
   }
   constexpr MovePlanResult plan_move_by(std::int64_t counts) const {
     const std::int64_t here = axis_.telemetry().reference.counts;
-    if (is_homed() && !monitors_.travel().has_way(here, counts)) return {{}, Refusal::outside_travel};
+    const TravelMonitor<Scalar>& travel = monitors_.travel();
+    if (is_homed() ? !travel.has_way(here, counts) : travel.is_longer(counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_by(counts);
   }
   /// False at a limit of travel that a jog of this velocity would pass.
@@ -113,7 +104,7 @@ class SupervisedAxis {
   /// Begins to look for home, from rest. False while the axis is not enabled, moves, or has nothing to look for.
   constexpr bool home() {
     if (state_ != SupervisorState::enabled || !is_at_rest() || !homing_.begin()) return false;
-    if constexpr (kHasIndex) hal_.encoder().read_index();  // pulses of the time before
+    if constexpr (kHasIndex) static_cast<void>(look_at_index());  // pulses of the time before
     is_interpolated_ = false;
     is_guided_ = true;
     axis_.forget_home();  // the limits of an old home must not stand in the way
@@ -128,12 +119,13 @@ class SupervisedAxis {
   constexpr void forget_home() { axis_.forget_home(); }
   constexpr bool is_homed() const { return axis_.telemetry().homed; }
   constexpr bool is_homing() const { return homing_.is_active(); }
+  /// As of HomingSequence.
+  constexpr std::int64_t index_way() const { return homing_.index_way(); }
 
-  /// For steps of several axes, which are read at one instant.
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
   /// In its last step it looked at the index: the others of a group do that in a sample of their own.
-  constexpr bool has_looked_at_index() const { return until_index_ == kIndexSamples; }
-  constexpr void leave_index_for_later() { until_index_ = until_index_ <= 1 ? 2 : until_index_; }
+  constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
+  constexpr void leave_index_for_later() { index_.leave_for_later(); }
   /// As of Axis, before a step that comes late.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
@@ -165,12 +157,12 @@ class SupervisedAxis {
     is_led_ = false;
     if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer, encoder);
     is_interpolated_ = true;
-    if (!is_within_limits(increment)) {
+    if (!increments_.allow(increment, axis_.newest_increment())) {
       axis_.stop_interpolated();  // what cannot be right never reaches the drive
       axis_.step(encoder);
       return supervise(outer == AxisFault::none ? AxisFault::reference_out_of_limits : outer);
     }
-    last_increment_ = increment;
+    increments_.take(increment);
     axis_.step_with(increment, encoder);
     supervise(outer);
   }
@@ -193,6 +185,8 @@ class SupervisedAxis {
   }
   /// What went wrong besides while the first fault brought the axis to a stop; the worst of it. none: nothing.
   constexpr AxisFault second_fault() const { return second_fault_; }
+  /// The amplifier drives on although its enable has dropped. Until clear_fault().
+  constexpr bool must_cut_power() const { return must_cut_power_; }
   constexpr LimitingReasons limiting() const {
     return {.saturated = axis_.telemetry().saturated, .velocity_limited = limiting_.velocity_limited};
   }
@@ -205,9 +199,7 @@ class SupervisedAxis {
   constexpr Hal& hal() { return hal_; }
 
  private:
-  static constexpr bool kHasIndex =
-      hal::IndexedEncoder<std::remove_reference_t<decltype(std::declval<Hal&>().encoder())>>;
-  static constexpr std::int32_t kIndexSamples = 16;  ///< from one look at the index to the next
+  static constexpr bool kHasIndex = kHasIndexPulse<Hal>;
 
   constexpr Refusal take(const AxisParameters<Scalar>& parameters) {
     const Refusal error = axis_.configure(parameters);
@@ -216,15 +208,13 @@ class SupervisedAxis {
     homing_.configure(parameters.homing);
     sequence_.configure(parameters.sequence);
     index_.configure(parameters.monitors.index_spacing);
-    until_index_ = 1;
     for (InputFilter* input : {&drive_fault_, &drive_unready_, &home_switch_})
       input->configure(parameters.monitors.input_samples);
     const MotionLimits limits = motion_limits(parameters);
-    fastest_ = static_cast<std::uint32_t>((limits.velocity + (limits.velocity >> 4)) >> 32) + 2;  // 2: rounding
-    const Increment sharpest =
-        limits.acceleration < kMostMotion / 8 ? 8 * limits.acceleration : kMostMotion;  // corners
-    largest_change_ = static_cast<std::uint32_t>(sharpest >> 32) + 2;
+    increments_.configure(limits);
     stop_end_.configure(limits);
+    sensor_stop_.configure(parameters);
+    drop_watch_.configure(parameters);
     standstill_.configure(monitors_.travel().play());
     capture_.configure(parameters.monitors.capture_stride);
     begin_self_test();
@@ -239,15 +229,6 @@ class SupervisedAxis {
     axis_.keep_inside(travel.min_counts() + travel.play(), travel.max_counts() - travel.play());
   }
 
-  /// Of the whole reference: the axis's own, as it was in the last sample, and the increment on top. By the upper
-  /// words, 2^-16 counts.
-  constexpr bool is_within_limits(Increment increment) const {
-    const auto upper = [](Increment value) { return static_cast<std::uint32_t>(value >> 32); };
-    const std::uint32_t change = upper(increment) - upper(last_increment_);
-    const std::uint32_t whole = upper(axis_.newest_increment()) + change;
-    return whole + fastest_ <= 2 * fastest_ && change + largest_change_ <= 2 * largest_change_;
-  }
-
   constexpr bool request(SupervisorEvent event) {
     requests_ = requests_ | event;
     return true;
@@ -257,8 +238,20 @@ class SupervisedAxis {
     enter(next_state(state_, event | event, fault_ != AxisFault::none));
   }
 
-  /// Of an axis that is led or looks for home.
+  /// The command is the stop's own. Faults of amplifier, converter and board drop the enable, as does a drive that does
+  /// not obey; what the failed sensor reads is no fault any more.
+  [[gnu::noinline]] constexpr void step_sensor_stop(AxisFault outer, const hal::EncoderReading& encoder) {
+    const bool is_lost = sensor_stop_.uses_encoder() && !encoder.valid;
+    axis_.step_with_command(encoder, sensor_stop_.command_V(), sensor_stop_.velocity());
+    const AxisFault own = watch_lines();
+    if (reaction_to(outer) != FaultReaction::drop_enable) outer = AxisFault::none;  // it stops already
+    if (!sensor_stop_.next(axis_.telemetry()) || is_lost) requests_ = requests_ | SupervisorEvent::drop_fault;
+    advance(outer, own);
+  }
+
+  /// Of an axis that is led, homing, or stopping by one sensor.
   [[gnu::noinline]] constexpr void step_guided(AxisFault outer, const hal::EncoderReading& encoder) {
+    if (sensor_stop_.is_active()) return step_sensor_stop(outer, encoder);
     is_guided_ = homing_.is_active();
     if (is_led_) return step_with(led_increment_, outer, encoder);
     axis_.step(encoder);
@@ -272,10 +265,10 @@ class SupervisedAxis {
     seen.at_switch = home_switch_.filtered(hal_.limits().read().home);
     seen.at_rest = axis_.is_at_rest();
     if constexpr (kHasIndex) {
-      const hal::IndexReading index = hal_.encoder().read_index();
-      if (index_.is_on()) index_.watch(index, axis_.encoder_reading());
-      seen.index_seen = index.seen;
-      seen.index_counts = axis_.counts_at(index.counts);
+      const AxisFault miscounted = look_at_index();
+      if (miscounted != AxisFault::none) return miscounted;
+      seen.index_seen = index_.seen().seen;
+      seen.index_counts = axis_.counts_at(index_.seen().counts);
     }
     const HomingAction<Scalar> action = homing_.next(seen);
     switch (action.step) {
@@ -313,7 +306,7 @@ class SupervisedAxis {
     const AxisTelemetry<Scalar>& seen = axis_.telemetry();
     AxisFault own = watch(seen);
     if constexpr (kHasIndex)
-      if (--until_index_ <= 0 && own == AxisFault::none) own = watch_index();
+      if (index_.is_due() && own == AxisFault::none) own = look_at_index();
     if (own == AxisFault::none && outer == AxisFault::none) {
       capture_.take(seen);
       if (state_ == SupervisorState::enabled && requests_ == 0) return;
@@ -324,10 +317,8 @@ class SupervisedAxis {
   /// Whatever is wrong outside: what the axis does is watched until its outputs are off.
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
-    const bool says_fault = hal_.drive_enable().is_faulted();
-    if ((says_fault || drive_fault_.is_pending()) && drive_fault_.filtered(says_fault)) return AxisFault::drive_fault;
-    const AxisFault parts = monitors_.watch_parts(hal_);
-    if (parts != AxisFault::none) return parts;
+    const AxisFault lines = watch_lines();
+    if (lines != AxisFault::none) return lines;
     const AxisFault sensors = monitors_.watch_sensors(seen);
     if (sensors != AxisFault::none) return sensors;
     if (!seen.enabled) {
@@ -340,17 +331,25 @@ class SupervisedAxis {
     return motion != AxisFault::none ? motion : monitors_.watch_travel(seen, hal_.limits());
   }
 
-  /// Index pulses are whole turns apart however seldom they are asked for.
-  [[gnu::noinline]] constexpr AxisFault watch_index() {
-    until_index_ = index_.is_on() ? kIndexSamples : std::numeric_limits<std::int32_t>::max();
-    if (!index_.is_on()) return AxisFault::none;
-    return index_.watch(hal_.encoder().read_index(), axis_.encoder_reading());
+  /// Of amplifier and converter.
+  constexpr AxisFault watch_lines() {
+    const bool says_fault = hal_.drive_enable().is_faulted();
+    if ((says_fault || drive_fault_.is_pending()) && drive_fault_.filtered(says_fault)) return AxisFault::drive_fault;
+    return monitors_.watch_parts(hal_);
+  }
+
+  [[gnu::noinline]] constexpr AxisFault look_at_index() { return index_.look(hal_.encoder(), axis_.encoder_reading()); }
+
+  constexpr AxisFault watch_drop(AxisFault own) {
+    const bool is_on = drop_watch_.is_on(is_ready(hal_.drive_enable()), monitors_.slowest(axis_.telemetry()));
+    must_cut_power_ = must_cut_power_ || is_on;
+    return is_on && own == AxisFault::none ? AxisFault::drive_not_off : own;
   }
 
   constexpr void release_brake(bool released) { sequence_.release_brake(hal_.drive_enable(), released); }
 
   /// Towards a closed loop and a released brake, while the state is starting. Until the loop is closed nothing may
-  /// move: an amplifier with an offset and a converter that is stuck drive the axis as soon as it has its enable.
+  /// move.
   constexpr SupervisorEvents start_drive() {
     const bool is_held = axis_.telemetry().enabled && !axis_.is_open_loop();
     if (!is_held && standstill_.has_moved(axis_.telemetry().encoder_counts))
@@ -375,6 +374,7 @@ class SupervisedAxis {
     SupervisorEvents events = requests_;
     requests_ = 0;
     if (state_ == SupervisorState::off && events == 0) return;
+    if (drop_watch_.is_active()) own = watch_drop(own);
     if (outer == AxisFault::other_axis_stopped && own != AxisFault::none) outer = AxisFault::none;
     for (const AxisFault found : {outer, own})
       if (found != AxisFault::none) events = events | latch(found);
@@ -389,14 +389,26 @@ class SupervisedAxis {
   /// The first fault is the one that is reported; of those that follow before the outputs are off, the first of the
   /// worst kind is reported beside it.
   constexpr SupervisorEvent latch(AxisFault found) {
-    const bool drops = reaction_to(found) != FaultReaction::ramp_stop;
+    const bool is_worse = reaction_to(found) != FaultReaction::ramp_stop;
+    const bool drops = is_worse && !begin_sensor_stop(found);
     if (loses_position(found)) axis_.forget_home();
     if (fault_ == AxisFault::none)
       latch_first(found);
     else if (found != fault_ && outputs_are_on(state_) &&
-             (second_fault_ == AxisFault::none || (drops && reaction_to(second_fault_) == FaultReaction::ramp_stop)))
+             (second_fault_ == AxisFault::none || (is_worse && reaction_to(second_fault_) == FaultReaction::ramp_stop)))
       second_fault_ = found;
     return drops ? SupervisorEvent::drop_fault : SupervisorEvent::ramp_fault;
+  }
+
+  /// False where no sensor is left that shows the drive's speed, or no loop is closed.
+  constexpr bool begin_sensor_stop(AxisFault found) {
+    if (reaction_to(found) != FaultReaction::sensor_stop || sensor_stop_.is_active()) return false;
+    const AxisTelemetry<Scalar>& seen = axis_.telemetry();
+    const TrustedSensor trusted = sensor_stop_.trusted_after(found, seen);
+    if (!seen.enabled || axis_.is_open_loop() || trusted == TrustedSensor::none) return false;
+    sensor_stop_.begin(trusted, seen, monitors_.effort().load_V());
+    is_guided_ = true;
+    return true;
   }
 
   constexpr void latch_first(AxisFault found) {
@@ -413,12 +425,14 @@ class SupervisedAxis {
   }
 
   constexpr bool has_stopped() {
+    if (sensor_stop_.is_active()) return is_braking_ || sensor_stop_.has_stopped();
     return is_braking_ ||
            stop_end_.has_stopped(axis_.is_at_rest(), !axis_.is_open_loop(), axis_.telemetry().encoder_counts);
   }
 
   constexpr void enter(SupervisorState next) {
     if (next == state_) return;
+    const bool was_on = outputs_are_on(state_);
     if (next == SupervisorState::starting && sequence_.starts_at_once()) next = SupervisorState::enabled;
     if (next == SupervisorState::stopping && !axis_.telemetry().enabled)  // no loop that could slow it down
       next = fault_ == AxisFault::none ? SupervisorState::ready : SupervisorState::fault;
@@ -438,7 +452,7 @@ class SupervisedAxis {
         state_ = SupervisorState::fault;
       }
     }
-    if (next == SupervisorState::stopping) {
+    if (next == SupervisorState::stopping && !sensor_stop_.is_active()) {
       if (is_interpolated_)
         axis_.stop_interpolated();
       else
@@ -447,8 +461,10 @@ class SupervisedAxis {
     }
     if (!outputs_are_on(state_)) {
       is_interpolated_ = limiting_.velocity_limited = false;
-      last_increment_ = 0;
+      increments_.restart();
       release_brake(false);
+      sensor_stop_.end();
+      if (was_on) drop_watch_.begin();
       axis_.disable();
     }
   }
@@ -457,8 +473,7 @@ class SupervisedAxis {
   AxisMonitors<Scalar> monitors_;
   HomingSequence<Scalar> homing_;
   DriveSequence sequence_;
-  IndexMonitor index_;
-  std::int32_t until_index_ = 1;
+  AxisIndex index_;
   bool is_braking_ = false;
   InputFilter drive_fault_, drive_unready_, home_switch_;
   SupervisorState state_ = SupervisorState::off;
@@ -468,14 +483,16 @@ class SupervisedAxis {
   bool is_fault_new_ = false;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
-  std::uint32_t fastest_ = 0, largest_change_ = 0;  ///< of a path's increments, upper words
-  Increment last_increment_ = 0;
+  IncrementLimits increments_;
   Increment led_increment_ = 0;
   bool is_led_ = false;
   bool is_guided_ = false;  ///< led, or looking for home: the next step may be another one
   std::int32_t self_test_samples_ = 0;
   Standstill standstill_;
   StopEnd stop_end_;
+  SensorStop<Scalar> sensor_stop_;
+  DropWatch<Scalar> drop_watch_;
+  bool must_cut_power_ = false;
   Axis<Scalar, Hal> axis_;  // the large tables come last: a load reaches no farther than 1 to 4 kB
   CaptureRing<Scalar> capture_;
 };

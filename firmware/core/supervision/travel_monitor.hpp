@@ -61,6 +61,11 @@ class TravelMonitor {
   constexpr bool has_way(std::int64_t here, std::int64_t counts) const {
     return counts <= max_counts_ - here && counts >= min_counts_ - here;
   }
+  /// A way that no place of the travel has room for.
+  constexpr bool is_longer(std::int64_t way) const {
+    const std::int64_t whole = max_counts_ - min_counts_;
+    return way > whole || way < -whole;
+  }
   constexpr std::int64_t play() const { return play_; }
   constexpr std::int64_t min_counts() const { return min_counts_; }
   constexpr std::int64_t max_counts() const { return max_counts_; }

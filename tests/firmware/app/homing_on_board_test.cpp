@@ -103,6 +103,20 @@ TYPED_TEST(HomingOfABoard, UnhomedAxesMoveByAWayButNotToAPlace) {
   EXPECT_NEAR(static_cast<double>(this->axis().counts()), static_cast<double>(here - 500), 2.0);
 }
 
+TYPED_TEST(HomingOfABoard, AnUnhomedAxisMovesByNoMoreThanItsWholeTravel) {
+  ParameterValues values = firmware_test::paper_values();
+  set(values, "x.monitor.travel_min", -10.0);
+  set(values, "x.monitor.travel_max", 20.0);
+  this->start(values);
+  const auto by = [this](double way_mm) {
+    const auto counts = static_cast<std::int64_t>(way_mm / firmware_test::kEncoderResolution_mm);
+    return this->bench.ask(MessageType::move, firmware::MoveRequest::by(0, counts)).status;
+  };
+  EXPECT_EQ(by(30.1), Status::outside_travel);
+  EXPECT_EQ(by(-30.1), Status::outside_travel);
+  EXPECT_EQ(by(5.0), Status::ok);
+}
+
 TYPED_TEST(HomingOfABoard, AnAxisThatCanFindHomeIsNotTold) {
   this->start(1);
   EXPECT_EQ(this->home(true), Status::homing_mode);

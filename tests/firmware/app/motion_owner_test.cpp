@@ -104,8 +104,13 @@ TEST_F(TwoClients, AnAxisEnabledWithoutItsHostIsDropped) {
   look(kSecond, 450);
   EXPECT_EQ(state(), SupervisorState::enabled);
   look(kSecond, 150);
-  EXPECT_EQ(fault(), kLost);
+  EXPECT_EQ(fault(), 0) << "nothing was wrong";
+  EXPECT_EQ(state(), SupervisorState::ready);
   EXPECT_FALSE(bench.board.axis(0).drive_enable().is_on());
+  EXPECT_NE(bench.status().flags & firmware::kBoardLeftAlone, 0) << "why is it disabled?";
+  bench.client = kFirst;
+  ASSERT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
+  EXPECT_EQ(bench.status().flags & firmware::kBoardLeftAlone, 0);
 }
 
 TEST_F(TwoClients, NothingIsEnabledBetweenARestartAndItsReset) {

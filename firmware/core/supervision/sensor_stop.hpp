@@ -1,0 +1,120 @@
+// A stop under control with one sensor, after the other has failed or the loop has lost the drive.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/axis_parameters.hpp"
+#include "firmware/core/axis_telemetry.hpp"
+#include "firmware/core/supervision/standstill.hpp"
+
+namespace firmware {
+
+enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
+
+/// Takes the speed that the sensor shows down to 0 along the acceleration limit, and holds it there:
+///
+///   e(k) = e(k-1) + (w_ref - w) lead Ts,   u = Kc1 e + Kc2 (w_ref - w) + load + (w_ref(k) - w_ref(k-1)) / Bd2
+///
+/// which is the loop's own feedback (50) with the position counted from the beginning of the stop, by that sensor
+/// alone: neither estimator nor the other sensor has a part in it. `load` is what the command was on average, a weight
+/// above all. A drive that slows down by itself takes the reference along. One that is faster than the reference by
+/// twice the difference that sensors may have, or runs the other way by as much, or takes all that the converter has
+/// for kMostSaturated, is not under control: the enable drops.
+template <typename Scalar>
+class SensorStop {
+ public:
+  constexpr void configure(const AxisParameters<Scalar>& p) {
+    Kc_ = p.Kc;
+    travel_per_velocity_ = p.lead * p.sample_period_s;
+    velocity_per_count_ = p.encoder_resolution / travel_per_velocity_;
+    slower_ = p.acceleration_limit * p.sample_period_s / p.lead;
+    ramp_V_ = slower_ / p.drive.Bd2;
+    astray_ = p.monitors.disagreement_floor * Scalar(2);
+    limit_V_ = p.dac_limit_V;
+    tachometer_fitted_ = p.tachometer_fitted;
+    end();
+  }
+
+  /// What is left after a fault. Of two sensors that part it is the encoder, unless that shows less than an eighth of
+  /// the reference's speed: the loop follows a tachometer that is off, so that the drive leaves the reference and the
+  /// tachometer does not.
+  constexpr TrustedSensor trusted_after(AxisFault fault, const AxisTelemetry<Scalar>& seen) const {
+    if (fault == AxisFault::tachometer_invalid || (!tachometer_fitted_ && fault == AxisFault::following_error))
+      return TrustedSensor::encoder;
+    if (!tachometer_fitted_) return TrustedSensor::none;
+    if (fault != AxisFault::encoder_tachometer_disagreement) return TrustedSensor::tachometer;
+    if (Traits::magnitude(seen.reference_velocity) <= astray_) return TrustedSensor::encoder;
+    const bool forward = seen.reference_velocity > Scalar(0);
+    const auto along = [forward](Scalar velocity) { return forward ? velocity : Scalar(0) - velocity; };
+    const Scalar least = along(seen.reference_velocity) * Scalar(0.125f);
+    return along(encoder_velocity(seen)) >= least ? TrustedSensor::encoder : TrustedSensor::tachometer;
+  }
+
+  /// `load_V`: the command's mean.
+  constexpr void begin(TrustedSensor trusted, const AxisTelemetry<Scalar>& seen, Scalar load_V) {
+    trusted_ = trusted;
+    velocity_ = reference_ = measured(seen);
+    error_ = Scalar(0);
+    load_V_ = load_V;
+    samples_at_rest_ = saturated_samples_ = 0;
+    next(seen);
+  }
+  constexpr void end() { trusted_ = TrustedSensor::none; }
+  constexpr bool is_active() const { return trusted_ != TrustedSensor::none; }
+  constexpr bool uses_encoder() const { return trusted_ == TrustedSensor::encoder; }
+
+  /// After each step(), which put out command_V(). False once the drive does not obey.
+  constexpr bool next(const AxisTelemetry<Scalar>& seen) {
+    const Scalar change = measured(seen) - velocity_;
+    velocity_ = velocity_ + change * Scalar(0.5f);  // a count in a sample is coarse
+    slow_down();
+    const Scalar lacking = reference_ - velocity_;
+    const Scalar error = error_ + lacking * travel_per_velocity_;
+    const Scalar wanted_V = Kc_[0] * error + Kc_[1] * lacking + load_V_ + ahead_V_;
+    const bool is_saturated = !(Traits::magnitude(wanted_V) < limit_V_);
+    if (!is_saturated) error_ = error;
+    saturated_samples_ = is_saturated ? saturated_samples_ + 1 : 0;
+    command_V_ = wanted_V;
+    if (reference_ == Scalar(0) && samples_at_rest_ < Standstill::kSamples) ++samples_at_rest_;
+    const bool forward = reference_ > Scalar(0);
+    const Scalar beyond = Scalar(0) - (forward ? lacking : Scalar(0) - lacking);
+    const Scalar astray = reference_ == Scalar(0) ? Traits::magnitude(velocity_) : beyond;
+    return saturated_samples_ <= kMostSaturated && astray <= astray_ && Traits::magnitude(change) <= astray_ &&
+           Traits::is_finite(wanted_V);
+  }
+  constexpr Scalar command_V() const { return command_V_; }
+  constexpr Scalar velocity() const { return velocity_; }
+  /// Its reference has been at rest for a while, and the drive at less than a count a sample's speed from it.
+  constexpr bool has_stopped() const { return samples_at_rest_ >= Standstill::kSamples; }
+
+ private:
+  using Traits = ScalarTraits<Scalar>;
+  static constexpr std::int32_t kMostSaturated = 5;  ///< samples
+
+  constexpr Scalar encoder_velocity(const AxisTelemetry<Scalar>& seen) const {
+    return Traits::times(seen.encoder_travel, velocity_per_count_);
+  }
+  constexpr Scalar measured(const AxisTelemetry<Scalar>& seen) const {
+    return trusted_ == TrustedSensor::encoder ? encoder_velocity(seen) : seen.tachometer_velocity;
+  }
+
+  constexpr void slow_down() {
+    const bool forward = reference_ > Scalar(0), stood = reference_ == Scalar(0);
+    const Scalar along = forward ? velocity_ : Scalar(0) - velocity_;
+    Scalar speed = Traits::magnitude(reference_) - slower_;
+    const Scalar most = along + astray_ * Scalar(0.5f);
+    ahead_V_ = stood || most < speed ? Scalar(0) : (forward ? Scalar(0) - ramp_V_ : ramp_V_);
+    if (most < speed) speed = along;
+    if (speed < slower_) speed = Scalar(0);
+    reference_ = forward ? speed : Scalar(0) - speed;
+  }
+
+  StateFeedbackGain<Scalar> Kc_{};
+  Scalar travel_per_velocity_{}, velocity_per_count_{}, slower_{}, ramp_V_{}, astray_{}, limit_V_{};
+  Scalar velocity_{}, reference_{}, error_{}, load_V_{}, ahead_V_{}, command_V_{};
+  std::int32_t samples_at_rest_ = 0, saturated_samples_ = 0;
+  TrustedSensor trusted_ = TrustedSensor::none;
+  bool tachometer_fitted_ = true;
+};
+
+}  // namespace firmware

@@ -1,0 +1,139 @@
+// A sensor fails in motion: the axis slows down by the one that is left.
+#include "firmware/core/supervision/sensor_stop.hpp"
+
+#include <cmath>
+
+#include "tests/firmware/driven_axis.hpp"
+
+namespace {
+
+using firmware::AxisFault;
+using firmware::SupervisorState;
+using firmware_test::DrivenAxis;
+
+constexpr double kAcceleration = 2000.0;  // mm/s^2, parameters_of()
+
+struct Stop {
+  double way_mm = 0.0, longest_s = 0.0, still_mm_s = 0.0;
+  bool was_let_go_at_speed = false;
+};
+
+class SensorStop : public testing::Test {
+ protected:
+  /// Without friction: an axis that is let go coasts for ever.
+  static firmware::AxisParameters<float> parameters() {
+    return firmware_test::parameters_of<float>(firmware_test::kPaperX);
+  }
+
+  /// Jogs, lets `fail` act on the axis before each of the following samples,
+  /// and looks at what becomes of it.
+  template <typename Fail>
+  static Stop stop(DrivenAxis& axis, float speed_mm_s, Fail fail) {
+    EXPECT_TRUE(axis.axis.jog(speed_mm_s));
+    for (int k = 0; k < 600; ++k) axis.step();
+    const double begin_mm = axis.at_mm();
+    Stop stop;
+    bool was_on = true;
+    double before_mm = begin_mm;
+    for (int k = 0; k < 2000; ++k) {
+      fail(axis, k);
+      axis.step();
+      stop.still_mm_s = (axis.at_mm() - before_mm) * 1e3;
+      before_mm = axis.at_mm();
+      if (was_on && !axis.io.drive_enable().on) {
+        stop.longest_s = 1e-3 * k;
+        stop.was_let_go_at_speed = std::abs(stop.still_mm_s) > 5.0;
+      }
+      was_on = axis.io.drive_enable().on;
+    }
+    stop.way_mm = axis.at_mm() - begin_mm;
+    EXPECT_EQ(axis.axis.state(), SupervisorState::fault);
+    return stop;
+  }
+  static double ramp_mm(double speed_mm_s) { return speed_mm_s * speed_mm_s / (2.0 * kAcceleration); }
+  static void expect_ramp(const Stop& stop, double speed_mm_s) {
+    EXPECT_FALSE(stop.was_let_go_at_speed);
+    EXPECT_LT(std::abs(stop.way_mm), ramp_mm(speed_mm_s) + 2.0);
+    EXPECT_LT(std::abs(stop.still_mm_s), 3.0);
+    EXPECT_LT(stop.longest_s, std::abs(speed_mm_s) / kAcceleration + 0.1);
+  }
+};
+
+TEST_F(SensorStop, ADeadTachometerLeavesTheEncoder) {
+  for (const float speed : {250.0f, -250.0f, 60.0f}) {
+    DrivenAxis axis(parameters());
+    const Stop found = stop(axis, speed, [](DrivenAxis& a, int) { a.io.tachometer().reading.code = 0; });
+    EXPECT_EQ(axis.axis.fault(), AxisFault::encoder_tachometer_disagreement);
+    expect_ramp(found, speed);
+  }
+}
+
+TEST_F(SensorStop, ATachometerWithoutReadingLeavesTheEncoder) {
+  DrivenAxis axis(parameters());
+  const Stop found = stop(axis, 250.0f, [](DrivenAxis& a, int) { a.io.tachometer().reading.valid = false; });
+  EXPECT_EQ(axis.axis.fault(), AxisFault::tachometer_invalid);
+  expect_ramp(found, 250.0);
+  EXPECT_TRUE(axis.axis.is_homed()) << "the encoder counted on";
+}
+
+TEST_F(SensorStop, ADeadEncoderLeavesTheTachometer) {
+  for (const bool is_reported : {false, true}) {
+    DrivenAxis axis(parameters());
+    std::uint32_t at = 0;
+    const Stop found = stop(axis, 250.0f, [&](DrivenAxis& a, int k) {
+      if (k == 0) at = a.io.encoder().reading.counts;
+      a.io.encoder().reading = {at, !is_reported};
+    });
+    EXPECT_EQ(axis.axis.fault(), is_reported ? AxisFault::encoder_invalid : AxisFault::encoder_jump);
+    expect_ramp(found, 250.0);
+    EXPECT_FALSE(axis.axis.is_homed());
+  }
+}
+
+TEST_F(SensorStop, WithoutATachometerADeadEncoderDropsTheEnable) {
+  auto p = parameters();
+  p.tachometer_fitted = false;
+  p.Kobs = {{{0.5f, 0.0f}, {60.0f, 0.0f}, {-20.0f, 0.0f}}};
+  firmware::boards::ValueAxis io;
+  if (firmware::SupervisedAxis<float, firmware::boards::ValueAxis> probe(io);
+      probe.configure(p) != firmware::Refusal::none)
+    GTEST_SKIP() << "these gains are refused";
+  DrivenAxis axis(p);
+  const Stop found = stop(axis, 100.0f, [](DrivenAxis& a, int) { a.io.encoder().reading.valid = false; });
+  EXPECT_EQ(found.longest_s, 0.0);
+}
+
+TEST_F(SensorStop, AStopWhoseSensorFailsTooDropsTheEnable) {
+  DrivenAxis axis(parameters());
+  const Stop found = stop(axis, 250.0f, [](DrivenAxis& a, int k) {
+    a.io.tachometer().reading.code = 0;
+    if (k > 30) a.io.encoder().reading.valid = false;
+  });
+  EXPECT_NEAR(found.longest_s, 0.031, 0.002);
+}
+
+/// Whoever drives the motor, it is not the command.
+TEST_F(SensorStop, ADriveThatDoesNotObeyIsLetGo) {
+  DrivenAxis axis(parameters());
+  const Stop found = stop(axis, 100.0f, [](DrivenAxis& a, int) {
+    a.io.tachometer().reading.code = 0;
+    a.amplifier_offset_V = 10.0;
+  });
+  EXPECT_LT(found.longest_s, 0.03);
+}
+
+TEST_F(SensorStop, TheBrakeHoldsBeforeTheEnableDrops) {
+  auto p = parameters();
+  p.sequence = {
+      .ready_input = false, .brake_fitted = true, .amplifier_wait = 0, .brake_release = 10, .brake_application = 40};
+  DrivenAxis axis(p);
+  for (int k = 0; k < 20; ++k) axis.step();
+  int held_by_both = 0;
+  stop(axis, 250.0f, [&](DrivenAxis& a, int) {
+    a.io.tachometer().reading.valid = false;
+    if (a.io.drive_enable().on && !a.io.drive_enable().brake_released) ++held_by_both;
+  });
+  EXPECT_GE(held_by_both, 39);
+}
+
+}  // namespace
