@@ -348,7 +348,7 @@ class Axis {
     if (!hal_.dac().write(word.code)) latch(AxisFault::dac_write_failed);
   }
 
-  constexpr Scalar velocity_of(const hal::TachometerReading& reading) const {
+  [[gnu::always_inline]] constexpr Scalar velocity_of(const hal::TachometerReading& reading) const {
     return Traits::times(reading.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
   }
 

@@ -332,7 +332,7 @@ class SupervisedAxis {
   }
 
   /// Of amplifier and converter.
-  constexpr AxisFault watch_lines() {
+  [[gnu::always_inline]] constexpr AxisFault watch_lines() {
     const bool says_fault = hal_.drive_enable().is_faulted();
     if ((says_fault || drive_fault_.is_pending()) && drive_fault_.filtered(says_fault)) return AxisFault::drive_fault;
     return monitors_.watch_parts(hal_);
