@@ -76,6 +76,7 @@ class Understander {
       if (is_matrix(log_) && name.ends_with(')') && name.find('(') != std::string::npos)
         names_.back() = {};  // a matrix' name
       if (find_known_column(name) != nullptr) names_.back().axis.clear();
+      if (name == "u_V") names_.back().is_reference = true;  // a record's own name for the command
     }
     apply_known_tools(log_, names_);
     found_.layout = log_.layout;
