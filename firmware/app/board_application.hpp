@@ -10,6 +10,7 @@
 
 #include "firmware/app/capture_stream.hpp"
 #include "firmware/app/excitation_service.hpp"
+#include "firmware/app/limit_reply.hpp"
 #include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/parameter_change.hpp"
 #include "firmware/app/parameters/parameter_check.hpp"
@@ -195,14 +196,15 @@ class BoardApplication {
   }
 
   // Excitation, of one axis at a time.
-  Status load_excitation(const ExcitationEntriesRequest& request) {
+  Status load_excitation(const ExcitationEntriesRequest& request, ClientToken client) {
     if (excitation_.is_active()) return Status::wrong_state;
-    return excitation_.load(request, active_.axis(request.axis), rate_Hz()) ? Status::ok : Status::malformed;
+    return excitation_.load(request, client, active_.axis(request.axis), rate_Hz()) ? Status::ok : Status::malformed;
   }
+  bool is_others_excitation(ClientToken client) const { return excitation_.is_others(client); }
 
-  /// In open loop of an axis that stands, disabled, and needs no design; in closed loop of one that is enabled and at
-  /// rest.
-  Status excite(const ExcitationRequest& request) {
+  /// In open loop of an axis that stands, disabled, and needs no design (`refused`: the limit that it has without); in
+  /// closed loop of one that is enabled and at rest.
+  Status excite(const ExcitationRequest& request, RefusedValuePayload& refused) {
     const std::size_t axis = request.axis;
     if (excitation_.is_active() || is_led(axis)) return Status::wrong_state;
     if (!excitation_.plan(request, active_.axis(axis), rate_Hz())) return Status::malformed;
@@ -214,9 +216,9 @@ class BoardApplication {
       if (!store_is_usable() || state == SupervisorState::fault) return Status::device_fault;
       if (axes_[axis].is_or_will_be_on()) return Status::drive_enabled;
       if (!is_fitted(axis)) {
-        const float per_count = request.drive_velocity / request.speed;
-        const auto bare =
-            bare_axis_parameters<Scalar>(active_.axis(axis), rate_Hz(), per_count, request.drive_velocity);
+        if (exceeds_unfitted_limits(request, active_, refused)) return Status::bad_value;
+        const float most = request.drive_velocity;
+        const auto bare = bare_axis_parameters<Scalar>(active_.axis(axis), rate_Hz(), most / request.speed, most);
         if (axes_[axis].configure_bare(bare) != Refusal::none) return Status::malformed;
       }
     }
@@ -233,28 +235,24 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     return excitation_.state();
   }
-
   /// A path, of axes that are enabled and stand. The rest of it is the path's own.
-  Status open_path(const OpenPathRequest& request, OpenPathPayload& opened) {
+  Status open_path(const OpenPathRequest& request, ClientToken client, OpenPathPayload& opened) {
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       if ((request.mask >> axis & 1u) == 0) continue;
       const typename Board::ControlShutOut guard;
       if (is_excited(axis) || axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis))
         return refusal(axis);
     }
-    return path_.open(request, opened);
+    return path_.open(request, client, opened);
   }
   PathService<Axes, typename Board::ControlShutOut>& path() { return path_; }
 
   /// The limit of travel on one side of an axis.
   RefusedValuePayload limit_of_travel(std::size_t axis, bool positive) const {
-    using parameter_check::id_of;
-    const AxisValues values = active_.axis(axis);
-    const std::uint16_t id = positive ? id_of<"monitor.travel_max">() : id_of<"monitor.travel_min">();
-    const float limit = positive ? values.get<"monitor.travel_max">() : values.get<"monitor.travel_min">();
-    return {.key = ParameterKey::of_axis(axis, id).code, .bits = std::bit_cast<std::uint32_t>(limit)};
+    return positive ? limit_reply<"monitor.travel_max">(active_, axis)
+                    : limit_reply<"monitor.travel_min">(active_, axis);
   }
-  /// On which side of where an axis is a target lies.
+  /// On which side of an axis a target lies.
   bool is_ahead(std::size_t axis, std::int64_t target_counts) {
     const typename Board::ControlShutOut guard;
     return target_counts > axes_[axis].telemetry().encoder_counts;
@@ -278,11 +276,19 @@ class BoardApplication {
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].clear_fault();
   }
 
+  bool is_in_motion() {
+    const typename Board::ControlShutOut guard;
+    if (excitation_.is_active() || path_.is_moving()) return true;
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
+      if (is_in_motion(axis)) return true;
+    return false;
+  }
   // Whose motion it is. Everybody may look, stop and disable.
   bool may_command(ClientToken client) { return owner_.may_command(client, is_in_motion()); }
-  /// The client has commanded motion, or takes over what another commanded.
+  /// It has commanded motion, or takes over what another commanded.
   void become_owner(ClientToken client) {
     owner_.become(client);
+    path_.take_over(client);
     owner_heard(client);
   }
   bool is_owner(ClientToken client) const { return owner_.is(client); }
@@ -374,7 +380,6 @@ class BoardApplication {
     return excitation_.is_active();
   }
   std::uint32_t control_periods() const { return control_periods_; }
-
   TimingPayload timing() {
     const typename Board::ControlShutOut guard;
     return timing_;
@@ -392,29 +397,20 @@ class BoardApplication {
   static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
-
   bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
 
   /// By an experiment or a path.
   bool is_led(std::size_t axis) const { return is_excited(axis) || path_.leads(axis); }
 
-  bool is_in_motion() {
-    const typename Board::ControlShutOut guard;
-    if (excitation_.is_active() || path_.is_moving()) return true;
-    for (std::size_t axis = 0; axis < kAxes; ++axis)
-      if (is_in_motion(axis)) return true;
-    return false;
-  }
   /// While the control interrupt is shut out. Between its ways homing stands for a moment.
   bool is_in_motion(std::size_t axis) const {
     return axes_[axis].is_or_will_be_on() && (!axes_[axis].is_at_rest() || axes_[axis].is_homing());
   }
 
   BoardLimits limits_of_board() const {
-    const auto rate_Hz = static_cast<float>(active_.template get<"control.rate">());
-    BoardLimits limits = BoardWatch::default_limits(1.0F / rate_Hz);
-    limits.heartbeat_samples = static_cast<std::int32_t>(active_.template get<"host.timeout">() * rate_Hz);
-    limits.standing_samples = static_cast<std::int32_t>(active_.template get<"host.standing_timeout">() * rate_Hz);
+    BoardLimits limits = BoardWatch::default_limits(1.0F / rate_Hz());
+    limits.heartbeat_samples = static_cast<std::int32_t>(active_.template get<"host.timeout">() * rate_Hz());
+    limits.standing_samples = static_cast<std::int32_t>(active_.template get<"host.standing_timeout">() * rate_Hz());
     return limits;
   }
 
@@ -423,6 +419,7 @@ class BoardApplication {
     board_.set_control_rate(static_cast<std::uint32_t>(active_.template get<"control.rate">()));
     axes_.board().configure(limits_of_board());
     axes_.board().excuse_pause();
+    excitation_.forget();
     if (!store_is_usable()) return;
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));

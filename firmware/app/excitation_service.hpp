@@ -1,6 +1,7 @@
 // Excitations as the host asks for them: one at a time, on one axis.
 #pragma once
 
+#include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/bare_parameters.hpp"
 #include "firmware/app/protocol/excitation_messages.hpp"
 #include "firmware/core/excitation/excitation_run.hpp"
@@ -20,24 +21,39 @@ class ExcitationService {
   }
 
   // The background, while nothing is active.
-  bool load(const ExcitationEntriesRequest& request, const AxisValues& values, float rate_Hz) {
+
+  /// Entries belong together: of one client, for one axis and one input. Others' are forgotten.
+  bool load(const ExcitationEntriesRequest& request, ClientToken client, const AxisValues& values, float rate_Hz) {
     if (request.count > kEntriesPerReport || request.first + request.count > kExcitationEntries ||
         request.input >= kExcitationInputs)
       return false;
+    for (std::size_t i = 0; i < request.count; ++i)
+      if (!ScalarTraits<float>::is_finite(request.entry[i].value)) return false;
+    if (client != client_ || request.axis != loaded_axis_ || request.input != loaded_input_) forget();
+    client_ = client;
+    loaded_axis_ = request.axis;
+    loaded_input_ = request.input;
     for (std::size_t i = 0; i < request.count; ++i) {
       const auto& entry = request.entry[i];
-      if (!ScalarTraits<float>::is_finite(entry.value)) return false;
+      loaded_ |= 1u << (request.first + i);
       plan_.entry[request.first + i] = {in_core_units(entry.value, request.input, values, rate_Hz), entry.first,
                                         entry.second};
     }
     return true;
   }
 
-  /// False where it makes no sense. start() follows.
+  /// What was loaded no longer counts: its owner is another, or its units have changed.
+  void forget() { loaded_ = 0; }
+  bool is_others(ClientToken client) const { return loaded_ != 0 && client != client_; }
+
+  /// False where it makes no sense, or not all of its entries were loaded for it. start() follows.
   bool plan(const ExcitationRequest& r, const AxisValues& values, float rate_Hz) {
     for (const float value : {r.speed, r.drive_velocity, r.volts, r.amplitude, r.ride})
       if (!ScalarTraits<float>::is_finite(value)) return false;
     if (r.kind >= kExcitationKinds || r.input >= kExcitationInputs || !(r.speed > 0) || r.speed > kMostSpeedCounts)
+      return false;
+    const unsigned needed = r.count < kExcitationEntries ? (1u << r.count) - 1 : (1u << kExcitationEntries) - 1;
+    if (needed != 0 && ((loaded_ & needed) != needed || r.axis != loaded_axis_ || r.input != loaded_input_))
       return false;
     plan_.kind = static_cast<ExcitationKind>(r.kind);
     plan_.input = static_cast<ExcitationInput>(r.input);
@@ -101,6 +117,9 @@ class ExcitationService {
   ExcitationPlan<Scalar> plan_{};
   ExcitationRun<Scalar> run_;
   std::size_t axis_ = 0;
+  ClientToken client_ = 0;  ///< who loaded the entries
+  unsigned loaded_ = 0;     ///< entries
+  std::uint8_t loaded_axis_ = 0, loaded_input_ = 0;
 };
 
 }  // namespace firmware

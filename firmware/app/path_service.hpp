@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "firmware/app/motion_owner.hpp"
 #include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/refusal_status.hpp"
 #include "firmware/core/axis_check.hpp"
@@ -22,15 +23,21 @@ class PathService {
   explicit PathService(Group& axes) : axes_(axes) {}
 
   bool is_moving() const { return follower_.is_moving(); }
+  bool is_open() const { return follower_.is_open(); }
+  /// Nodes, start and rate are those of the client that opened it, or took it over in motion.
+  bool is_others(ClientToken client) const { return is_open() && client != client_; }
+  void take_over(ClientToken client) {
+    if (is_moving()) client_ = client;
+  }
   bool leads(std::size_t axis) const { return follower_.is_open() && follower_.is_led(axis); }
 
   /// The axes of the mask are enabled and stand.
-  Status open(const OpenPathRequest& request, OpenPathPayload& opened) {
+  Status open(const OpenPathRequest& request, ClientToken client, OpenPathPayload& opened) {
     if (request.node_format != kPathNodeFormat) return Status::wrong_version;
     if (request.mask == 0 || request.mask >> kAxes != 0 || request.relative > 1 || !is_possible(request.units))
       return Status::malformed;
     std::array<CountPosition, kAxes> start{};
-    float clock_change = 1.0F, clock_ramp = 1.0F;
+    std::array<PathLimits, kAxes> limits_of_axes{};
     const ShutOut guard;
     if (is_moving()) return Status::wrong_state;
     for (std::size_t i = 0; i < kAxes; ++i) {
@@ -39,23 +46,20 @@ class PathService {
       start[i] = axes_[i].leading();
       const MotionLimits limits = motion_limits(axes_[i].parameters());
       using Traits = ScalarTraits<float>;
-      const float velocity = Traits::from_increment(limits.velocity), jerk = Traits::from_increment(limits.jerk);
-      clock_change =
-          std::min(clock_change, PathClock::change_limit(velocity, Traits::from_increment(limits.acceleration), jerk));
-      clock_ramp = std::min(clock_ramp, PathClock::ramp_limit(velocity, jerk));
+      limits_of_axes[i] = {Traits::from_increment(limits.velocity), Traits::from_increment(limits.acceleration),
+                           Traits::from_increment(limits.jerk)};
     }
-    follower_.open(request.mask, request.units, start, ScalarTraits<float>::to_increment(clock_change),
-                   ScalarTraits<float>::to_increment(clock_ramp));
+    follower_.open(request.mask, request.units, start, limits_of_axes);
     for (std::size_t i = 0; i < kAxes; ++i)
       opened.axis[i] = {static_cast<std::uint32_t>(start[i].counts), static_cast<std::int32_t>(start[i].counts >> 32),
                         static_cast<std::uint32_t>(start[i].fraction >> (kFractionBits - 32))};
     opened.room = kNodes;
+    client_ = client;
     return Status::ok;
   }
 
   /// Whole nodes as they came; those before one that is refused hold.
   Status push(std::span<const std::byte> bytes) {
-    const ShutOut guard;
     if (!follower_.is_open()) return Status::wrong_state;
     const std::size_t size = path_node_size(static_cast<std::size_t>(std::popcount(follower_.mask())));
     if (bytes.empty() || bytes.size() % size != 0) return Status::malformed;
@@ -63,8 +67,12 @@ class PathService {
     for (; !bytes.empty(); bytes = bytes.subspan(size)) {
       bool is_last = false;
       const Node node = node_of(bytes.first(size), is_last);
-      const Status status = status_of(follower_.push(node, is_last, is_inside));
-      if (status != Status::ok) return status;
+      typename Follower::Step step;
+      const Refusal refusal = follower_.examine(node, is_last, is_inside, step);
+      if (refusal != Refusal::none) return status_of(refusal);
+      const ShutOut guard;
+      const Status taken = status_of(follower_.take(node, is_last, step));
+      if (taken != Status::ok) return taken;
     }
     return Status::ok;
   }
@@ -110,11 +118,14 @@ class PathService {
     return state;
   }
 
-  /// True where an axis is on its path: then all stop there, and this one is disabled afterwards.
+  /// True where an axis is on its path: then all stop there, and this one is disabled afterwards. A path that has not
+  /// begun ends.
   bool disables_at_end(std::size_t axis) {
     const ShutOut guard;
-    if (!is_moving() || !follower_.is_led(axis)) return false;
+    if (!leads(axis)) return false;
+    const bool is_on_its_way = is_moving();
     follower_.stop();
+    if (!is_on_its_way) return false;
     disabled_at_end_ |= 1u << axis;
     return true;
   }
@@ -122,6 +133,7 @@ class PathService {
   /// The background's own work, once a round.
   void poll() {
     if (follower_.is_open()) follower_.prepare();
+    if (follower_.phase() == PathPhase::open) end_without_axes();
     if (disabled_at_end_ == 0 || is_moving()) return;
     const ShutOut guard;
     for (std::size_t i = 0; i < kAxes; ++i)
@@ -137,6 +149,13 @@ class PathService {
   }
 
  private:
+  /// What was loaded for enabled axes does not outlive their enables.
+  void end_without_axes() {
+    const ShutOut guard;
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if (follower_.is_led(i) && axes_[i].state() != SupervisorState::enabled) follower_.stop(PathEnd::fault);
+  }
+
   using Follower = PathFollower<kAxes, kNodes>;
   using Node = typename Follower::Node;
 
@@ -162,6 +181,7 @@ class PathService {
   Group& axes_;
   Follower follower_;
   unsigned disabled_at_end_ = 0;  ///< axes
+  ClientToken client_ = 0;
 };
 
 }  // namespace firmware

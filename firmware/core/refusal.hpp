@@ -47,8 +47,9 @@ enum class Refusal : std::uint16_t {
   outside_travel = 3 << 12,         ///< the target is beyond a limit of travel
   path_not_open = 4 << 12,
   path_full = 5 << 12,            ///< no room for another node: send it later
-  path_too_fast = 6 << 12,        ///< a node's word or duration is out of range
+  path_too_fast = 6 << 12,        ///< a node beyond an axis's limits; its word or duration is out of range
   path_ends_in_motion = 7 << 12,  ///< the last node, and it is not at rest
+  path_headroom = 8 << 12,        ///< a node claims more than its geometry leaves
 };
 
 constexpr std::uint16_t parameter_behind(Refusal refusal) {

@@ -32,6 +32,11 @@ constexpr milliseconds kSavePatience{5000};
   firmware::RefusedValuePayload problem;
   if (!reply.get(problem)) fail(ExitCode::protocol, "the board refuses a value but does not say which");
   const firmware::ParameterKey key{problem.key};
+  if (reply.type == firmware::reply_to(MessageType::start_excitation))
+    fail(ExitCode::refused,
+         fmt::format("the axis is not fitted, and no experiment on it goes beyond {} = {:g}: choose a smaller box, or "
+                     "raise the limit if the machine may be moved so (axistool set-params)",
+                     full_name(key), std::bit_cast<float>(problem.bits)));
   if (reply.status == Status::drive_enabled)
     fail(ExitCode::refused,
          fmt::format("{} may change only while all drives are disabled: `axistool disable`", full_name(key)));
@@ -92,7 +97,8 @@ void require_ok(const Message& reply, const std::string& others = "") {
     case Status::restarting:
       fail(ExitCode::refused, "the board is about to restart: try again in a second");
     case Status::others_capture:
-      fail(ExitCode::refused, "another program captures: wait until it has ended");
+      fail(ExitCode::refused,
+           "another program captures: wait until it has ended (a program that died holds a capture for two seconds)");
     case Status::not_homed:
       fail(ExitCode::refused,
            "the axis does not know where it is: `axistool home` first (or move it --relative, or jog it)");
@@ -146,7 +152,8 @@ Payload payload_of(const Message& reply) {
 BoardClient::BoardClient(std::unique_ptr<ReportLink> link, milliseconds patience)
     : link_(std::move(link)),
       patience_(patience),
-      client_(static_cast<std::uint16_t>(std::uniform_int_distribution<unsigned>(1, 0xFFFF)(randomness()))) {}
+      client_(static_cast<std::uint16_t>(std::uniform_int_distribution<unsigned>(1, 0xFFFF)(randomness()))),
+      pass_(static_cast<std::uint8_t>(std::uniform_int_distribution<unsigned>(1, 0xFF)(randomness()))) {}
 
 template <typename Payload>
 Message BoardClient::request(MessageType type, const Payload& payload) {
@@ -171,6 +178,7 @@ Message BoardClient::exchange(Message message, milliseconds patience) {
 Message BoardClient::reply_to(Message message, milliseconds patience) {
   message.sequence = ++sequence_;
   message.client = client_;
+  message.set_pass(pass_);
   link_->send(firmware::encode(message));
   const auto deadline = link_->now() + patience;
   while (const auto reply = receive(deadline)) {

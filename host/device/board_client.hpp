@@ -118,6 +118,7 @@ class BoardClient {
   std::unique_ptr<ReportLink> link_;
   std::chrono::milliseconds patience_;
   std::uint16_t client_;  ///< this program among those that talk to the board; never 0
+  std::uint8_t pass_;     ///< never comes back from the board, so nobody else learns of it; never 0
   std::uint16_t sequence_ = 0;
   std::size_t axis_count_ = 0;  ///< 0: not asked yet
   std::deque<Samples> samples_;

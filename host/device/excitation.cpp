@@ -169,7 +169,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
     firmware::ExcitationRequest request = excitation.request;
     request.axis = axis;
     if (!is_capturing) board.start_capture(capture);
-    is_capturing = true;
+    is_capturing = true;  // from here on it is this program's to stop
     board.start_excitation(request);
     firmware::ExcitationStatePayload state;
     bool is_asked = false;
@@ -206,7 +206,7 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
   } catch (const Failure&) {
     try {
       board.stop_excitation();
-      board.stop_capture();
+      if (is_capturing) board.stop_capture();
     } catch (const Failure&) {  // the board has gone: the first failure says so
     }
     throw;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 #include "firmware/app/channel_words.hpp"
 #include "firmware/app/parameters/axis_values.hpp"
@@ -130,12 +131,35 @@ std::vector<std::uint16_t> fetch(BoardClient& board, const firmware::TriggerStat
   return all;
 }
 
+bool is_complete(const firmware::TriggerStatePayload& state) {
+  return state.phase == static_cast<std::uint8_t>(TriggerPhase::complete);
+}
+
+/// What the board holds must be what was asked for: another program may have armed it anew.
+void require_own(const firmware::TriggerStatePayload& state, const firmware::TriggerRequest& asked) {
+  const bool is_same = state.channels == asked.channels && state.wide == asked.wide && state.every == asked.every &&
+                       state.kind == asked.kind && state.axis == asked.axis;
+  const bool fits = !is_complete(state) || (state.trigger_row <= asked.before &&
+                                            state.rows == state.trigger_row + asked.after && state.survived == 0);
+  if (!is_same || !fits || state.phase == static_cast<std::uint8_t>(TriggerPhase::idle))
+    throw Failure(ExitCode::refused,
+                  "the board holds another capture than was asked for: another program has armed it");
+}
+
+/// While its rows were fetched, too, it stayed the same.
+void require_unchanged(BoardClient& board, const firmware::TriggerStatePayload& before) {
+  const firmware::TriggerStatePayload now = board.trigger_state();
+  if (std::memcmp(&now, &before, sizeof now) != 0)
+    throw Failure(ExitCode::refused, "another program armed the board's capture while it was read: read it again");
+}
+
 /// The rows of one axis out of those of all.
 Capture capture_of(BoardClient& board, const firmware::TriggerStatePayload& state, const CaptureSettings& settings) {
   const firmware::ParameterValues values = board.read_values();
   const std::int64_t counts = static_cast<std::int64_t>(state.counts_high) * (std::int64_t{1} << 32) + state.counts_low;
   ChannelScale scale(values.axis(settings.axis), board.identify().fixed_point != 0, counts);
   const std::vector<std::uint16_t> half = fetch(board, state);
+  require_unchanged(board, state);
   // The rows before the trigger go back from where it was.
   Widener widen(counts);
   Capture capture;
@@ -246,7 +270,12 @@ Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& setti
   const auto began = board.now();
   for (;;) {
     const firmware::TriggerStatePayload state = board.trigger_state();
-    if (state.phase == static_cast<std::uint8_t>(TriggerPhase::complete)) return capture_of(board, state, wanted);
+    require_own(state, request);
+    if (is_complete(state)) {
+      Capture capture = capture_of(board, state, wanted);
+      board.arm_trigger({});  // lets go of it: what was read may be read again
+      return capture;
+    }
     const bool is_waiting = state.phase == static_cast<std::uint8_t>(TriggerPhase::waiting);
     const std::chrono::duration<double> waited = board.now() - began;
     if (stop() || (is_waiting && waited.count() > wanted.patience_s)) {
@@ -261,7 +290,7 @@ Capture run_triggered_capture(BoardClient& board, const TriggeredSettings& setti
 Capture read_triggered_capture(BoardClient& board, TriggeredSettings& settings) {
   const firmware::TriggerStatePayload state = board.trigger_state();
   CaptureSettings& taken = settings.capture;
-  if (state.phase != static_cast<std::uint8_t>(TriggerPhase::complete) || state.channels.at(taken.axis) == 0)
+  if (!is_complete(state) || state.channels.at(taken.axis) == 0)
     throw Failure(ExitCode::refused, fmt::format("the board holds no capture of axis {}: arm one with --trigger",
                                                  firmware::kAxisNames.at(taken.axis)));
   taken.channels.clear();

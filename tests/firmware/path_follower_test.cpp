@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "tests/firmware/circle_in_counts.hpp"
 
@@ -41,17 +42,13 @@ struct LedGroup {
 
 class Followed : public testing::Test {
  protected:
-  static constexpr firmware::PathUnits kUnits{16, 24, 32};
+  static constexpr firmware::PathUnits kUnits{16, 24, 31};
   static constexpr double kSpeed = 50.0, kAcceleration = 0.8, kJerk = 0.02;  ///< of the axes, counts and samples
-  static Increment increment(double counts) {
-    return static_cast<Increment>(std::llround(std::ldexp(counts, firmware::kFractionBits)));
-  }
+  static constexpr firmware::PathLimits kLimits{50.0F, 0.8F, 0.02F};
 
   void open(CountPosition start = {}) {
     for (LedAxis& axis : group_.axis) axis.at = start;
-    follower_.open(3, kUnits, {start, start},
-                   increment(firmware::PathClock::change_limit(kSpeed, kAcceleration, kJerk)),
-                   increment(firmware::PathClock::ramp_limit(kSpeed, kJerk)));
+    follower_.open(3, kUnits, {start, start}, {kLimits, kLimits});
     follower_.hold(false);
     follower_.override_rate(kOneCount);
     given_ = {};
@@ -172,6 +169,98 @@ TEST_F(Followed, StopsOnThePathWhereItIsAsked) {
   EXPECT_LT(off_, 1e-3);
 }
 
+/// A circle as fast as its centripetal acceleration allows, as hosts plan it: what a stop takes there, by the board's
+/// own look at its geometry and not by what nodes claim. core/path/README.md states the bound.
+class StopOnACircle : public Followed {
+ protected:
+  /// Counts along the path from the request to rest, begun where it is fastest; `u`: the centripetal share of the
+  /// acceleration there, `x`: the share of the velocity.
+  double way(double u, double x) {
+    const double speed = x * kSpeed, radius = speed * speed / (u * kAcceleration);
+    circle_ = {radius, std::round(1.875 * 2.0 * std::numbers::pi * radius / speed / kPiece) * kPiece};
+    headroom_ = 0;
+    open();
+    hardest_ = off_ = 0.0;
+    for (int k = 0; k < circle_.samples / 2; ++k) step(pieces());
+    follower_.stop();
+    double counts = 0.0;
+    for (int k = 0; k < 2000 && follower_.is_moving(); ++k) {
+      const double before[] = {group_[0].counts(), group_[1].counts()};
+      step(pieces());
+      counts += std::hypot(group_[0].counts() - before[0], group_[1].counts() - before[1]);
+    }
+    EXPECT_EQ(follower_.end(), PathEnd::asked);
+    return counts;
+  }
+  static double bound(double u, double x) {
+    const double change = firmware::PathClock::change_limit(kSpeed, kAcceleration, kJerk),
+                 ramp = firmware::PathClock::ramp_limit(kSpeed, kJerk);
+    const double left = std::min(0.97, 0.9 * std::sqrt(1.0 - u * u) / x), square = 1.0 / (1.0 - left);
+    return x * kSpeed * (square / (2.0 * change) * std::log(1.0 / left) + change / ramp);
+  }
+};
+
+TEST_F(StopOnACircle, TakesNoMoreThanIsStated) {
+  for (const double u : {0.1, 0.3, 0.5, 0.7, 0.9, 0.96})
+    for (const double x : {0.4, 0.8, 0.95}) {
+      const double counts = way(u, x);
+      EXPECT_LT(counts, bound(u, x)) << u << " " << x;
+      EXPECT_LT(hardest_, 1.02) << "share of the acceleration limit, path and clock together";
+      EXPECT_LT(off_, 1e-2);
+    }
+}
+
+/// By the worst that nodes might be, whatever they are, it was 2.5 times the way.
+TEST_F(StopOnACircle, OfTheFastestKindTakesLittleMoreThanAStraightStop) {
+  EXPECT_LT(way(0.96, 0.8), 1.5 * way(0.01, 0.8));
+}
+
+TEST_F(Followed, ClaimsBeyondTheGeometryAreRefused) {
+  circle_ = {2000.0, 620.0};  // 0.72 of 0.8 at its fastest
+  headroom_ = 15;
+  open();
+  const auto anywhere = [](std::size_t, std::int64_t) { return true; };
+  Refusal refusal = Refusal::none;
+  for (; refusal == Refusal::none && pushed_ < pieces() / 2; ++pushed_) {
+    auto node = circle_.node(kPiece * (pushed_ + 1), kPiece, kUnits, false, given_);
+    node.headroom_here = node.headroom_ahead = headroom_;
+    refusal = follower_.push(node, false, anywhere);
+  }
+  EXPECT_EQ(refusal, Refusal::path_headroom);
+}
+
+/// 0 to `speed` in `samples` by a node with neither acceleration: 1.5 times the mean acceleration in its middle.
+TEST_F(Followed, NodesBeyondAnAxissLimitsAreRefusedWhenTheyCome) {
+  const auto anywhere = [](std::size_t, std::int64_t) { return true; };
+  const auto refusal = [&](double speed, int samples) {
+    open();
+    firmware::PathNode<kAxes> node;
+    node.set_time(static_cast<std::uint32_t>(samples) << firmware::kPathTimeBits);
+    node.axis[0] = {static_cast<std::int32_t>(std::lround(speed * samples / 2 * 65536)),
+                    static_cast<std::int32_t>(std::lround(std::ldexp(speed, 24))), 0};
+    return follower_.push(node, false, anywhere);
+  };
+  EXPECT_EQ(refusal(0.99 * kSpeed, 200), Refusal::none);
+  EXPECT_EQ(refusal(1.05 * kSpeed, 200), Refusal::path_too_fast);
+  EXPECT_EQ(refusal(30.0, 60), Refusal::none) << "0.75 of 0.8";
+  EXPECT_EQ(refusal(30.0, 50), Refusal::path_too_fast) << "0.9 of 0.8";
+}
+
+/// Both nodes lie inside, and what is between them does not.
+TEST_F(Followed, APieceThatLeavesTheTravelBetweenItsNodesIsRefused) {
+  open();
+  const auto inside = [](std::size_t, std::int64_t counts) { return counts >= -10 && counts <= 3000; };
+  const auto push = [&](int samples, double travel, double speed) {
+    firmware::PathNode<kAxes> node;
+    node.set_time(static_cast<std::uint32_t>(samples) << firmware::kPathTimeBits);
+    node.axis[0] = {static_cast<std::int32_t>(std::lround(travel * 65536)),
+                    static_cast<std::int32_t>(std::lround(std::ldexp(speed, 24))), 0};
+    return follower_.push(node, false, inside);
+  };
+  ASSERT_EQ(push(200, 2500, 25.0), Refusal::none);
+  EXPECT_EQ(push(300, 0, -25.0), Refusal::outside_travel) << "it turns round beyond 3,000";
+}
+
 /// The others of a group hear of an axis's fault in their next step, and stop from the speed that they have in it.
 TEST_F(Followed, LeadsOnForOneSampleWhenAnAxisLeaves) {
   open();
@@ -193,12 +282,14 @@ TEST_F(Followed, RefusesWhatCannotBeRight) {
   EXPECT_FALSE(follower_.start()) << "nothing to follow";
   node.duration = firmware::kShortestPiece - 1;
   EXPECT_EQ(follower_.push(node, false, anywhere), Refusal::path_too_fast);
-  follower_.open(3, firmware::PathUnits{}, {}, kOneCount / 100, kOneCount / 1000);
+  follower_.open(3, firmware::PathUnits{}, {}, {kLimits, kLimits});
   node.duration = firmware::kLongestPiece;
   node.axis[0].acceleration = std::numeric_limits<std::int32_t>::max();
   EXPECT_EQ(follower_.push(node, false, anywhere), Refusal::path_too_fast) << "32 counts a sample^2, for 2^10 samples";
   open();
   node.duration = 10 * firmware::kShortestPiece;
+  node.axis[0].acceleration = 0;
+  node.axis[0].velocity = 1;
   EXPECT_EQ(follower_.push(node, true, anywhere), Refusal::path_ends_in_motion);
   EXPECT_EQ(follower_.push(node, false, [](std::size_t, std::int64_t) { return false; }), Refusal::outside_travel);
   for (std::size_t i = 0; i < Follower::kNodes; ++i) ASSERT_EQ(follower_.push(node, false, anywhere), Refusal::none);

@@ -23,7 +23,7 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     // id scope  name                        type    unit            linear     minimum maximum initial  change
     {1, board, "control.rate", whole, "Hz", "Hz", 250, 20000, 1000, while_disabled,
      "control periods a second; 1 / drive.sample_period of every fitted axis"},
-    {2, board, "host.timeout", real, "s", "s", 0.02F, 10, 0.2F, any_time,
+    {2, board, "host.timeout", real, "s", "s", 0.02F, 10, 0.2F, while_disabled,
      "silence of the client that commands motion, after which the axes slow down and stop"},
     {3, board, "host.standing_timeout", real, "s", "s", 0.1F, 3600, 60, any_time,
      "the same while the axes stand: then they are disabled"},
@@ -166,6 +166,13 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "until a released brake holds nothing: no motion before"},
     {250, axis, "brake.apply_time", real, "s", "s", 0, 5, 0.1F, while_disabled,
      "until an applied brake holds: the enable stays as long"},
+
+    // Of an excitation in open loop: app/limit_reply.hpp.
+    {256, axis, "unfitted.volts", real, "V", "V", 0, 20, 6, while_disabled,
+     "largest command of an experiment while the axis is not fitted"},
+    {257, axis, "unfitted.time", real, "s", "s", 0, 3600, 120, while_disabled, "longest experiment, likewise"},
+    {258, axis, "unfitted.counts", whole, "", "", 1, 268435456, 200000, while_disabled,
+     "farthest travel of an experiment to either side, counts, likewise"},
 
     // Behind the feedback: firmware/core/control/control_filter.hpp.
     {272, axis, "notch.on", toggle, "", "", 0, 1, 0, while_disabled, "take a resonance's frequency out of the command"},

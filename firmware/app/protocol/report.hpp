@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "firmware/app/crc32.hpp"
+#include "firmware/app/motion_owner.hpp"
 #include "firmware/app/protocol/messages.hpp"
 #include "hal/usb_hid.hpp"
 
@@ -23,11 +24,15 @@ static_assert(kCrcOffset - kPayloadOffset == kPayloadSize);
 /// A report's contents. Bytes of the payload beyond `length` are 0.
 struct Message {
   MessageType type = MessageType::identify;
-  Status status = Status::ok;
+  Status status = Status::ok;  ///< of a reply; a request has its client's pass here
   std::uint16_t sequence = 0;
   std::uint8_t length = 0;
   std::uint16_t client = 0;  ///< who asks; a reply repeats it
   std::array<std::byte, kPayloadSize> payload{};
+
+  constexpr void set_pass(std::uint8_t pass) { status = static_cast<Status>(pass); }
+  /// Of a request: number and pass.
+  constexpr ClientToken asker() const { return client | ClientToken{static_cast<std::uint8_t>(status)} << 16; }
 
   template <typename Payload>
   void put(const Payload& value) {

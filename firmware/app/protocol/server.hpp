@@ -9,6 +9,7 @@
 #include "firmware/app/image_header.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
 #include "firmware/app/protocol/report.hpp"
+#include "firmware/app/protocol/request_rules.hpp"
 
 namespace firmware {
 
@@ -39,6 +40,8 @@ class ProtocolServer {
     if (!usb.is_configured()) {
       reply_waits_ = false;
       app_.capture().stop();
+      capture_claim_.release();
+      trigger_claim_.release();
       if (restart_wanted_) restart_when_the_reply_is_gone();
       return;
     }
@@ -71,11 +74,13 @@ class ProtocolServer {
     reply.type = reply_to(request.type);
     reply.sequence = request.sequence;
     reply.client = request.client;
-    reply.status = may_act(request);
+    const RequestRule* const rule = rule_of(request.type);
+    reply.status = rule != nullptr ? permission(*rule, request) : Status::unknown_request;
     if (reply.status == Status::ok) reply.status = handle(request, reply);
-    if (reply.status == Status::ok && begins_motion(request.type)) app_.become_owner(request.client);
-    if (request.client == capture_client_) capture_heard_at_ = app_.control_periods();
-    app_.owner_heard(request.client);  // last: a reply that says "at rest" also ends the watch for the heart-beat
+    if (reply.status == Status::ok && rule->commands) app_.become_owner(request.asker());
+    capture_claim_.hear(request.asker(), app_.control_periods());
+    trigger_claim_.hear(request.asker(), app_.control_periods());
+    app_.owner_heard(request.asker());  // last: a reply that says "at rest" also ends the watch for the heart-beat
     return encode(reply);
   }
 
@@ -88,34 +93,37 @@ class ProtocolServer {
     return request.get(payload) ? handler(payload) : Status::malformed;
   }
 
-  static constexpr bool begins_motion(MessageType type) {
-    return type == MessageType::enable || type == MessageType::jog || type == MessageType::move ||
-           type == MessageType::home || type == MessageType::start_excitation || type == MessageType::take_over ||
-           type == MessageType::open_path;
+  Status permission(const RequestRule& rule, const Message& request) {
+    if (request.length < rule.least || request.length > rule.most) return Status::malformed;
+    if (restart_wanted_ && acts(rule)) return Status::restarting;
+    const ClientToken client = request.asker();
+    switch (rule.asker) {
+      case Asker::anyone:
+        break;
+      case Asker::commander:
+        if (!app_.may_command(client)) return Status::others_motion;
+        break;
+      case Asker::loader:
+        if (!app_.may_command(client) || app_.is_others_excitation(client)) return Status::others_motion;
+        break;
+      case Asker::path_client:
+        if (!app_.may_command(client) || app_.path().is_others(client)) return Status::others_motion;
+        break;
+      case Asker::capture_client:
+        if (app_.capture().is_running() && is_others(capture_claim_, client)) return Status::others_capture;
+        break;
+      case Asker::trigger_client:
+        if (is_others(trigger_claim_, client)) return Status::others_capture;
+        break;
+    }
+    return rule.in_motion || !app_.is_in_motion() ? Status::ok : Status::drive_enabled;
   }
 
-  /// Looking, stopping and disabling are everybody's; the rest waits for the end of another client's motion.
-  Status may_act(const Message& request) {
-    switch (request.type) {
-      case MessageType::enable:
-      case MessageType::jog:
-      case MessageType::move:
-      case MessageType::home:
-      case MessageType::load_excitation:
-      case MessageType::start_excitation:
-      case MessageType::open_path:
-      case MessageType::path_nodes:
-      case MessageType::start_path:
-      case MessageType::path_rate:
-      case MessageType::clear_faults:
-      case MessageType::commit:
-      case MessageType::save:
-      case MessageType::restart:
-        if (restart_wanted_) return Status::restarting;
-        return app_.may_command(request.client) ? Status::ok : Status::others_motion;
-      default:
-        return Status::ok;
-    }
+  /// A capture is its client's as long as that one is heard now and then.
+  bool is_others(const ClientClaim& claim, ClientToken client) {
+    constexpr std::uint32_t kPatience_s = 2;
+    const auto patience = kPatience_s * static_cast<std::uint32_t>(app_.active().template get<"control.rate">());
+    return claim.is_others(client, app_.control_periods(), patience);
   }
 
   Status handle(const Message& request, Message& reply) {
@@ -124,9 +132,9 @@ class ProtocolServer {
         reply.put(identity());
         return Status::ok;
       case MessageType::status:
-        if (request.length == 0) return tell_status({}, request.client, reply);
+        if (request.length == 0) return tell_status({}, request.asker(), reply);
         return with<StatusRequest>(request,
-                                   [&](const StatusRequest& r) { return tell_status(r, request.client, reply); });
+                                   [&](const StatusRequest& r) { return tell_status(r, request.asker(), reply); });
       case MessageType::timing:
         return with<TimingRequest>(request, [&](const TimingRequest& r) { return tell_timing(r, reply); });
       case MessageType::read_values:
@@ -159,7 +167,7 @@ class ProtocolServer {
       case MessageType::path_state:
         return handle_path(request, reply);
       case MessageType::arm_trigger:
-        return with<TriggerRequest>(request, [&](const TriggerRequest& r) { return app_.arm(r); });
+        return with<TriggerRequest>(request, [&](const TriggerRequest& r) { return arm(r, request.asker()); });
       case MessageType::trigger_state:
         reply.put(app_.trigger_state());
         return Status::ok;
@@ -179,11 +187,16 @@ class ProtocolServer {
     switch (request.type) {
       case MessageType::load_excitation:
         return with<ExcitationEntriesRequest>(request, [&](const ExcitationEntriesRequest& r) {
-          return r.axis < kAxes ? app_.load_excitation(r) : Status::malformed;
+          return r.axis < kAxes ? app_.load_excitation(r, request.asker()) : Status::malformed;
         });
       case MessageType::start_excitation:
-        return with<ExcitationRequest>(
-            request, [&](const ExcitationRequest& r) { return r.axis < kAxes ? app_.excite(r) : Status::malformed; });
+        return with<ExcitationRequest>(request, [&](const ExcitationRequest& r) {
+          if (r.axis >= kAxes) return Status::malformed;
+          RefusedValuePayload refused;
+          const Status status = app_.excite(r, refused);
+          if (status == Status::bad_value) reply.put(refused);
+          return status;
+        });
       case MessageType::stop_excitation:
         app_.stop_excitation();
         [[fallthrough]];
@@ -193,12 +206,11 @@ class ProtocolServer {
     }
   }
 
-  /// A path belongs to the client that opened it; everybody may look and stop.
   Status handle_path(const Message& request, Message& reply) {
     if (request.type == MessageType::open_path)
       return with<OpenPathRequest>(request, [&](const OpenPathRequest& r) {
         OpenPathPayload opened;
-        const Status status = app_.open_path(r, opened);
+        const Status status = app_.open_path(r, request.asker(), opened);
         if (status == Status::ok) reply.put(opened);
         return status;
       });
@@ -206,7 +218,7 @@ class ProtocolServer {
     if (request.type == MessageType::stop_path)
       app_.path().stop();
     else if (request.type != MessageType::path_state)
-      status = app_.is_owner(request.client) ? handle_own_path(request) : Status::others_motion;
+      status = handle_own_path(request);
     reply.put(app_.path().state());
     return status;
   }
@@ -255,9 +267,11 @@ class ProtocolServer {
         app_.clear_faults();
         return Status::ok;
       case MessageType::start_capture:
-        return with<CaptureRequest>(request, [&](const CaptureRequest& r) { return start_capture(r, request.client); });
+        return with<CaptureRequest>(request,
+                                    [&](const CaptureRequest& r) { return start_capture(r, request.asker()); });
       case MessageType::stop_capture:
         app_.capture().stop();
+        capture_claim_.release();
         reply.put(app_.capture().counts());
         return Status::ok;
       case MessageType::read_fault_capture:
@@ -405,24 +419,25 @@ class ProtocolServer {
 
   static bool names_axes(const AxesRequest& request) { return request.mask != 0 && request.mask >> kAxes == 0; }
 
-  /// A capture is its client's as long as that one is heard now and then.
-  bool is_others_capture(ClientToken client) {
-    constexpr std::uint32_t kPatience_s = 2;
-    const auto patience = kPatience_s * static_cast<std::uint32_t>(app_.active().template get<"control.rate">());
-    return app_.capture().is_running() && client != capture_client_ &&
-           app_.control_periods() - capture_heard_at_ <= patience;
-  }
-
   Status start_capture(const CaptureRequest& request, ClientToken client) {
     bool has_unknown = false;
     for (std::size_t axis = 0; axis < request.channels.size(); ++axis)
       has_unknown = has_unknown || request.channels[axis] >> (axis < kAxes ? kChannels : 0) != 0;
     if (request.words() == 0 || request.words() > kWordsPerReport || has_unknown || request.every == 0)
       return Status::malformed;
-    if (is_others_capture(client)) return Status::others_capture;
     app_.start_capture(request);
-    capture_client_ = client;
-    capture_heard_at_ = app_.control_periods();
+    capture_claim_.take(client, app_.control_periods());
+    return Status::ok;
+  }
+
+  /// Whoever ends what is armed, or what it has read, leaves the memory to others.
+  Status arm(const TriggerRequest& request, ClientToken client) {
+    const Status status = app_.arm(request);
+    if (status != Status::ok) return status;
+    if (request.after != 0)
+      trigger_claim_.take(client, app_.control_periods());
+    else
+      trigger_claim_.release();
     return Status::ok;
   }
 
@@ -458,7 +473,7 @@ class ProtocolServer {
       Message message;
       message.type = MessageType::samples;
       message.sequence = samples_sent_++;
-      message.client = capture_client_;
+      message.client = static_cast<std::uint16_t>(capture_claim_.client());
       message.put(payload);
       message.length = static_cast<std::uint8_t>(sizeof payload.first_row + 4 * rows * app_.capture().words_per_row());
       samples_ = encode(message);
@@ -478,8 +493,7 @@ class ProtocolServer {
   bool restart_wanted_ = false;
   std::uint32_t restart_asked_at_ = 0;
   std::uint16_t samples_sent_ = 0;
-  ClientToken capture_client_ = 0;  ///< whose capture it is
-  std::uint32_t capture_heard_at_ = 0;
+  ClientClaim capture_claim_, trigger_claim_;
   std::uint32_t reports_ = 0;
   std::uint32_t rejected_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "firmware/core/path/path_clock.hpp"
+#include "firmware/core/path/path_load.hpp"
 #include "firmware/core/path/path_piece.hpp"
 #include "firmware/core/refusal.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
@@ -43,11 +44,12 @@ class PathFollower {
 
   // The background, while the control interrupt is shut out.
 
-  /// Axes of the mask stand; `start`: where their references are. The clock's limits: PathClock::configure.
+  /// Axes of the mask stand; `start`: where their references are. `limits` are above 0.
   constexpr void open(unsigned mask, const PathUnits& units, const std::array<CountPosition, axes>& start,
-                      Increment clock_change, Increment clock_ramp) {
+                      const std::array<PathLimits, axes>& limits) {
     mask_ = mask;
     units_ = units;
+    limits_ = limits;
     for (std::size_t i = 0; i < axes; ++i) {
       // Nodes stand on a grid; from what lies between two of its points the first sample leads to the grid.
       planned_[i] = start[i];
@@ -57,7 +59,17 @@ class PathFollower {
       last_increment_[i] = 0;
     }
     start_ = start;
-    clock_.configure(clock_change, clock_ramp);
+    float change = 1.0F, ramp = 1.0F;
+    for (std::size_t i = 0; i < axes; ++i) {
+      if (!is_led(i)) continue;
+      const PathLimits& limit = limits[i];
+      change = std::min(change, PathClock::change_limit(limit.velocity, limit.acceleration, limit.jerk));
+      ramp = std::min(ramp, PathClock::ramp_limit(limit.velocity, limit.jerk));
+    }
+    clock_.configure(ScalarTraits<float>::to_increment(change), ScalarTraits<float>::to_increment(ramp));
+    run_out_ = static_cast<std::uint64_t>((1.1F * change / ramp + 8) * kShortestPiece);
+    made_time_ = 0;
+    near_ = kHeadrooms.size() - 1;
     ring_first_ = ring_count_ = 0;
     made_.store(0);
     used_.store(0);
@@ -101,22 +113,66 @@ class PathFollower {
 
   /// The next node; `last`: nothing comes after it. `is_inside(axis, counts)` says whether an axis may go there.
   template <typename IsInside>
-  constexpr Refusal push(const Node& node, bool last, IsInside is_inside) {
+  constexpr Refusal push(Node node, bool last, IsInside is_inside) {
+    Step step;
+    const Refusal refusal = examine(node, last, is_inside, step);
+    return refusal != Refusal::none ? refusal : take(node, last, step);
+  }
+
+  // The background, at any time.
+
+  /// Where a node leads, and what it leaves to the clock.
+  struct Step {
+    std::array<CountPosition, axes> there{};
+    std::uint8_t headroom = 0;
+  };
+
+  /// What take() is told of a node, which must follow. A node claims headroom that its geometry gives, or less; what it
+  /// gives is what counts.
+  template <typename IsInside>
+  constexpr Refusal examine(const Node& node, bool last, IsInside is_inside, Step& step) const {
     if ((phase_ != PathPhase::open && phase_ != PathPhase::running) || is_complete_) return Refusal::path_not_open;
     if (ring_count_ == nodes) return Refusal::path_full;
-    if (node.duration < kShortestPiece || node.duration > kLongestPiece ||
-        !PathPiece<axes>::between(newest_, node, units_))
-      return Refusal::path_too_fast;
+    if (node.duration < kShortestPiece || node.duration > kLongestPiece) return Refusal::path_too_fast;
+    const auto piece = PathPiece<axes>::between(newest_, node, units_);
+    if (!piece) return Refusal::path_too_fast;
     if (last && !node.is_at_rest()) return Refusal::path_ends_in_motion;
-    std::array<CountPosition, axes> there = planned_;
+    const PathLoad<axes> load = path_load(*piece, mask_, limits_);
+    constexpr float kRounding = 1.02F, kCorners = 1.05F;  // of words; of the places that are looked at
+    if (!(load.velocity < kRounding) || !(load.acceleration < kCorners)) return Refusal::path_too_fast;
+    step.headroom = load.headroom();
+    if (node.headroom_here > step.headroom + 1u) return Refusal::path_headroom;
+    step.there = planned_;
     for (std::size_t i = 0; i < axes; ++i) {
-      there[i].counts += node.axis[i].travel >> units_.travel_bits;
+      if (!is_led(i)) continue;
+      const std::int64_t from = planned_[i].counts;
+      step.there[i].counts += node.axis[i].travel >> units_.travel_bits;
       const std::int64_t part = node.axis[i].travel & ((std::int64_t{1} << units_.travel_bits) - 1);
-      there[i].advance(part << (kFractionBits - units_.travel_bits));
-      if (is_led(i) && !is_inside(i, there[i].counts)) return Refusal::outside_travel;
+      step.there[i].advance(part << (kFractionBits - units_.travel_bits));
+      if (!is_inside(i, step.there[i].counts) || !is_inside(i, from + static_cast<std::int32_t>(load.least[i])) ||
+          !is_inside(i, from + static_cast<std::int32_t>(load.most[i])))
+        return Refusal::outside_travel;
     }
-    planned_ = there;
+    return Refusal::none;
+  }
+
+  /// While the control interrupt is shut out.
+  constexpr Refusal take(Node node, bool last, const Step& step) {
+    if (phase_ != PathPhase::open && phase_ != PathPhase::running) return Refusal::path_not_open;
+    planned_ = step.there;
     newest_ = node.axis;
+    // A third difference reaches over three samples, and some are begun.
+    constexpr std::uint64_t kNear = 4 * kShortestPiece;
+    const std::uint8_t here = std::min(step.headroom, near_);
+    std::uint64_t between = 0;
+    for (std::size_t k = ring_count_; k-- > 0 && between < run_out_;) {
+      Node& before = ring_[(ring_first_ + k) % nodes];
+      if (between < kNear && before.headroom_here > step.headroom) before.headroom_here = step.headroom & 15u;
+      if (before.headroom_ahead > step.headroom) before.headroom_ahead = step.headroom & 15u;
+      between += before.duration;
+    }
+    near_ = node.duration < kNear ? here : step.headroom;
+    node.headroom_here = node.headroom_ahead = here & 15u;
     ring_[(ring_first_ + ring_count_) % nodes] = node;
     ++ring_count_;
     accepted_ += node.duration;
@@ -127,14 +183,17 @@ class PathFollower {
     return Refusal::none;
   }
 
-  // The background, at any time.
-
-  /// Makes the next polynomials; some tens of samples' worth. Cheap where there is nothing to do.
+  /// Makes the next polynomials; some tens of samples' worth. Cheap where there is nothing to do. A node waits until
+  /// those are there that its clock must know of; one that is needed at once gets the least headroom ahead.
   constexpr void prepare() {
     while (ring_count_ > 0) {
       const std::uint32_t made = made_.load(std::memory_order_relaxed);
       if (made - used_.load(std::memory_order_acquire) == kPrepared) return;
-      const Node& node = ring_[ring_first_];
+      Node& node = ring_[ring_first_];
+      const bool is_known = is_complete_ || accepted_ - made_time_ - node.duration >= run_out_;
+      if (!is_known && made - used_.load(std::memory_order_acquire) >= 2) return;
+      if (!is_known) node.headroom_ahead = 0;
+      made_time_ += node.duration;
       pieces_[made % kPrepared] = *PathPiece<axes>::between(made == 0 ? Ends{} : prepared_to_, node, units_);
       prepared_to_ = node.axis;
       ring_first_ = (ring_first_ + 1) % nodes;
@@ -296,6 +355,10 @@ class PathFollower {
   std::array<Increment, axes> last_increment_{};
   std::array<CountPosition, axes> start_{}, planned_{};
   Ends newest_{}, prepared_to_{};
+  std::array<PathLimits, axes> limits_{};
+  std::uint64_t run_out_ = 0;    ///< until a clock that changes does not change any more, 2^-kPathTimeBits samples
+  std::uint64_t made_time_ = 0;  ///< of the nodes that are polynomials, likewise
+  std::uint8_t near_ = 0;        ///< headroom of what lies just before the next node
   std::size_t ring_first_ = 0, ring_count_ = 0;
   std::atomic<std::uint32_t> made_ = 0, used_ = 0;  // pieces: written by the background, by the control interrupt
   std::array<PathPiece<axes>, kPrepared> pieces_{};

@@ -121,6 +121,15 @@ class PathPiece {
     for (int i = 3; i >= 0; --i) sum = p.term[static_cast<std::size_t>(i)] + path_piece::half_of_share(sum, share);
     return path_piece::half_of_share(sum, share);
   }
+  /// Of the powers 1 to 5 of the share of the duration, counts.
+  constexpr std::array<float, 5> coefficients(std::size_t axis) const {
+    std::array<float, 5> all{};
+    for (std::size_t power = 0; power < all.size(); ++power)
+      all[power] = ScalarTraits<float>::from_increment(axis_[axis].term[power] >> (power + 1)) *
+                   (std::int64_t{1} << (kFractionBits - path_piece::kBits));
+    return all;
+  }
+
   constexpr std::int64_t whole_travel(std::size_t axis) const { return axis_[axis].travel; }
 
  private:

@@ -183,10 +183,7 @@ TYPED_TEST(BoardMotion, AMoveBeyondAllCountingIsRefused) {
 template <typename Bench>
 int periods_until_a_stop(double timeout_s) {
   Bench bench;
-  bench.fit_and_enable_x();
-  ParameterValues values = bench.application.active();
-  set(values, "host.timeout", timeout_s);
-  EXPECT_EQ(bench.download(values).status, Status::ok) << "may change while a drive is enabled";
+  bench.fit_and_enable_x(timeout_s);
   EXPECT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 50.0F}).status, Status::ok);
   int periods = 0;
   for (; periods < 2000 && bench.application.axes()[0].state() == SupervisorState::enabled; ++periods) bench.run(1);
@@ -211,7 +208,7 @@ TYPED_TEST(BoardMotion, AParameterChangeHidesNoOverrun) {
   ASSERT_EQ(bench.ask(MessageType::jog, firmware::JogRequest{0, {}, 50.0F}).status, Status::ok);
   bench.run(50);
   ParameterValues values = bench.application.active();
-  set(values, "host.timeout", 0.25);
+  set(values, "host.standing_timeout", 50);
   ASSERT_EQ(bench.download(values).status, Status::ok);
   bench.board.advance();
   bench.run(1);

@@ -44,6 +44,7 @@ struct BoardOnABench {
   firmware::ProtocolServer<Application> server{application, image, {}};
   std::uint16_t sequence = 0;
   std::uint16_t client = 1;  ///< who asks
+  std::uint8_t pass = 0;     ///< likewise
 
   static typename Board::Drives machines() {
     typename Board::Drives drives;
@@ -95,6 +96,7 @@ struct BoardOnABench {
 
   firmware::Message ask(firmware::Message request) {
     request.client = client;
+    request.set_pass(pass);
     firmware::Message reply;
     EXPECT_EQ(firmware::decode(server.answer(firmware::encode(request)), reply), firmware::Status::ok);
     EXPECT_EQ(reply.type, firmware::reply_to(request.type));
@@ -138,8 +140,10 @@ struct BoardOnABench {
   }
 
   /// Parameters of the paper's x axis, self-test passed, enabled; home is where the axis stands.
-  void fit_and_enable_x() {
-    ASSERT_EQ(download(paper_values(axes)).status, firmware::Status::ok);
+  void fit_and_enable_x(double timeout_s = 0.2) {
+    firmware::ParameterValues values = paper_values(axes);
+    set(values, "host.timeout", timeout_s);
+    ASSERT_EQ(download(values).status, firmware::Status::ok);
     run(200);
     ASSERT_EQ(ask(firmware::MessageType::enable, firmware::AxesRequest{1}).status, firmware::Status::ok);
     ASSERT_EQ(ask(firmware::MessageType::home, firmware::HomeRequest{0, 1}).status, firmware::Status::ok);

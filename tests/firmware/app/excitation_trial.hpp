@@ -14,6 +14,7 @@
 #include "hal/pc/simulated_flash.hpp"
 #include "hal/pc/simulated_panel.hpp"
 #include "hal/pc/simulated_usb.hpp"
+#include "tests/firmware/app/paper_values.hpp"
 
 namespace firmware_test {
 
@@ -88,8 +89,13 @@ class ExcitationTrial {
     firmware::BoardApplication<float, FaultyBoard> application(board);
     application.start();
     for (int k = 0; k < 20; ++k) period(application, board);
-    accepted_ = application.load_excitation(levels_) == firmware::Status::ok &&
-                application.excite(request_) == firmware::Status::ok;
+    application.staged() = application.active();
+    set(application.staged(), "x.unfitted.volts", 20.0);
+    set(application.staged(), "x.unfitted.counts", firmware::kMostBoxCounts);
+    firmware::RefusedValuePayload refused;
+    accepted_ = application.commit(refused) == firmware::Status::ok &&
+                application.load_excitation(levels_, 1) == firmware::Status::ok &&
+                application.excite(request_, refused) == firmware::Status::ok;
     application.become_owner(1);
     const int most = static_cast<int>(request_.samples) + 20'000;
     for (int k = 0; k < most && application.any_enabled(); ++k) {

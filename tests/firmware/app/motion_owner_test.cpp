@@ -137,7 +137,7 @@ TEST_F(TwoClients, AnEnableThatHasNotBegunCountsAsEnabled) {
 TEST_F(TwoClients, ALiveParameterDoesNotExcuseALatePeriod) {
   bench.client = kFirst;
   firmware::ParameterValues values = bench.application.active();
-  set(values, "host.timeout", 0.3);
+  set(values, "host.standing_timeout", 30);
   ASSERT_EQ(bench.download(values).status, Status::ok);
   bench.board.advance();  // a period that nobody ran
   bench.run(1);
@@ -151,10 +151,15 @@ TEST_F(TwoClients, ACaptureIsItsClientsWhileThatOneIsHeard) {
   EXPECT_EQ(ask(kSecond, MessageType::start_capture, kWanted), Status::others_capture);
   EXPECT_TRUE(bench.application.capture().is_running());
   EXPECT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok) << "it may begin anew itself";
-  EXPECT_EQ(ask(kSecond, MessageType::stop_capture).status, Status::ok) << "stopping is everybody's";
+  EXPECT_EQ(ask(kSecond, MessageType::stop_capture).status, Status::others_capture);
+  EXPECT_TRUE(bench.application.capture().is_running());
+  look(kSecond, 2100);
+  EXPECT_EQ(ask(kSecond, MessageType::stop_capture).status, Status::ok) << "the first has died";
   EXPECT_EQ(ask(kSecond, MessageType::start_capture, kWanted), Status::ok);
   look(kFirst, 2100);
   EXPECT_EQ(ask(kFirst, MessageType::start_capture, kWanted), Status::ok) << "the second has died";
+  EXPECT_EQ(ask(kFirst, MessageType::stop_capture).status, Status::ok);
+  EXPECT_EQ(ask(kSecond, MessageType::start_capture, kWanted), Status::ok) << "it is free at once";
 }
 
 }  // namespace

@@ -111,7 +111,8 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
     // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
     if (place == place_named("host.timeout") || place == place_named("host.standing_timeout")) continue;
     const std::string_view name = firmware::kParameters[firmware::row_at(place)].name;
-    if (name.starts_with("homing.")) continue;  // homing_on_board_test.cpp
+    if (name.starts_with("homing.") || name.starts_with("unfitted."))
+      continue;  // homing_on_board_test.cpp, motion_owner_test.cpp
     if (name.starts_with("amplifier.") || name.starts_with("brake.") || name.starts_with("encoder."))
       continue;  // below
     const auto changes = [place](ParameterValues of, const auto& behaved) {
@@ -238,9 +239,9 @@ TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
     ASSERT_NE(row, firmware::kParameters.end()) << name;
     EXPECT_EQ(row->name, name);
   }
-  for (const Refusal refusal :
-       {Refusal::none, Refusal::controller_is_enabled, Refusal::move_too_long, Refusal::outside_travel,
-        Refusal::path_not_open, Refusal::path_full, Refusal::path_too_fast, Refusal::path_ends_in_motion})
+  for (const Refusal refusal : {Refusal::none, Refusal::controller_is_enabled, Refusal::move_too_long,
+                                Refusal::outside_travel, Refusal::path_not_open, Refusal::path_full,
+                                Refusal::path_too_fast, Refusal::path_ends_in_motion, Refusal::path_headroom})
     EXPECT_EQ(firmware::parameter_behind(refusal), 0);
 }
 

@@ -236,7 +236,7 @@ TYPED_TEST(PathOnBoard, RefusesWhatDoesNotGoTogether) {
   Status status = Status::ok;
   for (int k = 0; k < 400 && status == Status::ok; ++k) {
     firmware::PathNode<2> far;
-    far.duration = 1u << 20;
+    far.duration = firmware::kLongestPiece;
     odd.put(std::array<std::uint32_t, 7>{far.duration, 1u << 30, 0, 0, 0, 0, 0});
     status = this->bench.ask(odd).status;
   }

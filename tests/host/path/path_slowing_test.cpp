@@ -24,13 +24,7 @@ Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& 
   const host::PathScale scale{{0, 1}, {kCount_mm, kCount_mm}, {1.0, 1.0}, kRate_Hz};
   const host::PathWords words = path_words(path, scale, units_of(path, scale), {{}, {}});
   auto follower = std::make_unique<firmware::PathFollower<2, 400>>();
-  const auto per_sample = [](double rate, int power) {
-    return static_cast<firmware::Increment>(rate / std::pow(kRate_Hz, power) *
-                                            static_cast<double>(firmware::kOneCount));
-  };
-  using firmware::PathClock;
-  follower->open(3, words.units, {}, per_sample(PathClock::change_limit(kVelocity, kAcceleration, kJerk), 1),
-                 per_sample(PathClock::ramp_limit(kVelocity, kJerk), 2));
+  follower->open(3, words.units, {}, {board_limits(), board_limits()});
   follower->override_rate(firmware::kOneCount);
   LedAxes axes;
   Disturbed seen;

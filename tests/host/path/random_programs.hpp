@@ -31,6 +31,14 @@ inline int programs_to_try() {
 inline constexpr double kCount_mm = 0.00244140625, kRate_Hz = 1000.0;
 inline constexpr double kVelocity = 250.0, kAcceleration = 2000.0, kJerk = 50'000.0;  // the paper's axes
 
+/// Of each axis, as the board has them.
+inline firmware::PathLimits board_limits() {
+  const auto per_sample = [](double of_mm, int power) {
+    return static_cast<float>(of_mm / kCount_mm / std::pow(kRate_Hz, power));
+  };
+  return {per_sample(kVelocity, 1), per_sample(kAcceleration, 2), per_sample(kJerk, 3)};
+}
+
 inline host::PathPlanOptions options() {
   host::PathPlanOptions made;
   made.limits = {PathPoint::Constant(kVelocity), PathPoint::Constant(kAcceleration), PathPoint::Constant(kJerk)};

@@ -240,8 +240,8 @@ void end_motion() {
 template <typename Step>
 void count_path(const char* name, unsigned mask, Step step) {
   constexpr firmware::PathUnits kUnits{16, 24, 32};
-  path.open(mask, kUnits, {axes[0].leading(), axes[1].leading()}, firmware::kOneCount / 125,
-            firmware::kOneCount / 5000);
+  constexpr firmware::PathLimits kLimits{45.0F, 1.0F, 0.0267F};  // the clock changes by 1/125 a sample
+  path.open(mask, kUnits, {axes[0].leading(), axes[1].leading()}, {kLimits, kLimits});
   path.hold(false);
   constexpr std::int32_t kPeriod = 64, kSpeed = 40;  // pieces, counts a sample
   Cost cost;
@@ -254,7 +254,6 @@ void count_path(const char* name, unsigned mask, Step step) {
           (phase < kPeriod / 2 ? phase - kPeriod / 4 : 3 * kPeriod / 4 - phase) * kSpeed * 4 / kPeriod;
       firmware::PathNode<Axes::kAxes> node;
       node.duration = 10 * firmware::kShortestPiece;
-      node.headroom_here = node.headroom_ahead = firmware::headroom_number(2.0);
       for (auto& axis : node.axis) axis = {(speed + next) * 5 << 16, next << 24, 0};
       if (path.push(node, false, [](std::size_t, std::int64_t) { return true; }) != firmware::Refusal::none) break;
       speed = next;

@@ -147,7 +147,6 @@ extern "C" [[noreturn]] void run_board() {
 
   report_shut_out("parameter_change", [&](int trial) {
     application.staged() = application.active();
-    application.staged().set(timeout, trial % 2 == 0 ? 8.0F : 10.0F);
     application.staged().set(standing, trial % 2 == 0 ? 50.0F : 60.0F);
     expect(application.commit(refused) == Status::ok, 5);
   });
