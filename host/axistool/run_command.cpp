@@ -1,7 +1,10 @@
 // axistool run: a G-code program on a board.
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -35,7 +38,7 @@ struct RunArguments : DeviceArguments {
   std::string file, capture;
   std::vector<std::string> linear, params;
   double feed_percent = 100.0;
-  bool here = false;
+  bool here = false, passes_stops = false;
 };
 
 std::atomic<bool> held = false;
@@ -167,7 +170,11 @@ class RunLine {
     const std::size_t line = next == path_.curves.begin() ? 0 : (next - 1)->line;
     fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line,
                100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
-               progress.state.permille / 10.0, is_held ? ", HELD: Ctrl-Z goes on" : "");
+               progress.state.permille / 10.0,
+               progress.waits != nullptr
+                   ? fmt::format(", WAITS at the stop in line {}: Enter goes on", progress.waits->line)
+               : is_held ? ", HELD: Ctrl-Z goes on"
+                         : "");
     std::fflush(stderr);
   }
 
@@ -175,6 +182,69 @@ class RunLine {
   bool shows_, has_line_ = false;
   const host::PlannedPath& path_;
   std::chrono::steady_clock::time_point drawn_;
+};
+
+bool has_terminal() { return ::isatty(STDIN_FILENO) != 0; }
+
+/// Whether the operator has pressed Enter since this was asked last. Never waits.
+bool enter_was_pressed() {
+  bool pressed = false;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (has_terminal() && ::poll(&input, 1, 0) > 0 && (input.revents & POLLIN) != 0) {
+    std::array<char, 64> typed{};
+    const ssize_t count = ::read(STDIN_FILENO, typed.data(), typed.size());
+    if (count <= 0) break;
+    pressed = pressed || std::find(typed.begin(), typed.begin() + count, '\n') != typed.begin() + count;
+  }
+  return pressed;
+}
+
+/// A program that waits for an operator needs one.
+void require_operator(const RunArguments& arguments, const host::PlannedPath& path) {
+  if (path.stops.empty() || arguments.passes_stops || has_terminal()) return;
+  throw Failure(
+      ExitCode::refused,
+      fmt::format("{} stops for its operator in line {} (M0, M1), and there is no terminal to go on from: run it "
+                  "on a terminal, or with --pass-stops, which goes on at once",
+                  arguments.file, path.stops.front().line));
+}
+
+/// Before a program begins, and before it goes on after a stop: axes without faults that know where they are.
+void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative) {
+  const host::BoardState state = board.status();
+  for (const std::size_t axis : scale.axes) {
+    host::require_no_fault(state, static_cast<std::uint8_t>(axis));
+    if (!relative && (state.axis.at(axis).flags & firmware::kAxisHomed) == 0)
+      throw Failure(ExitCode::refused, fmt::format("axis {} does not know where it is: `axistool home {}` first, or "
+                                                   "--here, which takes its present count for its position",
+                                                   firmware::kAxisNames.at(axis), firmware::kAxisNames.at(axis)));
+  }
+}
+
+/// Whether a program that waits goes on.
+class Operator {
+ public:
+  Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
+      : board_(board), scale_(scale), relative_(relative), arguments_(arguments) {}
+
+  bool goes_on(const host::PathProgress& progress) {
+    const bool pressed = enter_was_pressed();  // also drops what was typed before the stop
+    if (progress.waits != announced_ && progress.waits != nullptr)
+      fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
+                 arguments_.passes_stops ? ", and goes on at once" : "; Enter goes on, Ctrl-C ends it");
+    const bool is_new = progress.waits != announced_;
+    announced_ = progress.waits;
+    if (progress.waits == nullptr || !(arguments_.passes_stops || (pressed && !is_new))) return false;
+    require_startable(board_, scale_, relative_);
+    return true;
+  }
+
+ private:
+  host::BoardClient& board_;
+  const host::PathScale& scale_;
+  bool relative_;
+  const RunArguments& arguments_;
+  const host::PathStop* announced_ = nullptr;
 };
 
 void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end) {
@@ -242,11 +312,8 @@ void run(const RunArguments& arguments) {
   }
   host::BoardClient& board = *asked;
   const bool relative = arguments.here || !planned.program.is_absolute;
-  for (std::size_t axis = 0; axis < axes && !relative; ++axis)
-    if ((board.status().axis.at(axis).flags & firmware::kAxisHomed) == 0)
-      throw Failure(ExitCode::refused, fmt::format("axis {} does not know where it is: `axistool home {}` first, or "
-                                                   "--here, which takes its present count for its position",
-                                                   firmware::kAxisNames.at(axis), firmware::kAxisNames.at(axis)));
+  require_startable(board, machine.scale, relative);
+  require_operator(arguments, planned.path);
   require_consent(arguments, fmt::format("Run {}? The axes move within {}.", arguments.file, box_text(extents, axes)));
   catch_signals();
   const bool was_enabled = host::are_enabled(board, mask);
@@ -257,10 +324,12 @@ void run(const RunArguments& arguments) {
   {
     RunLine line(talks(arguments), planned.path);
     SignalsWait signals;
+    Operator at_machine(board, machine.scale, relative, arguments);
     outcome = host::run_path(board, planned.path, machine, relative, true, [&](const host::PathProgress& progress) {
       signals.let_in();
       line.draw(progress, held);
-      return host::PathWish{held, interrupted(), static_cast<int>(std::lround(arguments.feed_percent * 10.0))};
+      const bool goes_on = at_machine.goes_on(progress);
+      return host::PathWish{held, interrupted(), static_cast<int>(std::lround(arguments.feed_percent * 10.0)), goes_on};
     });
   }
   if (!was_enabled) host::disable_and_wait(board, mask);
@@ -295,6 +364,8 @@ void add_run(CLI::App& app) {
       ->check(CLI::Range(1.0, 100.0));
   command->add_option("--linear", arguments->linear, "axes whose parameters stand in metres")->delimiter(',');
   command->add_flag("--here", arguments->here, "axes that are not homed: their counts are their positions");
+  command->add_flag("--pass-stops", arguments->passes_stops,
+                    "M0 and M1 wait for nobody: for programs that are watched");
   add_input(*command, "--params", arguments->params, "with --dry-run: limits from these files, and no board");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
@@ -302,10 +373,13 @@ void add_run(CLI::App& app) {
       "Examples:\n"
       "  axistool run part.ngc --dry-run              # time and extents, against the board's limits\n"
       "  axistool run part.ngc --capture part.csv\n"
-      "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G54 G61 G64 P G90 G91, F, M0 M2 M30, X Y Z, N, comments;\n"
+      "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30, X Y Z, N, "
+      "comments;\n"
       "anything else is an error that names its line. Paths are exact, G61, unless the program says G64; G64 without "
       "P\n"
-      "keeps within 0.05 mm. On a terminal Ctrl-Z holds the feed and lets it go again, Ctrl-C stops on the path.");
+      "keeps within 0.05 mm. On a terminal Ctrl-Z holds the feed and lets it go again, Ctrl-C stops on the path; M0 "
+      "and M1 "
+      "wait\nthere for Enter.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -114,10 +114,18 @@ class PathRows {
 /// Sends nodes as long as the board has room, and hears how far it is.
 class Stream {
  public:
-  Stream(BoardClient& board, const PathWords& words, const PathScale& scale)
-      : board_(board), words_(words), scale_(scale) {}
+  Stream(BoardClient& board, const PathWords& words, const PathScale& scale, const std::vector<PathStop>& stops)
+      : board_(board), words_(words), scale_(scale), stops_(stops) {}
 
-  bool is_all_sent() const { return next_ == words_.nodes.size(); }
+  /// Until the next stop: what lies behind it is sent once the operator lets the program go on.
+  bool is_all_sent() const { return next_ == (passed_ < stops_.size() ? stops_[passed_].knot : words_.nodes.size()); }
+  /// The stop that the axes have reached.
+  const PathStop* waits() const {
+    const bool is_there = is_all_sent() && next_ < words_.nodes.size() && passed_ < stops_.size() &&
+                          state_.passed_nodes >= next_ && state_.ahead == 0;
+    return is_there ? &stops_[passed_] : nullptr;
+  }
+  void resume() { ++passed_; }
   double sent_s() const { return static_cast<double>(sent_) / (1u << firmware::kPathTimeBits) / scale_.rate_Hz; }
   const PathStatePayload& state() const { return state_; }
   void ask() { state_ = board_.path_state(); }
@@ -147,7 +155,8 @@ class Stream {
   BoardClient& board_;
   const PathWords& words_;
   const PathScale& scale_;
-  std::size_t next_ = 0;
+  const std::vector<PathStop>& stops_;
+  std::size_t next_ = 0, passed_ = 0;
   std::uint64_t sent_ = 0;
   PathStatePayload state_;
 };
@@ -194,13 +203,15 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
   const firmware::PathUnits units = units_of(path, scale.scale);
   const auto start = positions(board.open_path(open_request(scale.scale, units, relative)), scale.scale);
   const PathWords words = path_words(path, scale.scale, units, start);
-  Stream stream(board, words, scale.scale);
+  Stream stream(board, words, scale.scale, path.stops);
   std::optional<PathRows> rows;
+  bool is_capturing = false;
   try {
     while (stream.sent_s() < kHeadStart_s && stream.send()) continue;
     if (captures) {
       rows.emplace(board, board.read_values(), scale.scale, outcome.capture);
       rows->start();
+      is_capturing = true;
     }
     stream.set(board.start_path());
     PathWish given;
@@ -218,7 +229,9 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
       stream.ask();
       const auto phase = static_cast<PathPhase>(stream.state().phase);
       if (phase == PathPhase::done || phase == PathPhase::idle) break;
-      const PathWish wish = follow({stream.state(), static_cast<double>(stream.state().elapsed) / scale.scale.rate_Hz});
+      const PathWish wish =
+          follow({stream.state(), static_cast<double>(stream.state().elapsed) / scale.scale.rate_Hz, stream.waits()});
+      if (wish.resume && stream.waits() != nullptr) stream.resume();
       if (wish.stop && !given.stop) stream.set(board.stop_path());
       if (!wish.stop && (wish.held != given.held || wish.permille != given.permille))
         stream.set(board.path_rate(
@@ -238,7 +251,7 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
   } catch (const Failure&) {
     try {
       board.stop_path();
-      if (rows) board.stop_capture();
+      if (is_capturing) board.stop_capture();
     } catch (const Failure&) {  // the board has gone: the first failure says so
     }
     throw;

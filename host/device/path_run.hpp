@@ -27,11 +27,13 @@ struct PathWish {
   bool held = false;  ///< feed hold
   bool stop = false;
   int permille = 1000;  ///< of the feeds
+  bool resume = false;  ///< goes on where the program waits for its operator
 };
 
 struct PathProgress {
   firmware::PathStatePayload state;
-  double elapsed_s = 0.0;  ///< of the plan
+  double elapsed_s = 0.0;           ///< of the plan
+  const PathStop* waits = nullptr;  ///< where the program waits for its operator: the axes stand there
 };
 
 /// Encoders and references, row by row.

@@ -192,10 +192,10 @@ class Reader {
     claim("program");
     if (value == 2.0 || value == 30.0)
       block_.ends = true;
-    else if (value == 0.0)
+    else if (value == 0.0 || value == 1.0)
       block_.pauses = true;
     else
-      fail(fmt::format("M{:g} is not known: M0 M2 M30 are", value));
+      fail(fmt::format("M{:g} is not known: M0 M1 M2 M30 are", value));
   }
 
   void run() {
@@ -217,7 +217,7 @@ class Reader {
     } else if (block_.centre[0] || block_.centre[1] || block_.radius) {
       fail("I, J and R belong to an arc, G2 or G3");
     }
-    if (block_.pauses) stand(0.0);
+    if (block_.pauses) stand(0.0, PathMoveKind::stop);
     if (block_.ends) has_ended_ = true;
   }
 
@@ -226,9 +226,9 @@ class Reader {
     stand(*seconds);
   }
 
-  void stand(double seconds) {
+  void stand(double seconds, PathMoveKind kind = PathMoveKind::dwell) {
     PathMove move;
-    move.kind = PathMoveKind::dwell;
+    move.kind = kind;
     move.curve = PathCurve::line(at_, at_);
     move.dwell_s = seconds;
     move.line = line_;

@@ -24,9 +24,9 @@ struct GcodeProgram {
   bool is_absolute = false;  ///< it names a position other than by steps from where it began
 };
 
-/// G0 G1 G2 G3 (centre by I J, or R; X Y Z) G4 P G17 G20 G21 G28 G54 G61 G64 [P] G90 G91 F M0 M2 M30 N, comments in
+/// G0 G1 G2 G3 (centre by I J, or R; X Y Z) G4 P G17 G20 G21 G28 G54 G61 G64 [P] G90 G91 F M0 M1 M2 M30 N, comments in
 /// parentheses or behind a semicolon, `%` around it, block delete `/`. Begins with G17 G21 G54 G61 G90 and no feed.
-/// M0, for which nobody is asked, stands still for no time. G64 without P keeps within 0.05 mm. Throws
+/// M0 and M1 stop the program until the operator lets it go on. G64 without P keeps within 0.05 mm. Throws
 /// Failure(bad_input) "NAME:LINE: what" for anything else.
 GcodeProgram read_gcode(std::string_view text, const std::string& name, const PathPoint& start,
                         const GcodeMachine& machine);

@@ -174,9 +174,10 @@ class Joiner {
   Joiner(PlannedPath& path, const PathPlanOptions& options) : path_(path), options_(options) {}
 
   void add(const PathMove& move) {
-    if (move.kind == PathMoveKind::dwell) {
+    if (move.kind != PathMoveKind::motion) {
       stop();
       dwell(move);
+      if (move.kind == PathMoveKind::stop) path_.stops.push_back({path_.knots.size() - 1, move.line});
       return;
     }
     if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
@@ -239,7 +240,9 @@ class Joiner {
   void dwell(const PathMove& move) {
     if (path_.knots.empty()) path_.knots.push_back({0.0, move.curve.begin(), PathPoint::Zero(), PathPoint::Zero()});
     constexpr double kLongestPiece_s = 0.05;  // within what a node can say at any rate
-    const auto parts = static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s));
+    // A stop is a node of its own: a board that has no more stands there.
+    const int least = move.kind == PathMoveKind::stop ? 1 : 0;
+    const auto parts = std::max(least, static_cast<int>(std::ceil(move.dwell_s / kLongestPiece_s)));
     for (int k = 0; k < parts; ++k) {
       PathKnot knot = path_.knots.back();
       const double wanted_s = std::max(move.dwell_s / parts, options_.shortest_s);

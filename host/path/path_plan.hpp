@@ -13,7 +13,7 @@ struct AxisLimits {
   PathPoint velocity, acceleration, jerk;
 };
 
-enum class PathMoveKind { motion, dwell };
+enum class PathMoveKind { motion, dwell, stop /* until the operator lets it go on */ };
 
 struct PathMove {
   PathMoveKind kind = PathMoveKind::motion;
@@ -41,9 +41,16 @@ struct PlannedCurve {
   std::size_t line = 0;  ///< of the program
 };
 
+/// Where a program waits for its operator.
+struct PathStop {
+  std::size_t knot = 0;  ///< at rest
+  std::size_t line = 0;  ///< of the program
+};
+
 struct PlannedPath {
   std::vector<PathKnot> knots;  ///< from the first, at rest, to the last, at rest
   std::vector<PlannedCurve> curves;
+  std::vector<PathStop> stops;
   double stretched = 1.0;  ///< the largest factor by which a part was slowed down to hold the limits
   double duration_s() const { return knots.empty() ? 0.0 : knots.back().time_s; }
 };

@@ -24,7 +24,7 @@ std::vector<PathPoint> followed(const host::PlannedPath& path) {
   const host::PathScale scale{{0, 1}, {kCount_mm, kCount_mm}, {1.0, 1.0}, kRate_Hz};
   const host::PathWords words = path_words(path, scale, units_of(path, scale), {{}, {}});
   auto follower = std::make_unique<firmware::PathFollower<2, 400>>();
-  follower->open(3, words.units, {}, firmware::kOneCount / 100, firmware::kOneCount / 1000);
+  follower->open(3, words.units, {}, {board_limits(), board_limits()});
   LedAxes axes;
   std::vector<PathPoint> points(3, PathPoint::Zero());
   std::size_t sent = 0;
@@ -97,6 +97,21 @@ TEST(PlannedPath, ToleranceSavesTimeAtCorners) {
   EXPECT_NEAR(square(0.0), 4.0 * line_time(40.0, 100.0), 1e-3) << "exact corners are stops";
   EXPECT_LT(square(0.01), square(0.0) - 0.04);
   EXPECT_LT(square(0.1), square(0.01) - 0.03);
+}
+
+/// Where an operator must let the program go on, the axes stand, and what comes afterwards is a node of its own.
+TEST(PlannedPath, StopsForTheOperatorWhereTheProgramSaysSo) {
+  const auto program =
+      host::read_gcode("G64 P1\nG1 F600 X10\nM0\nX20\nM1\nX30\nM2\n", "part.ngc", PathPoint::Zero(), {});
+  const auto path = plan_path(program.moves, options());
+  ASSERT_EQ(path.stops.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_LT(path.stops[i].knot, path.knots.size() - 1);
+    const host::PathKnot& knot = path.knots[path.stops[i].knot];
+    EXPECT_EQ(path.stops[i].line, 3u + 2u * i);
+    EXPECT_NEAR(knot.position[0], 10.0 * static_cast<double>(i + 1), 1e-9);
+    EXPECT_EQ(knot.velocity.norm() + knot.acceleration.norm(), 0.0);
+  }
 }
 
 /// The programs of the G-code tests, sample by sample.
