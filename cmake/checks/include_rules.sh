@@ -22,7 +22,8 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/evidence/"] = "host/evidence/ " may["host/identify/"]
     may["host/compare/"] = "host/compare/ host/report/ " may["host/evidence/"]
     may["host/interchange/"] = "host/interchange/ " may["host/compare/"]
-    may["host/effort/"] = "host/effort/ " may["host/compare/"]
+    may["host/infer/"] = "host/infer/"
+    may["host/effort/"] = "host/effort/ host/infer/ " may["host/compare/"]
     may["host/diagnose/"] = "host/diagnose/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"

@@ -8,7 +8,7 @@
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
-#include "host/diagnose/parallel.hpp"
+#include "host/parallel.hpp"
 #include "host/diagnose/pattern_search.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "sim/catalogue.hpp"

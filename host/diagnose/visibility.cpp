@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "host/diagnose/candidate_starts.hpp"
-#include "host/diagnose/parallel.hpp"
+#include "host/parallel.hpp"
 #include "host/diagnose/parameter_vector.hpp"
 #include "sim/catalogue.hpp"
 

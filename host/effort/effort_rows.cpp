@@ -15,8 +15,6 @@ namespace host {
 
 namespace {
 
-/// Rows beyond this many say nothing new and cost time.
-constexpr std::size_t kMostRows = 12000;
 /// Below this part of a record's high speeds (95 %) an axis may stand: no force balance holds there. Below the second
 /// one it may stick and slip.
 constexpr double kSlidingShare = 0.01, kFastShare = 0.05;
@@ -155,7 +153,7 @@ double left_by_base(const EffortRows& rows) {
 }
 
 EffortRows built(const sim::DriveDescription& model, bool by_speed, const RecordSet& training,
-                 const RecordSet& validation) {
+                 const RecordSet& validation, std::size_t most_rows) {
   const sim::EffectEntry* inertia = model.find("inertia");
   const sim::Drive path(standing_part(model));
   std::size_t stride = 1;
@@ -163,7 +161,7 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
     Builder builder{model, &path, by_speed, inertia == nullptr ? 0.0 : inertia->at("J")};
     builder.add(training, false, stride);
     builder.add(validation, true, stride);
-    if (builder.columns[0].size() <= kMostRows) {
+    if (builder.columns[0].size() <= most_rows) {
       EffortRows rows = builder.finish();
       rows.first_stamp_s = first_stamp_s(training);
       for (const RecordSet* set : {&training, &validation})
@@ -172,7 +170,7 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
             rows.unknown_order_s = std::max(rows.unknown_order_s, compared.prepared.record->sample_period_s);
       return rows;
     }
-    stride *= 1 + builder.columns[0].size() / kMostRows;
+    stride *= 1 + builder.columns[0].size() / most_rows;
   }
 }
 
@@ -201,7 +199,24 @@ double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, b
   return std::sqrt(sum / std::max(count, 1.0));
 }
 
-EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation) {
+Eigen::VectorXd travel_since_reversal(const EffortRows& rows) {
+  Eigen::VectorXd travelled = Eigen::VectorXd::Zero(rows.w.size());
+  for (const EffortSignals& signals : rows.signals) {
+    std::size_t next = 0;
+    double turned = signals.motion.empty() ? 0.0 : signals.motion.front(), heading = 0.0;
+    for (std::size_t k = 1; k < signals.motion.size() && next < signals.kept.size(); ++k) {
+      const double step = signals.motion[k] - signals.motion[k - 1];
+      if (step * heading < 0.0) turned = signals.motion[k - 1];
+      if (step != 0.0) heading = step > 0.0 ? 1.0 : -1.0;
+      if (signals.kept[next] == k)
+        travelled(static_cast<Eigen::Index>(signals.first_row + next++)) = std::abs(signals.motion[k] - turned);
+    }
+  }
+  return travelled;
+}
+
+EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
+                       std::size_t most_rows) {
   bool position = true, speed = true;
   for (const RecordSet* set : {&training, &validation})
     for (const ComparedRecord& compared : set->records) {
@@ -211,9 +226,9 @@ EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& trai
   EffortRows rows;
   if (!position && !speed) return {};
   try {
-    rows = built(model, !position, training, validation);
+    rows = built(model, !position, training, validation, most_rows);
     if (position && speed && enough(rows, false)) {
-      EffortRows other = built(model, true, training, validation);
+      EffortRows other = built(model, true, training, validation, most_rows);
       if (enough(other, false) && left_by_base(other) < kClearlyBetterBySpeed * left_by_base(rows))
         rows = std::move(other);
     }

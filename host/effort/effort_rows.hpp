@@ -43,8 +43,13 @@ struct EffortRows {
 /// Of one value a row, over the rows that judge or those that train; `fast_alone`: without those near sticking.
 double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges, bool fast_alone = false);
 
+/// Travel since the motion last reversed, mm or m (rad or m/s where there is no position), one element a row.
+Eigen::VectorXd travel_since_reversal(const EffortRows& rows);
+
 /// Rows of both sets, from the channel that leaves less of the effort unexplained by inertia and friction. Empty where
-/// a record has no effort, or nothing slides for a second in either set.
-EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation);
+/// a record has no effort, or nothing slides for a second in either set. Evenly thinned to `most_rows`: more say
+/// nothing new and cost time.
+EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
+                       std::size_t most_rows = 12000);
 
 }  // namespace host

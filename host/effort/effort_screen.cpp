@@ -9,6 +9,7 @@
 #include <set>
 
 #include "host/cancellation.hpp"
+#include "host/effort/closest_form.hpp"
 #include "host/effort/effort_regression.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
@@ -114,33 +115,6 @@ std::vector<Tried> try_all(const EffortRegression& regression, const EffortScree
   for (Tried& tried : found)
     tried.model.confidence = can_be_claimed(tried) ? regression.confidence(now, tried.model) : 0.0;
   return found;
-}
-
-/// The form that leaves least of the training rows' effort among the neighbours of `term`, and theirs; `model` is what
-/// it makes of the drive.
-EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
-                        const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model) {
-  constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // a quarter of what the forms lie apart, to 0.1 %
-  constexpr double kLeastStep = 1e-4;                     // of the error: what a smaller one gains, noise takes
-  std::vector<const EffortTerm*> further;
-  for (const EffortTerm& before : chosen) further.push_back(&before);
-  further.push_back(nullptr);
-  for (double part = kFirstPart; part > kLastPart;) {
-    throw_if_cancelled();
-    bool closer = false;
-    for (EffortTerm& neighbour : term.neighbours(part)) {
-      ScreenedModel tried = model;
-      further.back() = &neighbour;
-      if (!regression.fit(base, further, tried) || tried.train > (1.0 - kLeastStep) * model.train) continue;
-      tried.words = neighbour.words;
-      model = std::move(tried);
-      term = std::move(neighbour);
-      closer = true;
-      break;
-    }
-    if (!closer) part *= 0.5;
-  }
-  return term;
 }
 
 std::vector<std::vector<const EffortTerm*>> one_by_one(const std::vector<EffortTerm>& terms) {

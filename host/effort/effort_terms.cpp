@@ -220,8 +220,8 @@ VectorXd standing_effort(const sim::DriveDescription& model, const EffortRows& r
          Eigen::Map<const VectorXd>(without.data(), rows.w.size());
 }
 
-std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const EffortRows& rows, const MatrixXd& base,
-                                      const VectorXd& explained, const VectorXd& left) {
+std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const EffortRows& rows,
+                                     const VectorXd& explained) {
   std::vector<EffortTerm> terms;
   const VectorXd direction = sign_of(rows.w), speed = rows.w.cwiseAbs(), one = VectorXd::Ones(rows.w.size());
   const double top = speed.maxCoeff();
@@ -326,9 +326,18 @@ std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const 
     };
     terms.push_back(std::move(term));
   }
+  return terms;
+}
+
+std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const EffortRows& rows, const MatrixXd& base,
+                                      const VectorXd& explained, const VectorXd& left) {
+  std::vector<EffortTerm> terms = shaped_terms(model, rows, explained);
+  if (!rows.has_position) return terms;
+  const VectorXd direction = sign_of(rows.w), one = VectorXd::Ones(rows.w.size());
   append_periodic(model, rows, "cogging", base, one, left, terms);
-  if (may_have("torque_ripple")) append_periodic(model, rows, "torque_ripple", base, explained, left, terms);
-  if (may_have("position_dependent_friction") && coulomb != nullptr)
+  if (model.find("torque_ripple") == nullptr)
+    append_periodic(model, rows, "torque_ripple", base, explained, left, terms);
+  if (model.find("position_dependent_friction") == nullptr && model.find("coulomb") != nullptr)
     append_periodic(model, rows, "position_dependent_friction", base, direction, left, terms);
   return terms;
 }

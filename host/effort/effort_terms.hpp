@@ -18,6 +18,7 @@ struct EffortTerm {
   /// of the catalogue's bounds.
   std::function<bool(const Eigen::VectorXd& factors, sim::DriveDescription& model)> write;
   std::string words;           ///< "orders 72, 18 of 6.283 mm"; may be empty
+  bool can_repeat = false;     ///< a drive may have several of it: waves of other periods
   bool can_be_claimed = true;  ///< false: tells that something goes with the position, and no more
   /// Forms whose shape differs by this part; empty where the forms that are tried lie close enough. It refers to the
   /// rows.
@@ -42,6 +43,11 @@ sim::DriveDescription standing_part(const sim::DriveDescription& model);
 /// Effort that the effects without a linear form take at every row, as they stand in the model; zero where there are
 /// none. Requires has_inverse() of the drive.
 Eigen::VectorXd standing_effort(const sim::DriveDescription& model, const EffortRows& rows);
+
+/// All forms of the effects that could be added to the model and leave a trace while the axis slides, but for waves
+/// over the travel. `explained`: as in further_terms().
+std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const EffortRows& rows,
+                                     const Eigen::VectorXd& explained);
 
 /// All forms of all effects that could be added to the model and leave a trace in the effort while the axis slides.
 /// `explained` is the effort by the terms so far: what is in proportion to the effort is taken in proportion to that,

@@ -22,23 +22,6 @@ using Eigen::VectorXd;
 /// A further knot must take this part of the judging rows' squared error.
 constexpr double kLeastGainOfCurve = 0.01;
 
-/// Travel since the motion last turned over, at the rows.
-VectorXd travel_since_reversal(const EffortRows& rows) {
-  VectorXd travelled = VectorXd::Zero(rows.w.size());
-  for (const EffortSignals& signals : rows.signals) {
-    std::size_t next = 0;
-    double turned = signals.motion.empty() ? 0.0 : signals.motion.front(), heading = 0.0;
-    for (std::size_t k = 1; k < signals.motion.size() && next < signals.kept.size(); ++k) {
-      const double step = signals.motion[k] - signals.motion[k - 1];
-      if (step * heading < 0.0) turned = signals.motion[k - 1];
-      if (step != 0.0) heading = step > 0.0 ? 1.0 : -1.0;
-      if (signals.kept[next] == k)
-        travelled(static_cast<Index>(signals.first_row + next++)) = std::abs(signals.motion[k] - turned);
-    }
-  }
-  return travelled;
-}
-
 struct Coordinate {
   VectorXd at;
   VectorXd weight;      ///< -1 or 1: friction turns with the motion

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numeric>
 
-#include "host/diagnose/parallel.hpp"
+#include "host/parallel.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 
 namespace host {

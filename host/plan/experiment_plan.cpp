@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "host/diagnose/parallel.hpp"
+#include "host/parallel.hpp"
 #include "host/exit_codes.hpp"
 #include "host/known_by_current.hpp"
 #include "host/plan/information.hpp"

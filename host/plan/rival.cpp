@@ -8,7 +8,7 @@
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
-#include "host/diagnose/parallel.hpp"
+#include "host/parallel.hpp"
 #include "host/exit_codes.hpp"
 #include "sim/catalogue.hpp"
 

@@ -1,0 +1,34 @@
+#include "host/effort/closest_form.hpp"
+
+#include <utility>
+
+#include "host/cancellation.hpp"
+
+namespace host {
+
+EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
+                        const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model) {
+  constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // a quarter of what the forms lie apart, to 0.1 %
+  constexpr double kLeastStep = 1e-4;                     // of the error: what a smaller one gains, noise takes
+  std::vector<const EffortTerm*> further;
+  for (const EffortTerm& before : chosen) further.push_back(&before);
+  further.push_back(nullptr);
+  for (double part = kFirstPart; part > kLastPart;) {
+    throw_if_cancelled();
+    bool closer = false;
+    for (EffortTerm& neighbour : term.neighbours(part)) {
+      ScreenedModel tried = model;
+      further.back() = &neighbour;
+      if (!regression.fit(base, further, tried) || tried.train > (1.0 - kLeastStep) * model.train) continue;
+      tried.words = neighbour.words;
+      model = std::move(tried);
+      term = std::move(neighbour);
+      closer = true;
+      break;
+    }
+    if (!closer) part *= 0.5;
+  }
+  return term;
+}
+
+}  // namespace host

@@ -1,0 +1,285 @@
+#include "host/effort/effort_hypotheses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "host/effort/effort_memory.hpp"
+#include "host/effort/effort_waves.hpp"
+#include "host/infer/posterior.hpp"
+#include "host/parallel.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A usual effect is of this part of the Coulomb level, RMS over the rows, times one of these: a prior with heavy
+/// tails, since the weight of an arm is fifty times what cogs usually are.
+constexpr double kUsual = 0.3;
+constexpr double kTails[] = {0.3, 1.0, 5.0, 25.0};
+constexpr Index kTailCount = 4;
+/// A base parameter is known to some three times its least-squares value before the measurement.
+constexpr double kBaseKnownTo = 3.0;
+/// When within a row a command or a current acts, in samples (the base's own shift is taken out before).
+constexpr double kInstantKnownTo = 0.25;
+/// Kinds whose approximate evidence lies so far behind the best, in nats, are not fitted: e^-30 changes no odds.
+constexpr double kOutOfReach = 30.0;
+constexpr std::size_t kFormsFitted = 6;  // of each ranking
+constexpr std::size_t kMostFitted = 8, kMostWavesWeighed = 24;
+
+double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
+
+double longest_period_s(const EffortRows& rows) {
+  double longest_s = 0.0;
+  for (const EffortSignals& signals : rows.signals) longest_s = std::max(longest_s, signals.period_s);
+  return longest_s;
+}
+
+/// A form of an effect before it is fitted.
+struct Form {
+  std::string kind;
+  MatrixXd columns;  ///< of RMS 1
+  VectorXd factors;  ///< that these columns were divided by
+  std::function<EffortTerm()> term;
+  std::vector<int> sign;
+};
+
+struct Weighed {
+  const Form* form;
+  double scale;
+  double log_gain;  ///< approximate
+};
+
+/// The columns of a term at RMS 1; nothing where one of them vanishes.
+std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vector<int> sign,
+                            std::function<EffortTerm()> term) {
+  Form form{std::move(kind), columns, VectorXd(columns.cols()), std::move(term), std::move(sign)};
+  for (Index c = 0; c < columns.cols(); ++c) {
+    form.factors(c) = rms(columns.col(c));
+    if (!(form.factors(c) > 0.0) || !std::isfinite(form.factors(c))) return {};
+    form.columns.col(c) /= form.factors(c);
+  }
+  return form;
+}
+
+/// A few waves over the travel, or a few a turn.
+bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
+  constexpr double kMostWaves = 12.0, kMostOrders = 4.0;
+  const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
+  return wave.order * travel / wave.period <= kMostWaves || (wave.period == turn && wave.order <= kMostOrders);
+}
+
+/// Of many waves, those whose plain gain is largest; `rest` counts the others.
+std::vector<Wave> most_promising(std::vector<Wave> waves, const EffortRows& rows, const VectorXd& weight,
+                                 const VectorXd& left) {
+  std::vector<std::pair<double, Wave>> ranked;
+  for (const Wave& wave : waves) {
+    const MatrixXd columns = wave_columns(rows, weight, wave);
+    const Eigen::Matrix2d moments = columns.transpose() * columns;
+    const Eigen::Vector2d pull = columns.transpose() * left;
+    ranked.emplace_back(-pull.dot(moments.ldlt().solve(pull)), wave);
+  }
+  std::ranges::stable_sort(ranked, {}, &std::pair<double, Wave>::first);
+  ranked.resize(std::min(ranked.size(), kMostWavesWeighed));
+  waves.clear();
+  for (const auto& [gain, wave] : ranked) waves.push_back(wave);
+  return waves;
+}
+
+}  // namespace
+
+EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const EffortRows& rows,
+                                   const std::vector<EffortTerm>& base, const VectorXd& explained, double coulomb)
+    : model_(model),
+      rows_(rows),
+      coulomb_(coulomb),
+      evidence_(rows.effort, runs_of(rows), effort_memory(rows, explained, coulomb),
+                std::max(rows.noise, 1e-9 * coulomb)) {
+  const auto rows_count = static_cast<Index>(rows.size());
+  base_.columns.resize(rows_count, 0);
+  std::vector<double> deviations;
+  const double size = rms(rows.effort);
+  MatrixXd all(rows_count, 0);
+  for (const EffortTerm& term : base) {
+    if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // inertia at steady speeds
+    all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
+    all.rightCols(term.columns.cols()) = term.columns;
+  }
+  const VectorXd factors = all.completeOrthogonalDecomposition().solve(rows.effort);
+  for (Index c = 0; c < all.cols(); ++c)
+    deviations.push_back(kBaseKnownTo *
+                         std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));
+  base_.columns = all;
+  base_.deviations = Eigen::Map<const VectorXd>(deviations.data(), static_cast<Index>(deviations.size()));
+}
+
+void EffortHypotheses::Known::add(const VectorXd& column, double deviation) {
+  columns.conservativeResize(column.size(), columns.cols() + 1);
+  columns.rightCols(1) = column;
+  deviations.conservativeResize(columns.cols());
+  deviations(columns.cols() - 1) = deviation;
+}
+
+EffortHypotheses::Known EffortHypotheses::known_with(const std::vector<EffortTerm>& chosen) const {
+  Known known = base_;
+  // What was found stands: its size is known to the widest tail.
+  for (const EffortTerm& term : chosen)
+    for (Index c = 0; c < term.columns.cols(); ++c)
+      known.add(term.columns.col(c),
+                kTails[kTailCount - 1] * kUsual * coulomb_ / std::max(rms(term.columns.col(c)), 1e-300));
+  return known;
+}
+
+NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const VectorXd& explained,
+                                   const std::vector<std::string>& excluded) const {
+  sim::DriveDescription held = model_;
+  for (const EffortTerm& term : chosen)
+    if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
+  const std::vector<EffortTerm> terms = shaped_terms(held, rows_, explained);
+  Known known = known_with(chosen);
+  // When the torque or force acts is known to a part of a sample: a nuisance, unless a delay is what is missing.
+  for (const EffortTerm& term : terms)
+    if (term.kind == "input_delay") known.add(term.columns.col(0), kInstantKnownTo * longest_period_s(rows_));
+  NextEffects found;
+  found.fit = evidence_.fit(known.columns, known.deviations);
+  constexpr int kAgain = 3;  // the fixed point of the sizes may be slow
+  for (int again = 0; again < kAgain; ++again) {
+    EvidenceFit further = evidence_.fit_from(found.fit, known.columns, known.deviations);
+    const double gained = further.log_evidence - found.fit.log_evidence;
+    if (gained > 0.0) found.fit = std::move(further);
+    if (gained < 0.1) break;
+  }
+  const EvidenceFit& now = found.fit;
+  const EvidenceFit bare =
+      evidence_.fit(known.columns, known.deviations,
+                    {.correlation = now.correlation, .sizes = evidence_.no_memory(), .hold_sizes = true});
+
+  // All forms, kind by kind.
+  std::map<std::string, std::vector<Form>> forms;
+  std::map<std::string, double> counts;
+  const auto is_excluded = [&](const std::string& kind) { return std::ranges::find(excluded, kind) != excluded.end(); };
+  for (const EffortTerm& term : terms) {
+    if (is_excluded(term.kind)) continue;
+    std::optional<Form> form = form_of(term.kind, term.columns, term.sign, [&term] { return term; });
+    counts[term.kind] += 1.0;
+    if (form) forms[term.kind].push_back(*std::move(form));
+  }
+  if (rows_.has_position) {
+    const VectorXd one = VectorXd::Ones(rows_.w.size());
+    const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
+    const VectorXd left = rows_.effort - explained;
+    for (const auto& [kind, weight, longest] : {std::tuple<std::string, const VectorXd*, double>{"cogging", &one, 1.0},
+                                                {"torque_ripple", &explained, 1.0},
+                                                {"position_dependent_friction", &direction, 2.0}}) {
+      if (is_excluded(kind) || (kind == "position_dependent_friction" && held.find("coulomb") == nullptr)) continue;
+      std::vector<Wave> waves = waves_over(model_.data, rows_, longest);
+      const double turn = turn_of(model_.data);
+      // Friction varies slowly along the travel, or with the pitch of the screw.
+      if (kind == "position_dependent_friction")
+        std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
+      counts[kind] += static_cast<double>(waves.size());
+      for (const Wave& wave : most_promising(waves, rows_, *weight, left)) {
+        std::optional<Form> form = form_of(kind, wave_columns(rows_, *weight, wave), {0, 0},
+                                           [this, kind = std::string(kind), weight = *weight, wave] {
+                                             return wave_term(model_, rows_, kind, weight, wave);
+                                           });
+        if (form) forms[kind].push_back(*std::move(form));
+      }
+    }
+  }
+
+  // Approximate evidence of every form at several sizes, at the memory that was found and without one.
+  VectorXd scales(kTailCount);
+  for (Index s = 0; s < kTailCount; ++s) scales(s) = kTails[s] * kUsual * coulomb_;
+  struct Kind {
+    std::string name;
+    std::vector<Weighed> ranked[2];  ///< by their gain at the memory that was found, and without a memory
+    double best = -HUGE_VAL, log_odds = -HUGE_VAL;
+    std::optional<EffortTerm> term;
+  };
+  std::vector<Kind> kinds;
+  std::mutex better;
+  for (const auto& [name, list] : forms) kinds.push_back({name, {}, -HUGE_VAL, -HUGE_VAL, {}});
+  for_each_in_parallel(kinds.size(), [&](std::size_t k) {
+    Kind& kind = kinds[k];
+    for (const bool without : {false, true}) {
+      std::vector<Weighed>& ranked = kind.ranked[without ? 1 : 0];
+      for (const Form& form : forms.at(kind.name)) {
+        const VectorXd gains = evidence_.gains(without ? bare : now, form.columns, form.sign, scales);
+        for (Index s = 0; s < kTailCount; ++s)
+          if (std::isfinite(gains(s))) ranked.push_back({&form, scales(s), gains(s)});
+      }
+      std::ranges::stable_sort(ranked, std::greater(), &Weighed::log_gain);
+      if (!ranked.empty()) kind.best = std::max(kind.best, ranked.front().log_gain);
+    }
+  });
+  std::ranges::stable_sort(kinds, std::greater(), &Kind::best);
+  while (!kinds.empty() && kinds.size() > kMostFitted && kinds.back().best < kinds.front().best - kOutOfReach)
+    kinds.pop_back();
+
+  struct Trial {
+    std::size_t kind, rank;
+    bool without;
+  };
+  std::vector<Trial> trials;
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    for (const bool without : {false, true}) {
+      std::vector<const Form*> tried;
+      const std::vector<Weighed>& ranked = kinds[k].ranked[without ? 1 : 0];
+      for (std::size_t rank = 0; rank < ranked.size() && tried.size() < kFormsFitted; ++rank) {
+        if (std::ranges::find(tried, ranked[rank].form) != tried.end()) continue;
+        tried.push_back(ranked[rank].form);
+        trials.push_back({k, rank, without});
+      }
+    }
+  for_each_in_parallel(trials.size(), [&](std::size_t index) {
+    const std::size_t k = trials[index].kind;
+    const std::vector<Weighed>& ranked = kinds[k].ranked[trials[index].without ? 1 : 0];
+    const Weighed& weighed = ranked[trials[index].rank];
+    const Index width = weighed.form->columns.cols();
+    MatrixXd columns(known.columns.rows(), known.columns.cols() + width);
+    columns << known.columns, weighed.form->columns;
+    VectorXd deviations(known.deviations.size() + width);
+    deviations << known.deviations, VectorXd::Constant(width, weighed.scale);
+    const EvidenceFit fit = evidence_.fit_from(now, columns, deviations);
+    for (Index c = 0; c < width; ++c)
+      if (weighed.form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
+    std::vector<double> gains;
+    for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
+    const double spread = trials[index].rank == 0 ? log_sum(gains) : 0.0;  // over the forms beside the best
+    const double log_odds = fit.log_evidence - now.log_evidence + spread -
+                            std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
+    const std::lock_guard lock(better);
+    if (log_odds <= kinds[k].log_odds) return;
+    kinds[k].log_odds = log_odds;
+    kinds[k].term = weighed.form->term();
+  });
+  std::vector<double> logs{std::log(kNothingMore)};
+  for (const Kind& kind : kinds)
+    logs.push_back(kind.log_odds + std::log((1.0 - kNothingMore) / static_cast<double>(forms.size())));
+  const std::vector<double> probabilities = posterior(logs);
+  found.nothing = probabilities.front();
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    if (kinds[k].term) found.effects.push_back({*std::move(kinds[k].term), kinds[k].log_odds, probabilities[k + 1]});
+  std::ranges::stable_sort(found.effects, std::greater(), &NextEffect::probability);
+  return found;
+}
+
+double EffortHypotheses::memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const {
+  const Known known = known_with(chosen);
+  return fit.log_evidence -
+         evidence_
+             .fit(known.columns, known.deviations,
+                  {.correlation = fit.correlation, .sizes = evidence_.no_memory(), .hold_sizes = true})
+             .log_evidence;
+}
+
+}  // namespace host

@@ -1,0 +1,59 @@
+// Which effect comes next, by evidence: every form of every effect as columns of the force balance.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/effort/effort_rows.hpp"
+#include "host/effort/effort_terms.hpp"
+#include "host/infer/evidence.hpp"
+
+namespace host {
+
+/// One kind in its most probable form, given what was chosen before.
+struct NextEffect {
+  EffortTerm term;
+  double log_odds = 0.0;     ///< against nothing more, forms and sizes averaged out, nats
+  double probability = 0.0;  ///< among all kinds and nothing more
+};
+
+/// What may come next, most probable first.
+struct NextEffects {
+  std::vector<NextEffect> effects;
+  double nothing = 1.0;  ///< probability that no effect of the catalogue is missing
+  EvidenceFit fit;       ///< without a further effect
+};
+
+/// The force balance of one drive, with what is fitted in every hypothesis: base and effects chosen so far.
+class EffortHypotheses {
+ public:
+  /// `coulomb`: the drive's friction level, Nm or N, to which all usual sizes compare. Keeps references to model and
+  /// rows.
+  EffortHypotheses(const sim::DriveDescription& model, const EffortRows& rows, const std::vector<EffortTerm>& base,
+                   const Eigen::VectorXd& explained, double coulomb);
+
+  /// Fits all kinds but those `excluded` beside the terms chosen so far.
+  NextEffects next(const std::vector<EffortTerm>& chosen, const Eigen::VectorXd& explained,
+                   const std::vector<std::string>& excluded) const;
+
+  /// ln of the odds that a memory is needed beside the chosen terms: something depends on a coordinate.
+  double memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const;
+
+  const Memory& memory() const { return evidence_.memory(); }
+
+ private:
+  struct Known {
+    Eigen::MatrixXd columns;
+    Eigen::VectorXd deviations;
+    void add(const Eigen::VectorXd& column, double deviation);
+  };
+  Known known_with(const std::vector<EffortTerm>& chosen) const;
+
+  const sim::DriveDescription& model_;
+  const EffortRows& rows_;
+  Known base_;
+  double coulomb_;
+  Evidence evidence_;
+};
+
+}  // namespace host

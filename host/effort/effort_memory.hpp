@@ -1,0 +1,18 @@
+// What the rows of a force balance may hold beyond any effect: smooth functions over each coordinate.
+#pragma once
+
+#include <vector>
+
+#include "host/effort/effort_rows.hpp"
+#include "host/infer/evidence.hpp"
+
+namespace host {
+
+/// Rows that follow one another in the record without a gap.
+std::vector<RowRun> runs_of(const EffortRows& rows);
+
+/// Hats over speed by direction, position, friction over position, travel since the last reversal, friction over time,
+/// load (`explained`, Nm or N) and a level for each record. `usual`: the drive's Coulomb level, Nm or N.
+Memory effort_memory(const EffortRows& rows, const Eigen::VectorXd& explained, double usual);
+
+}  // namespace host

@@ -1,0 +1,114 @@
+#include "host/effort/effort_waves.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/statistics.hpp"
+#include "sim/catalogue.hpp"
+#include "sim/drive.hpp"
+#include "sim/harmonic.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Neighbouring waves of the grid differ by this part of a wave over the whole travel.
+constexpr double kApart = 0.3;
+constexpr int kMostOrders = 120, kMostFreeWaves = 400;
+/// A weight on an arm shows in a quarter of a turn; with less of a turn it looks like a spring.
+constexpr double kLeastOfATurn = 0.25;
+
+double travel_of(const EffortRows& rows) { return rows.x.maxCoeff() - rows.x.minCoeff(); }
+
+double coulomb_level(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
+}
+
+/// Adds a wave to the entry of its kind and period, or a new entry.
+bool write_wave(const std::string& kind, const Wave& wave, double cosine, double sine, sim::DriveDescription& model) {
+  for (sim::EffectEntry& entry : model.effects) {
+    if (entry.kind != kind || entry.at("period") != wave.period) continue;
+    std::vector<sim::HarmonicTerm> terms = sim::harmonics_of(entry);
+    terms.push_back({wave.order, cosine, sine});
+    std::ranges::sort(terms, {}, &sim::HarmonicTerm::order);
+    sim::set_harmonics(entry, terms);
+    return true;
+  }
+  sim::EffectEntry entry;
+  entry.kind = kind;
+  entry.parameters["period"] = wave.period;
+  sim::set_harmonics(entry, {{wave.order, cosine, sine}});
+  return append_within_bounds(model, std::move(entry));
+}
+
+}  // namespace
+
+double turn_of(const sim::DataSheet& data) {
+  return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
+}
+
+std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest) {
+  const double travel = travel_of(rows), turn = turn_of(data);
+  std::vector<double> speeds(rows.w.size());
+  std::ranges::transform(rows.w, speeds.begin(), [](double w) { return std::abs(w); });
+  // What passes faster than the filter lets through cannot be seen, nor what the encoder's steps make themselves.
+  constexpr double kPassed = 0.8, kStepsAPeriod = 8.0;
+  const double usual = median(std::move(speeds)) * data.lead;
+  const double shortest = std::max(usual / (kPassed * rows.lowest_cutoff_Hz), kStepsAPeriod * data.encoder_resolution);
+  std::vector<Wave> waves;
+  if (!(travel > 0.0)) return waves;
+  if (turn > 0.0 && travel > kLeastOfATurn * turn) {
+    const double most = travel > turn ? std::min<double>(kMostOrders, turn / shortest) : 1.0;
+    for (int order = 1; order <= std::max(1.0, most); ++order) waves.push_back({turn, static_cast<double>(order)});
+  }
+  const double first = 1.0 / longest;
+  for (int k = 0; k < kMostFreeWaves; ++k) {
+    const double waves_over_travel = first + kApart * k, period = travel / waves_over_travel;
+    if (period < shortest) break;
+    waves.push_back({period, 1.0});
+  }
+  return waves;
+}
+
+MatrixXd wave_columns(const EffortRows& rows, const VectorXd& weight, const Wave& wave) {
+  MatrixXd columns(rows.x.size(), 2);
+  const double per_travel = wave.order / wave.period;
+  for (Index k = 0; k < columns.rows(); ++k) {
+    columns(k, 0) = weight(k) * sim::cosine_of_turns(per_travel * rows.x(k));
+    columns(k, 1) = weight(k) * sim::cosine_of_turns(per_travel * rows.x(k) - 0.25);
+  }
+  return columns;
+}
+
+EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
+                     const VectorXd& weight, const Wave& wave) {
+  EffortTerm term{kind, wave_columns(rows, weight, wave), {0, 0}, {}, {}};
+  term.write = [kind, wave](const VectorXd& factors, sim::DriveDescription& fitted) {
+    const double level = kind == "position_dependent_friction" ? coulomb_level(fitted) : -1.0;
+    return level != 0.0 && write_wave(kind, wave, factors(0) / level, factors(1) / level, fitted);
+  };
+  term.can_repeat = true;
+  term.words = fmt::format("order {:g} of {:.5g} {}", wave.order, wave.period,
+                           model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
+  if (wave.period == turn_of(model.data)) return term;
+  term.neighbours = [&model, &rows, kind, weight, wave](double part) {
+    constexpr double kWaves = 8.0;  // the largest part is a quarter of a wave over the travel
+    std::vector<EffortTerm> around;
+    for (const double sign : {-1.0, 1.0}) {
+      const double factor = 1.0 + sign * kWaves * part * wave.period / travel_of(rows);
+      if (factor > 0.5) around.push_back(wave_term(model, rows, kind, weight, {factor * wave.period, wave.order}));
+    }
+    return around;
+  };
+  return term;
+}
+
+}  // namespace host
