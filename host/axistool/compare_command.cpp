@@ -11,6 +11,7 @@
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/compare/tracking_error.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/model/model_file.hpp"
 #include "host/output_target.hpp"
 #include "host/record/channel_checks.hpp"
@@ -87,6 +88,7 @@ host::ComparedModel compared(const std::string& path, const CompareArguments& ar
 nlohmann::json document_of(const std::vector<host::ComparedModel>& models) {
   nlohmann::json document = host::comparison_json(models.front().comparison);
   document["model"] = models.front().path;
+  document["effort_timing"] = host::effort_timing_json(models.front().measured.training_records());
   if (models.size() == 1) return document;
   for (const host::ComparedModel& one : models) {
     nlohmann::json part = host::comparison_json(one.comparison);

@@ -6,6 +6,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
@@ -72,6 +73,7 @@ void run(const IdentifyArguments& arguments) {
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::identification_json(found);
+    document["effort_timing"] = host::effort_timing_json(measured.training_records());
     document["log"] = host::log_faults_json(measured.log());
     write_json(document, arguments.json);
   }

@@ -16,8 +16,10 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/evidence/measured_sensors.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/statistics.hpp"
+#include "sim/catalogue.hpp"
 
 namespace host {
 
@@ -99,6 +101,18 @@ bool completes(const Diagnosis& by_motion) {
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
 }
 
+/// Whether an effect changes when the motor's effort acts.
+bool acts_late(const sim::EffectInfo& effect) {
+  if (effect.stage != sim::Stage::command) return false;
+  sim::EffectEntry entry{.kind = std::string(effect.kind), .parameters = {}, .ci95 = {}, .from = {}};
+  for (const sim::ParameterInfo& parameter : effect.parameters)
+    entry.parameters[std::string(parameter.id)] = parameter.starts.empty() ? parameter.upper : parameter.starts.front();
+  sim::DriveDescription alone;
+  sim::Drive drive(alone);
+  effect.install(entry, alone.data, drive);
+  return drive.delay_s > 0.0 || drive.current_lag_s > 0.0;
+}
+
 Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before, const std::vector<std::string>& absent) {
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
@@ -153,8 +167,12 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
 }  // namespace
 
 Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
-                   const Diagnosis* before, const std::vector<std::string>& absent) {
+                   const Diagnosis* before, const std::vector<std::string>& known_absent) {
   const sim::DriveDescription model = with_measured_sensors(given, measured);
+  std::vector<std::string> absent = known_absent;
+  if (timing_explains_delays(measured.training_records()))
+    for (const sim::EffectInfo* effect : sim::catalogue())
+      if (acts_late(*effect)) absent.emplace_back(effect->kind);
   Diagnosis diagnosis = diagnose_records(model, measured, progress, before, absent);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);

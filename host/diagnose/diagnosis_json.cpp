@@ -5,6 +5,7 @@
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/evidence/log_faults.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"
 #include "sim/harmonic.hpp"
@@ -99,6 +100,14 @@ nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
   return document;
 }
 
+nlohmann::json timing_json(const PreparedSets& sets) {
+  std::vector<const Record*> records;
+  for (const RecordSet* set : {&sets.training, &sets.validation})
+    for (const PreparedRecord* prepared : prepared_records(*set))
+      if (std::ranges::find(records, prepared->record) == records.end()) records.push_back(prepared->record);
+  return effort_timing_json(records);
+}
+
 }  // namespace
 
 nlohmann::json to_json(const Diagnosis& diagnosis) {
@@ -106,6 +115,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
   for (const JudgedCandidate& candidate : diagnosis.candidates) candidates.push_back(candidate_json(candidate));
   nlohmann::json document = {
       {"format", "axis-diagnosis/1"},
+      {"effort_timing", timing_json(diagnosis)},
       {"error",
        {{"window_s", diagnosis.window_s},
         {"measure", diagnosis.measure == Measure::effort ? "effort" : "motion"},
@@ -145,6 +155,7 @@ nlohmann::json to_json(const Improvement& improvement, const std::string& model_
     channels.push_back(row);
   }
   return {{"format", "axis-improvement/1"},
+          {"effort_timing", timing_json(improvement.first)},
           {"given", {{"train", improvement.first.given_train}, {"validate", improvement.first.given_validate}}},
           {"ladder", ladder},
           {"channels", channels},

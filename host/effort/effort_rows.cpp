@@ -8,6 +8,7 @@
 #include "host/exit_codes.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/motion.hpp"
+#include "host/identify/smooth_acceleration.hpp"
 #include "host/identify/zero_phase_filter.hpp"
 #include "host/statistics.hpp"
 
@@ -91,7 +92,7 @@ struct Builder {
     const std::vector<double> effort = delivered_effort(record, model.data, signals.cutoff_Hz, true, path).effort;
     signals.motion = record.has_position() ? travel : speed;
     signals.speed = speed;
-    signals.acceleration = central_difference(speed, record.sample_period_s);
+    signals.acceleration = smooth_acceleration(record, model.data, signals.cutoff_Hz, by_speed, speed);
 
     std::vector<double> sizes(speed.size());
     std::ranges::transform(speed, sizes.begin(), [](double w) { return std::abs(w); });

@@ -306,13 +306,11 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
       constexpr double kGap_s = 0.1;  // rows on both sides of a stop are not neighbours
       if (together && step_s > 0.0 && step_s < kGap_s) slope(k) = (explained(k + 1) - explained(k - 1)) / step_s;
     }
-    const double least_s = rows.unknown_order_s;  // what comes less late may lie in the log
-    terms.push_back(simple("input_delay", slope, 1, [least_s](double delay_s, sim::DriveDescription& fitted) {
-      return delay_s >= least_s && append(fitted, "input_delay", {{"delay", delay_s}});
+    terms.push_back(simple("input_delay", slope, 1, [](double delay_s, sim::DriveDescription& fitted) {
+      return delay_s >= 0.0 && append(fitted, "input_delay", {{"delay", delay_s}});
     }));
-    terms.push_back(simple("current_loop_lag", slope, 1, [least_s](double lag_s, sim::DriveDescription& fitted) {
-      return lag_s > 0.0 && lag_s >= least_s &&
-             append(fitted, "current_loop_lag", {{"bandwidth", 1.0 / (2.0 * std::numbers::pi * lag_s)}});
+    terms.push_back(simple("current_loop_lag", slope, 1, [](double lag_s, sim::DriveDescription& fitted) {
+      return lag_s > 0.0 && append(fitted, "current_loop_lag", {{"bandwidth", 1.0 / (2.0 * std::numbers::pi * lag_s)}});
     }));
   }
   if (may_have("compliance") && may_have("backlash") && may_have("presliding")) append_compliance(model, rows, terms);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/zero_phase_filter.hpp"
 #include "sim/drive.hpp"
 
@@ -117,9 +118,10 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {
   constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
   constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
-  constexpr double kGain = 0.15;             // the squares must fall to this part; static friction alone makes 0.25
-  constexpr double kExplained = 0.02;        // of the effort's square: else friction decides where the optimum lies
-  constexpr double kAlike = 0.5;             // samples, between the halves of a record
+  const double first_answer = record.u_V.empty() ? kLargestTiming : kFirstAnswer;
+  constexpr double kGain = 0.15;       // the squares must fall to this part; static friction alone makes 0.25
+  constexpr double kExplained = 0.02;  // of the effort's square: else friction decides where the optimum lies
+  constexpr double kAlike = 0.5;       // samples, between the halves of a record
   MotionOptions options;
   options.decimation = 1;
   const std::optional<Motion> prepared = motion_if_long_enough(record, model.data, options);
@@ -136,7 +138,7 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   const sim::Drive drive(model);
   const double modelled = (drive.delay_s + drive.current_lag_s) / record.sample_period_s;
   const double beyond = *shift + modelled;
-  const bool too_early = beyond > kFirstAnswer;
+  const bool too_early = beyond > first_answer;
   const bool too_late = -*shift * record.sample_period_s > kLatestAnswer_s;
   const auto index = static_cast<std::size_t>(std::lround(*shift) + kMostSamples);
   if (!too_early && !too_late) return {};

@@ -10,6 +10,7 @@
 #include "host/evidence/record_agreement.hpp"
 #include "host/evidence/record_overlap.hpp"
 #include "host/evidence/record_zeros.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/read_record.hpp"
@@ -194,7 +195,11 @@ Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Re
   for (auto* role : {&training, &validation})
     for (Record& record : *role) std::ranges::move(check(record), std::back_inserter(faults));
   compare_roles(training, validation, faults);
-  if (!any_stops(faults)) share_zero(training, validation, faults);
+  if (!any_stops(faults)) {
+    share_zero(training, validation, faults);
+    for (auto* role : {&training, &validation})
+      for (Record& record : *role) settle_effort_timing(record, drive_.data);
+  }
   std::string fatal;
   for (LogFault& fault : faults) {
     fault.accepted = fault.fatal && is_accepted(fault);

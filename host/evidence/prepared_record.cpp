@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "host/exit_codes.hpp"
-#include "host/identify/motion.hpp"
 #include "host/statistics.hpp"
 #include "sim/drive.hpp"
 
@@ -48,7 +47,7 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
   PreparedRecord prepared{
       &record,
       command_volts(record, base.data),
-      record.u_V.empty() ? row_noise(motor_effort(record, base.data)) : 0.0,
+      record.u_V.empty() ? base.data.torque_constant_Nm_per_A * row_noise(record.i_A) : 0.0,
       MotionSmoother(record, base.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"), friction_level),
       {},
       record.sample_period_s,

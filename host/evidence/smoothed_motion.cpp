@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
@@ -125,8 +126,8 @@ std::vector<double> command_volts(const Record& record, const sim::DataSheet& da
     throw Failure(ExitCode::bad_input, record.path +
                                            ": no column u_V, and i_A needs amplifier_gain_A_per_V (a linear drive: "
                                            "force_constant_N_per_A) in the model");
-  std::vector<double> u_V(record.i_A.size());
-  std::ranges::transform(record.i_A, u_V.begin(), [&](double i_A) { return i_A / gain_A_per_V; });
+  std::vector<double> u_V = acting_current(record);
+  for (double& value : u_V) value /= gain_A_per_V;
   return u_V;
 }
 

@@ -7,10 +7,13 @@
 #include <iterator>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/identify/plausibility.hpp"
+#include "host/identify/zero_phase_filter.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/record_origin.hpp"
+#include "host/statistics.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -128,6 +131,31 @@ std::string dropped_effects(const sim::DriveDescription& drive) {
   return kinds;
 }
 
+/// Widens the intervals of an estimate of inverse models, `estimator`, by what is not known of the instants at which
+/// the efforts act. Where instants and parameters are found together, the covariance of the parameters is that of known
+/// instants and, for each instant, its variance times the square of how the parameters go with it.
+template <typename Estimator>
+void widen_by_timing(const std::vector<Record>& records, const std::vector<Motion>& motions, Estimator estimator,
+                     RigidEstimate& estimate) {
+  const auto widen = [](Estimate& one, double deviation) {
+    const double half = std::hypot(one.half_width(), kNormal95 * deviation);
+    one.ci95 = {one.value - half, one.value + half};
+  };
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const double deviation = effort_timing_of(records[m]).deviation;
+    if (!(deviation > 0.0)) continue;
+    std::vector<Motion> slopes = motions;  // the effort's change per sample, of this record alone
+    for (std::size_t other = 0; other < slopes.size(); ++other)
+      slopes[other].effort =
+          other == m ? central_difference(motions[m].effort, 1.0) : std::vector<double>(motions[other].effort.size());
+    const RigidEstimate change = estimator(slopes);
+    widen(estimate.inertia, deviation * change.inertia.value);
+    widen(estimate.viscous, deviation * change.viscous.value);
+    if (estimate.positive && change.positive) widen(*estimate.positive, deviation * change.positive->value);
+    if (estimate.negative && change.negative) widen(*estimate.negative, deviation * change.negative->value);
+  }
+}
+
 /// The records as one of the channels moves them.
 struct Attempt {
   MotionOptions options;
@@ -212,6 +240,12 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
         made.estimate = *beside;
         made.beside_travel = true;
       }
+    }
+    if (!by_samples) {
+      const auto again = [&](const std::vector<Motion>& motions) {
+        return made.beside_travel ? least_squares_beside_travel(motions) : inverse_least_squares(motions, coulomb);
+      };
+      widen_by_timing(records, made.motions, again, made.estimate);
     }
     require_determined(made.estimate, made.excitation, drive.data);
     made.model = model_from(drive, made.estimate, origin_of(given));

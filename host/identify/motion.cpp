@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/encoder_step.hpp"
+#include "host/identify/smooth_acceleration.hpp"
 #include "host/identify/zero_phase_filter.hpp"
 
 namespace host {
@@ -115,7 +117,7 @@ std::vector<double> motor_effort(const Record& record, const sim::DataSheet& dat
         fmt::format("{}: only a current was logged (i_A); that needs {} in [drive], or log u_V", record.path,
                     data.kind == sim::DriveKind::rotary ? "torque_constant_Nm_per_A" : "force_constant_N_per_A"));
   }
-  for (const double i : record.i_A) effort.push_back(data.torque_constant_Nm_per_A * i);
+  for (const double i : acting_current(record)) effort.push_back(data.torque_constant_Nm_per_A * i);
   return effort;
 }
 
@@ -123,7 +125,7 @@ DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& dat
                                  const sim::Drive* command_path) {
   constexpr double kHold = 0.5;  // a command is held for a sample: on average it was sent half a sample ago
   DeliveredEffort delivered;
-  double late = sliding_only && !record.u_V.empty() ? kHold : 0.0;  // samples
+  double late = sliding_only || record.u_V.empty() ? kHold : 0.0;  // samples
   if (command_path == nullptr || command_path->command.empty() || record.u_V.empty()) {
     delivered.effort = motor_effort(record, data);
   } else {
@@ -229,7 +231,7 @@ Motion prepare_motion(const Record& record, const sim::DataSheet& data, const Mo
   motion.speed = smooth_speed(record, data, motion.cutoff_Hz, options.by_speed);
   motion.deadband = options.deadband ? *options.deadband
                                      : usual_deadband(motion.speed, data, motion.cutoff_Hz, motion.sample_rate_Hz);
-  motion.acceleration = central_difference(motion.speed, record.sample_period_s);
+  motion.acceleration = smooth_acceleration(record, data, motion.cutoff_Hz, options.by_speed, motion.speed);
   DeliveredEffort delivered = delivered_effort(record, data, motion.cutoff_Hz, sliding_only, options.command_path);
   motion.effort = std::move(delivered.effort);
 

@@ -10,6 +10,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/identify/design_json.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/identify/plausibility.hpp"
@@ -41,6 +42,7 @@ Answer identify(const py::sequence& given, const py::object& sheet, const std::s
     host::Identification found = host::identify_drive(measured, drive, host::method_named(method, measured.training()));
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
     nlohmann::json document = host::identification_json(found);
+    document["effort_timing"] = host::effort_timing_json(measured.training_records());
     document["log"] = host::log_faults_json(measured.log());
     return Answer{document.dump(), host::format_model(found.model)};
   });
@@ -55,7 +57,9 @@ std::string compare(const py::object& model, const py::sequence& given, double w
   const ModelSource source(model);
   const std::vector<RecordSource> sources = record_sources(given, "record");
   return result_of(py::none(), "compare", [&](const auto&) {
-    nlohmann::json document = host::comparison_json(compared(source, sources, window_s).comparison);
+    const host::ComparedModel one = compared(source, sources, window_s);
+    nlohmann::json document = host::comparison_json(one.comparison);
+    document["effort_timing"] = host::effort_timing_json(one.measured.training_records());
     document["model"] = source.name();
     return document.dump();
   });

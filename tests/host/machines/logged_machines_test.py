@@ -103,7 +103,9 @@ def steps(seed: int, rows: int, period_s: float, most: float):
     return lambda row, position, speed: efforts[row]
 
 
-class LoggedMachines(unittest.TestCase):
+class Log(unittest.TestCase):
+    """A folder with a data sheet, records and models, and the commands on them."""
+
     def setUp(self) -> None:
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -154,6 +156,8 @@ class LoggedMachines(unittest.TestCase):
     def value(self, model: str, key: str) -> float:
         return float(next(line for line in model.splitlines() if line.startswith(f"{key} = ")).split("=")[1])
 
+
+class LoggedMachines(Log):
     def test_an_arm_under_gravity(self) -> None:
         self.sheet(1.2, 2.0 * math.pi / 65536, 0.004)
         arm = Machine(0.25, lambda w, q: 1.1 + 0.5 * abs(w), lambda q: -4.0 * math.cos(q))

@@ -1,0 +1,193 @@
+#include "host/identify/effort_timing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/encoder_step.hpp"
+#include "host/identify/least_squares.hpp"
+#include "host/identify/motion.hpp"
+#include "host/number.hpp"
+#include "host/statistics.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr const char *kSamplesKey = "effort_timing_samples", *kDeviationKey = "effort_timing_deviation";
+
+constexpr int kTravelTerms = 8;  // as beside inertia and friction elsewhere
+constexpr int kTerms = 7 + kTravelTerms;
+using Terms = Eigen::Matrix<double, kTerms, 1>;
+
+/// The record's motion on the samples that slide for sure, whatever the drive's usual dead band.
+std::optional<Motion> sliding_motion(const Record& record, const sim::DataSheet& data) {
+  constexpr double kSlowShare = 0.01;  // of the high speeds: below, the direction of friction is not certain
+  try {
+    MotionOptions options;
+    options.cutoff_Hz = choose_cutoff({record}, data);
+    std::vector<double> speeds = smooth_speed(record, data, *options.cutoff_Hz);
+    for (double& speed : speeds) speed = std::abs(speed);
+    const double step = record.has_position() ? encoder_step(record, data) * *options.cutoff_Hz / data.lead : 0.0;
+    options.deadband = std::max({kSlowShare * quantile(speeds, 0.95), step, std::numeric_limits<double>::min()});
+    return prepare_motion(record, data, options);
+  } catch (const Failure&) {  // too short, or no effort can be had: nothing is told
+    return {};
+  }
+}
+
+/// The terms of one record at the rows that count; the last one is left for the instant.
+std::vector<Terms> terms_of(const Motion& motion) {
+  const auto [low, high] = std::ranges::minmax(motion.travel);
+  const double length = std::max(high - low, 1e-300);
+  double top = 1e-300;
+  for (const double speed : motion.speed) top = std::max(top, std::abs(speed));
+  constexpr double kLowSpeed = 0.1;  // of the top speed: where friction may rise towards rest
+  std::vector<Terms> rows;
+  for (std::size_t k = 0; k < motion.speed.size(); ++k) {
+    if (!motion.counts[k]) continue;
+    const double w = motion.speed[k], sign = w > 0.0 ? 1.0 : -1.0, share = std::abs(w) / top;
+    Terms row;
+    row.head<6>() << motion.acceleration[k], w, w > 0.0 ? 1.0 : 0.0, w > 0.0 ? 0.0 : 1.0, w * share,
+        sign * std::exp(-share / kLowSpeed);
+    for (int n = 1; n <= kTravelTerms; ++n)
+      row(5 + n) = high > low ? std::cos(n * std::numbers::pi * (motion.travel[k] - low) / length) : 0.0;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// How the instant moves from where the effort was taken to act, with its variance; empty where that is not told.
+struct Step {
+  double samples, variance;
+};
+std::optional<Step> step_of(const Motion& motion, std::vector<Terms>& terms, const std::vector<double>& effort) {
+  BlockedRegression<kTerms> regression(rows_per_block(terms.size(), 1.0 / motion.sample_rate_Hz));
+  // What a record lacks (a direction, the position) stays at zero instead of making the equations singular.
+  constexpr double kNegligible = 1e-6;
+  for (int term = 0; term < kTerms; ++term) regression.add(kNegligible * Terms::Unit(term), 0.0);
+  std::size_t row = 0;
+  for (std::size_t k = 0; k < motion.counts.size(); ++k) {
+    if (!motion.counts[k]) continue;
+    // effort - samples * d effort/d row = what the motion needs
+    terms[row](kTerms - 1) =
+        0.5 * (effort[std::min(k + 1, effort.size() - 1)] - effort[k - std::min<std::size_t>(k, 1)]);
+    regression.add(terms[row++], effort[k]);
+  }
+  const Regression found = regression.solve();
+  const double variance = found.covariance(kTerms - 1, kTerms - 1);
+  if (!std::isfinite(found.parameters(kTerms - 1)) || !(variance > 0.0) || !std::isfinite(variance)) return {};
+  return Step{found.parameters(kTerms - 1), variance};
+}
+
+void write_timing(Record& record, const EffortTiming& timing) {
+  record.header[kSamplesKey] = fmt::format("{}", timing.samples);
+  record.header[kDeviationKey] = fmt::format("{}", timing.deviation);
+}
+
+std::optional<EffortTiming> found_timing(const Record& record, const sim::DataSheet& data) {
+  constexpr int kMostSteps = 8;
+  constexpr double kSettled = 0.002;  // samples
+  const std::optional<Motion> motion = sliding_motion(record, data);
+  if (!motion) return {};
+  Record current;  // what the effort needs, so that only it is prepared again
+  current.path = record.path;
+  current.sample_period_s = record.sample_period_s;
+  current.i_A = record.i_A;
+  std::vector<Terms> terms = terms_of(*motion);
+  std::vector<double> effort = motion->effort;
+  double own = kBelievedTiming.samples, variance = HUGE_VAL;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const std::optional<Step> found = step_of(*motion, terms, effort);
+    if (!found) return {};
+    variance = found->variance;
+    const double before = own;
+    own = std::clamp(own + std::clamp(found->samples, -1.0, 1.0), kBelievedTiming.samples - kLargestTiming,
+                     kBelievedTiming.samples + kLargestTiming);
+    if (std::abs(own - before) < kSettled) break;
+    write_timing(current, {own, 0.0});
+    effort = delivered_effort(current, data, motion->cutoff_Hz, true, nullptr).effort;
+    effort.erase(effort.begin(), effort.begin() + static_cast<std::ptrdiff_t>(kMotionMargin));
+    effort.resize(motion->effort.size());
+  }
+  const double prior = 1.0 / (kBelievedTiming.deviation * kBelievedTiming.deviation), information = 1.0 / variance;
+  return EffortTiming{(information * own + prior * kBelievedTiming.samples) / (information + prior),
+                      1.0 / std::sqrt(information + prior)};
+}
+
+EffortTiming common_timing(const std::vector<const Record*>& records) {
+  double information = 0.0, sum = 0.0;
+  for (const Record* record : records) {
+    const EffortTiming timing = effort_timing_of(*record);
+    if (timing.deviation == 0.0) return timing;  // known
+    const double own = 1.0 / (timing.deviation * timing.deviation);
+    information += own;
+    sum += own * timing.samples;
+  }
+  if (information == 0.0) return {};
+  EffortTiming common{sum / information, 1.0 / std::sqrt(information)};
+  double scatter = 0.0;  // in standard deviations, squared
+  for (const Record* record : records) {
+    const EffortTiming timing = effort_timing_of(*record);
+    scatter += std::pow((timing.samples - common.samples) / timing.deviation, 2);
+  }
+  if (records.size() > 1)
+    common.deviation *= std::sqrt(std::max(1.0, scatter / (static_cast<double>(records.size()) - 1.0)));
+  return common;
+}
+
+}  // namespace
+
+EffortTiming effort_timing_of(const Record& record) {
+  const auto samples = record.header.find(kSamplesKey), deviation = record.header.find(kDeviationKey);
+  if (!record.u_V.empty() || samples == record.header.end()) return {};
+  const auto number = [&](const auto& entry) {
+    const std::optional<double> value = parse_number(entry->second);
+    if (!value || !std::isfinite(*value))
+      throw Failure(ExitCode::bad_input, fmt::format("{}: # {}: {} is not a number; give samples after the row, or "
+                                                     "leave the line out",
+                                                     record.path, entry->first, entry->second));
+    return *value;
+  };
+  return {number(samples), deviation == record.header.end() ? 0.0 : number(deviation)};
+}
+
+std::vector<double> acting_current(const Record& record) {
+  const double early = EffortTiming{}.samples - effort_timing_of(record).samples;
+  if (early == 0.0) return record.i_A;
+  const double last = static_cast<double>(record.i_A.size()) - 1.0;
+  std::vector<double> current(record.i_A.size());
+  for (std::size_t k = 0; k < current.size(); ++k) {
+    const double at = std::clamp(static_cast<double>(k) + early, 0.0, last);
+    const auto whole = static_cast<std::size_t>(at);
+    const double part = at - static_cast<double>(whole);
+    current[k] = (1.0 - part) * record.i_A[whole] + part * record.i_A[std::min(whole + 1, current.size() - 1)];
+  }
+  return current;
+}
+
+void settle_effort_timing(Record& record, const sim::DataSheet& data) {
+  if (!record.u_V.empty() || record.i_A.empty() || record.header.contains(kSamplesKey)) return;
+  write_timing(record, found_timing(record, data).value_or(kBelievedTiming));
+}
+
+bool timing_explains_delays(const std::vector<const Record*>& records) {
+  constexpr double kAtTheEnd = 0.1;  // samples
+  return std::ranges::all_of(records, [](const Record* record) {
+    const double late = effort_timing_of(*record).samples - kBelievedTiming.samples;
+    return record->u_V.empty() && late < kLargestTiming - kAtTheEnd;
+  });
+}
+
+nlohmann::json effort_timing_json(const std::vector<const Record*>& records) {
+  const EffortTiming common = common_timing(records);
+  const double half = kNormal95 * common.deviation;
+  return {{"samples", common.samples}, {"ci95", {common.samples - half, common.samples + half}}};
+}
+
+}  // namespace host

@@ -1,0 +1,48 @@
+// When a logged current acts, in parts of a sample: loggers hold, average, filter or sample before the output.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// The middle of the time over which a logged effort acts, in samples after its row, with its standard deviation; 0
+/// where it is known. What is held from its row to the next acts half a sample after it.
+struct EffortTiming {
+  double samples = 0.5;
+  double deviation = 0.0;
+};
+
+/// What is believed of a logged current before its record is looked at: it is held from its row on, as a command is,
+/// give or take a sample (loggers average over the period before, or take the current of one or two periods ago).
+inline constexpr EffortTiming kBelievedTiming{0.5, 1.0};
+
+/// A current farther than this from the believed instant was shifted by more than a logger's habits, samples.
+inline constexpr double kLargestTiming = 2.5;
+
+/// Of a command: known. Of a current: what the record's header says, `# effort_timing_samples:` with
+/// `# effort_timing_deviation:` (0 where it is absent); else that it is held, as nobody has looked yet.
+EffortTiming effort_timing_of(const Record& record);
+
+/// Finds when the record's current acts and writes that to its header, where it does not stand already; from the
+/// inverse model: inertia, friction by direction with a bend over the speed, a curve over the travel and the instant
+/// are found together, on the samples that slide, and combined with the belief. The belief alone where the record does
+/// not tell.
+void settle_effort_timing(Record& record, const sim::DataSheet& data);
+
+/// The current that acts, on average, from each row to the next one, A. Interpolates between rows; beyond the ends the
+/// first and last row hold.
+std::vector<double> acting_current(const Record& record);
+
+/// Whether when their efforts act is found with each record, so that nothing of the drive can be told from it: all are
+/// currents, and none acts so late that its logger would not explain it.
+bool timing_explains_delays(const std::vector<const Record*>& records);
+
+/// {"samples", "ci95"} of all records together: weighed by what each tells; as uncertain as they scatter where that is
+/// more.
+nlohmann::json effort_timing_json(const std::vector<const Record*>& records);
+
+}  // namespace host
