@@ -30,15 +30,14 @@ EffortTiming effort_timing_of(const Record& record);
 /// Finds when the record's current acts and writes that to its header, where it does not stand already; from the
 /// inverse model: inertia, friction by direction with a bend over the speed, a curve over the travel and the instant
 /// are found together, on the samples that slide, and combined with the belief. The belief alone where the record does
-/// not tell.
+/// not tell, or tells of an instant that no logger's habits explain.
 void settle_effort_timing(Record& record, const sim::DataSheet& data);
 
 /// The current that acts, on average, from each row to the next one, A. Interpolates between rows; beyond the ends the
 /// first and last row hold.
 std::vector<double> acting_current(const Record& record);
 
-/// Whether when their efforts act is found with each record, so that nothing of the drive can be told from it: all are
-/// currents, and none acts so late that its logger would not explain it.
+/// Whether when their efforts act was found from each record, so that nothing of the drive can be told from it.
 bool timing_explains_delays(const std::vector<const Record*>& records);
 
 /// {"samples", "ci95"} of all records together: weighed by what each tells; as uncertain as they scatter where that is
