@@ -122,7 +122,9 @@ void run(CompareArguments& arguments) {
     fmt::print("{}", host::comparison_text(models, host::terminal_of(stdout)));
     if (!arguments.report.empty()) fmt::print("\nReport: {}\n", arguments.report);
   }
-  const auto fails = [&](const host::ComparedModel& one) { return one.comparison.combined > arguments.fail_above; };
+  const auto fails = [&](const host::ComparedModel& one) {
+    return one.comparison.error.combined > arguments.fail_above;
+  };
   if (arguments.fail_above > 0.0 && std::ranges::any_of(models, fails)) end_with(host::ExitCode::answer_is_no);
 }
 

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
@@ -17,6 +19,29 @@
 namespace axistool {
 
 namespace {
+
+std::string percent(const std::optional<double>& share) {
+  return share ? fmt::format("{:.3g} %", 100.0 * *share) : "-";
+}
+
+/// As compare prints them.
+void print_errors(const host::Diagnosis& diagnosis) {
+  fmt::print("Prediction error over noise floor (1 is perfect)   train  validation\n");
+  const auto row = [](const char* name, const host::ErrorOnSets& error) {
+    fmt::print("  {:<42} {:10.3f} {:10.3f}\n", name, error.train.combined, error.validate.combined);
+  };
+  row("model as given", diagnosis.given_error);
+  row("base parameters re-fitted", diagnosis.base_error);
+  row("with the effects above", diagnosis.best_error);
+  const auto& before = diagnosis.base_error.validate.channels;
+  for (const host::ChannelFigures& after : diagnosis.best_error.validate.channels)
+    if (const auto same = std::ranges::find(before, after.name, &host::ChannelFigures::name); same != before.end())
+      fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g} {} ({} -> {} of the signal), noise floor {:.4g}\n",
+                 after.name, same->rms, after.rms, after.unit, percent(same->share), percent(after.share), after.floor);
+  if (const auto& effort = diagnosis.effort)
+    fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g}, noise floor {:.4g}: by this the candidates are judged\n",
+               effort->name, effort->before_validate, effort->after_validate, effort->floor_validate);
+}
 
 void print(const host::Diagnosis& diagnosis) {
   print_log(diagnosis.log);
@@ -32,23 +57,19 @@ void print(const host::Diagnosis& diagnosis) {
                diagnosis.blocks.every, diagnosis.blocks.block_s);
   if (!diagnosis.not_searched.empty())
     fmt::print("Search incomplete (simulation budget exhausted) for: {}\n", fmt::join(diagnosis.not_searched, ", "));
-  fmt::print("Error over floor (1 is perfect)      train  validation\n");
-  fmt::print("  model as given                {:10.3f} {:10.3f}\n", diagnosis.given_train, diagnosis.given_validate);
-  fmt::print("  base parameters re-fitted     {:10.3f} {:10.3f}\n", diagnosis.before_train, diagnosis.before_validate);
-  fmt::print("  with the effects above        {:10.3f} {:10.3f}\n\n", diagnosis.after_train, diagnosis.after_validate);
-  for (const host::ChannelError& channel : diagnosis.channels)
-    fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g}, floor {:.4g}\n", channel.name, channel.before_validate,
-               channel.after_validate, channel.floor_validate);
+  print_errors(diagnosis);
   if (diagnosis.candidates.empty()) return;
   fmt::print("\n  {:<50} {:>9} {:>9} {:>11} {:>9}\n", "candidate", "train", "validate", "probability", "no luck");
   constexpr std::size_t kShown = 8;
   for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
     const host::JudgedCandidate& candidate = diagnosis.candidates[k];
     fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}% {:8.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
-               candidate.train_after, candidate.after, 100.0 * candidate.probability, 100.0 * candidate.confidence);
+               diagnosis.told_of_training(candidate.train_after), diagnosis.told(candidate.after),
+               100.0 * candidate.probability, 100.0 * candidate.confidence);
   }
-  fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}%\n", "nothing is missing", diagnosis.before_train,
-             diagnosis.before_validate, 100.0 * verdict.probability_nothing);
+  fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}%\n", "nothing is missing",
+             diagnosis.told_of_training(diagnosis.before_train), diagnosis.told(diagnosis.before_validate),
+             100.0 * verdict.probability_nothing);
   fmt::print("  {:<50} {:>9} {:>9} {:10.1f}%\n", "something else", "", "", 100.0 * verdict.probability_other);
 }
 

@@ -47,6 +47,29 @@ void run_improve(const InsightArguments& arguments) {
     write_json(document, arguments.json);
   }
   if (arguments.json != "-") print(improvement, files);
+  if (improvement.is_refused) end_with(host::ExitCode::answer_is_no);
+}
+
+void print(const host::Addition& addition, const std::string& kind, const std::string& output,
+           const std::vector<host::LogFault>& log) {
+  print_log(log);
+  fmt::print("{}: prediction error over noise floor on held-back records {:.3f} -> {:.3f} ({:.1f} % confidence)\n\n",
+             kind, addition.given.validate.combined, addition.error.validate.combined,
+             100.0 * addition.judged.confidence);
+  fmt::print("  {:<32} {:>12} {:>12}\n", "parameter", "value", "+- (95 %)");
+  for (const host::ParameterEstimate& estimate : addition.estimates) {
+    fmt::print("  {:<32} {:>12.5g} {:>12.2g}{}{}\n", estimate.name, estimate.value,
+               host::kNormal95 * estimate.deviation, estimate.determined ? "" : "  not determined by these data",
+               estimate.correlated_with.empty()
+                   ? ""
+                   : fmt::format("  moves with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
+  }
+  if (addition.kept_given) {
+    fmt::print("Held-back records are predicted worse with it: {} holds the model as given.\n", output);
+    return;
+  }
+  print_doubts(addition.judged.model);
+  fmt::print("Model written to {}\n", output);
 }
 
 void run_add(const InsightArguments& arguments, const std::string& kind, const std::string& over) {
@@ -57,20 +80,8 @@ void run_add(const InsightArguments& arguments, const std::string& kind, const s
   host::write_model(judged.model, arguments.output);
   if (!arguments.json.empty())
     write_json(host::to_json(addition, kind, records.measurements, arguments.output), arguments.json);
-  if (arguments.json == "-") return;
-  print_log(records.measurements.log());
-  fmt::print("{}: error over floor on validation data {:.3f} -> {:.3f} ({:.1f} % confidence)\n\n", kind, judged.before,
-             judged.after, 100.0 * judged.confidence);
-  fmt::print("  {:<32} {:>12} {:>12}\n", "parameter", "value", "+- (95 %)");
-  for (const host::ParameterEstimate& estimate : addition.estimates) {
-    fmt::print("  {:<32} {:>12.5g} {:>12.2g}{}{}\n", estimate.name, estimate.value,
-               host::kNormal95 * estimate.deviation, estimate.determined ? "" : "  not determined by these data",
-               estimate.correlated_with.empty()
-                   ? ""
-                   : fmt::format("  moves with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
-  }
-  print_doubts(judged.model);
-  fmt::print("Model written to {}\n", arguments.output);
+  if (arguments.json != "-") print(addition, kind, arguments.output, records.measurements.log());
+  if (addition.kept_given) end_with(host::ExitCode::answer_is_no);
 }
 
 }  // namespace

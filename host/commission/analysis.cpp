@@ -82,13 +82,14 @@ CommissionStepResult compare_first(CommissionSession& session) {
   const Computing computing(session);
   const sim::DriveDescription given = read_model(session.folder().require("model.toml", "friction"));
   const Measurements measured = settled(given, paths(session, kJudgingFiles), {});
-  const sim::DriveDescription model = with_measured_sensors(given, measured);
-  const RecordSet set = compare_on(measured.training_records(), model, kWindow_s);
-  const ModelComparison comparison = compare_model(model, measured, set, kWindow_s);
+  std::vector<FigureRecord> counted;
+  for (const Record* record : measured.training_records()) counted.push_back({record});
+  const ModelComparison comparison =
+      compare_model(with_measured_sensors(given, measured), measured, figure_set(given, counted, kWindow_s));
   session.folder().write_json("comparison.json", comparison_json(comparison));
-  return {
-      {"comparison.json"},
-      fmt::format("On motions that it has not seen the model errs by {:.3g} times the floor.", comparison.combined)};
+  return {{"comparison.json"},
+          fmt::format("On motions that it has not seen the model errs by {:.3g} times the noise floor.",
+                      comparison.error.combined)};
 }
 
 CommissionStepResult diagnose_machine(CommissionSession& session) {
@@ -121,10 +122,12 @@ CommissionStepResult improve_model(CommissionSession& session) {
   write_model(improvement.model, output);
   const nlohmann::json document = to_json(improvement, output);
   session.folder().write_json("improvement.json", document);
+  session.folder().put("error", document["error"]);
   write_improvement_report(improvement, {path, output}, session.folder().path("improvement.html"));
   return {{"improved.toml", "improvement.json", "improvement.html"},
-          fmt::format("{:.3g} → {:.3g} times the floor; stopped because {}.", improvement.first.given_validate,
-                      improvement.ladder.back().validate, improvement.stopped_because)};
+          fmt::format("{:.3g} → {:.3g} times the noise floor; stopped because {}.",
+                      improvement.first.given_error.validate.combined, improvement.error.validate.combined,
+                      improvement.stopped_because)};
 }
 
 }  // namespace host

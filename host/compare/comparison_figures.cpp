@@ -24,8 +24,10 @@ ComparedModel compare_with(const std::string& path, const sim::DriveDescription&
     throw Failure(ExitCode::usage, fmt::format("window {}: a length in seconds above 0 belongs here", window_s));
   Measurements measured = MeasurementGate(model, {.accepted = accepted, .as_logged = true}).admit(std::move(records));
   sim::DriveDescription completed = with_measured_sensors(model, measured);
-  RecordSet set = compare_on(measured.training_records(), completed, window_s);
-  ModelComparison comparison = compare_model(completed, measured, set, window_s);
+  std::vector<FigureRecord> counted;
+  for (const Record* record : measured.training_records()) counted.push_back({record});
+  RecordSet set = figure_set(model, counted, window_s);
+  ModelComparison comparison = compare_model(completed, measured, set);
   return {path, std::move(completed), std::move(measured), std::move(set), std::move(comparison)};
 }
 

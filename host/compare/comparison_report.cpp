@@ -1,11 +1,14 @@
 #include "host/compare/comparison_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <sstream>
+#include <system_error>
 
 #include "host/compare/free_run.hpp"
 #include "host/identify/inverse_model.hpp"
@@ -17,15 +20,64 @@ namespace {
 
 constexpr double kAtFloor = 1.2;  ///< combined error up to which nothing is left to explain
 constexpr double kNear = 2.0;
+constexpr double kMuchBetter = 1.5;  ///< error without over error with effects from which on they help
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
+/// The records that a model was fitted to, by what its entries say.
+std::vector<std::string> training_files(const sim::DriveDescription& model) {
+  std::vector<std::string> files;
+  const auto take = [&](const std::string& name) {
+    if (!name.empty() && std::ranges::find(files, name) == files.end()) files.push_back(name);
+  };
+  for (const sim::EffectEntry& entry : model.effects) {
+    std::istringstream list(entry.from);
+    for (std::string piece; std::getline(list, piece, ',');) {
+      piece.erase(0, piece.find_first_not_of(' '));
+      std::istringstream words(piece);
+      if (std::filesystem::exists(piece))
+        take(piece);
+      else
+        for (std::string word; words >> word;) take(word);
+    }
+  }
+  std::erase_if(files, [](const std::string& name) { return !std::filesystem::is_regular_file(name); });
+  return files;
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code unknown;
+  return a == b || std::filesystem::equivalent(a, b, unknown);
+}
+
+/// Trains on what the model was fitted to, where that is known, and never on a record that was held back from it.
+std::string diagnose_command(const ComparedModel& compared) {
+  std::vector<std::string> train = training_files(compared.model), validate;
+  const bool is_known = !train.empty();
+  for (const RecordError& record : compared.comparison.records) {
+    const bool trained =
+        std::ranges::any_of(train, [&](const std::string& name) { return is_same_file(name, record.path); });
+    if (!trained) (is_known ? validate : train).push_back(record.path);
+  }
+  std::string command = "axistool diagnose " + shell_word(compared.path) + " --train";
+  for (const std::string& path : train) command += " " + shell_word(path);
+  if (!validate.empty()) command += " --validate";
+  for (const std::string& path : validate) command += " " + shell_word(path);
+  return command;
+}
+
+std::string names_of(const std::vector<std::string>& kinds) {
+  std::vector<std::string> names;
+  for (const std::string& kind : kinds) names.push_back(spaced(kind));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 Verdict verdict_of(const ComparedModel& compared) {
   const ModelComparison& comparison = compared.comparison;
   Verdict verdict;
-  const std::string times = format_value(comparison.combined);
+  const std::string times = format_value(comparison.error.combined);
   if (!comparison.log_faults.empty()) {
     verdict.tone = Tone::bad;
     verdict.label = "check the log";
@@ -34,21 +86,30 @@ Verdict verdict_of(const ComparedModel& compared) {
                            : fmt::format("The records have {} faults that no model can explain; mend them first.",
                                          comparison.log_faults.size());
     for (const LogFault& fault : comparison.log_faults) verdict.sentences.push_back(fault.message + ".");
-  } else if (comparison.combined <= kAtFloor) {
+  } else if (comparison.error.combined <= kAtFloor) {
     verdict.tone = Tone::good;
     verdict.label = "fits";
-    verdict.headline = fmt::format("The model predicts these records as well as any could (error {} × floor).", times);
+    verdict.headline =
+        fmt::format("The model predicts these records as well as any could (error {} × noise floor).", times);
     return verdict;
   } else {
-    verdict.tone = comparison.combined <= kNear ? Tone::attention : Tone::bad;
-    verdict.label = comparison.combined <= kNear ? "nearly fits" : "does not fit";
-    verdict.headline = fmt::format("The prediction error is {} times what the best possible model would leave.", times);
+    const bool nearly = comparison.error.combined <= kNear, helps = comparison.without_effects >= kMuchBetter;
+    const ChannelFigures* worst = comparison.error.worst();
+    verdict.tone = nearly || helps ? Tone::attention : Tone::bad;
+    verdict.label = nearly ? "nearly fits" : helps ? "fits in part" : "does not fit";
+    verdict.headline = helps
+                           ? fmt::format("{} times better than without {}; {} times the noise floor remain",
+                                         format_value(comparison.without_effects), names_of(comparison.effects), times)
+                           : fmt::format("The prediction error is {} times the noise floor", times);
+    if (worst != nullptr && worst->share)
+      verdict.headline +=
+          fmt::format(", {} % of the signal in {}", format_value(100.0 * *worst->share, 2), worst->name);
+    verdict.headline += ".";
   }
   verdict.sentences.push_back(capitalised(where_it_fails(comparison.where)) + ".");
   if (comparison.log_faults.empty()) {
     verdict.sentences.push_back("Next: find out which effect is missing.");
-    verdict.command = "axistool diagnose " + shell_word(compared.path) + " --train";
-    for (const RecordError& record : comparison.records) verdict.command += " " + shell_word(record.path);
+    verdict.command = diagnose_command(compared);
   }
   return verdict;
 }
@@ -56,13 +117,19 @@ Verdict verdict_of(const ComparedModel& compared) {
 /// Several: which fits best, and the others beside it.
 Verdict verdict_of(std::span<const ComparedModel> models) {
   const auto best =
-      std::ranges::min_element(models, {}, [](const ComparedModel& one) { return one.comparison.combined; });
+      std::ranges::min_element(models, {}, [](const ComparedModel& one) { return one.comparison.error.combined; });
   Verdict verdict = verdict_of(*best);
   if (models.size() == 1) return verdict;
   verdict.sentences.insert(verdict.sentences.begin(), verdict.headline);
-  verdict.headline = fmt::format("{} predicts best: {} × floor", best->name(), format_value(best->comparison.combined));
-  for (const ComparedModel& one : models)
-    if (&one != &*best) verdict.headline += fmt::format("; {} {}", one.name(), format_value(one.comparison.combined));
+  const double least = best->comparison.error.combined;
+  verdict.headline = fmt::format("{} predicts best: {} × noise floor", best->name(), format_value(least));
+  for (const ComparedModel& one : models) {
+    if (&one == &*best) continue;
+    const double more = one.comparison.error.combined;
+    verdict.headline += fmt::format("; {} {}", one.name(), format_value(more));
+    if (least > 0.0 && more > kMuchBetter * least)
+      verdict.headline += fmt::format(", {} times as much", format_value(more / least));
+  }
   return verdict;
 }
 
@@ -71,15 +138,15 @@ Table error_table(std::span<const ComparedModel> models) {
   Table table;
   table.title = "Prediction error";
   table.caption = fmt::format(
-      "Predicted from the recorded command over {:g} s, restarted from the smoothed measurement.{}", first.window_s,
-      models.size() > 1 ? " Each model has a floor of its own; compare the RMS errors." : "");
+      "Predicted from the recorded command over {:g} s, restarted from the smoothed measurement.{}",
+      first.error.window_s, models.size() > 1 ? " Each model has a floor of its own; compare the RMS errors." : "");
   table.headings = {"record", "channel", "unit", "RMS error", "floor", "fit", "error/floor", "inverse model"};
   if (models.size() > 1) table.headings.insert(table.headings.begin() + 1, "model");
   const auto append = [&](const std::string& name, const ComparedModel& model, bool is_first,
-                          const std::vector<ChannelComparison>& channels, double combined,
+                          const std::vector<ChannelFigures>& channels, double combined,
                           const std::optional<double>& relative_error) {
     bool first_channel = true;
-    for (const ChannelComparison& channel : channels) {
+    for (const ChannelFigures& channel : channels) {
       std::vector<std::string> row{is_first && first_channel ? name : "",
                                    channel.name,
                                    channel.unit,
@@ -96,12 +163,12 @@ Table error_table(std::span<const ComparedModel> models) {
   for (std::size_t r = 0; r < first.records.size(); ++r)
     for (const ComparedModel& one : models) {
       const RecordError& record = one.comparison.records[r];
-      append(file_name(record.path), one, &one == &models.front(), record.channels, record.combined,
+      append(file_name(record.path), one, &one == &models.front(), record.error.channels, record.error.combined,
              record.relative_error);
     }
   if (first.records.size() > 1)
     for (const ComparedModel& one : models)
-      append("all", one, &one == &models.front(), one.comparison.channels, one.comparison.combined,
+      append("all", one, &one == &models.front(), one.comparison.error.channels, one.comparison.error.combined,
              one.comparison.relative_error);
   return table;
 }
@@ -232,8 +299,8 @@ Report comparison_report(std::span<const ComparedModel> models) {
   report.section("How far off");
   if (models.size() == 1) {
     Facts facts;
-    facts.items = {{"error over floor", format_value(comparison.combined)},
-                   {"prediction window", fmt::format("{:g} s", comparison.window_s)}};
+    facts.items = {{"error over floor", format_value(comparison.error.combined)},
+                   {"prediction window", fmt::format("{:g} s", comparison.error.window_s)}};
     if (comparison.relative_error)
       facts.items.emplace_back("inverse model's error", percent(*comparison.relative_error));
     std::string effects;
@@ -243,7 +310,8 @@ Report comparison_report(std::span<const ComparedModel> models) {
   }
   report.add(error_table(models));
 
-  const auto worst = std::ranges::max_element(comparison.records, {}, &RecordError::combined);
+  const auto worst =
+      std::ranges::max_element(comparison.records, {}, [](const RecordError& record) { return record.error.combined; });
   report.add(prediction_traces(models, static_cast<std::size_t>(worst - comparison.records.begin())));
   add_where_it_fails(models, report);
   add_missing_effort(models, report);

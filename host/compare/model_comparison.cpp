@@ -15,63 +15,7 @@ namespace host {
 
 namespace {
 
-/// Sums of one channel over used windows of one or all records.
-struct ChannelSums {
-  double error = 0.0, floor = 0.0, values = 0.0, squares = 0.0;
-  std::size_t rows = 0, windows = 0;
-
-  void add_window(const std::vector<double>& predicted, const std::vector<double>& measured, const Window& window,
-                  double window_floor) {
-    for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k) {
-      error += (predicted[k] - measured[k]) * (predicted[k] - measured[k]);
-      values += measured[k];
-      squares += measured[k] * measured[k];
-    }
-    rows += window.length;
-    floor += window_floor * window_floor;
-    ++windows;
-  }
-  void append_to(std::vector<ChannelComparison>& channels, std::string_view name, const char* unit) const {
-    if (rows == 0) return;
-    const auto n = static_cast<double>(rows);
-    const double spread = std::max(0.0, squares - values * values / n);
-    channels.push_back({std::string(name), unit, std::sqrt(error / n),
-                        spread > 0.0 ? 100.0 * (1.0 - std::sqrt(error / spread)) : 0.0,
-                        std::sqrt(floor / static_cast<double>(windows))});
-  }
-};
-
-struct Sums {
-  ChannelSums x, w;
-  double squares = 0.0;  ///< of error over floor, window by window
-  std::size_t scores = 0;
-
-  double combined() const { return scores == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(scores)); }
-  std::vector<ChannelComparison> channels(sim::DriveKind kind) const {
-    std::vector<ChannelComparison> list;
-    const bool rotary = kind == sim::DriveKind::rotary;
-    w.append_to(list, column_name(&Record::w, kind), rotary ? "rad/s" : "m/s");
-    x.append_to(list, column_name(&Record::x, kind), rotary ? "mm" : "m");
-    return list;
-  }
-};
-
-void add_record(const ComparedRecord& compared, const Prediction& prediction, std::size_t stride, Sums& sums) {
-  const PreparedRecord& prepared = compared.prepared;
-  const ErrorFloor& floor = compared.floor;
-  for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
-    const Window& window = prepared.windows[index];
-    const auto add = [&](ChannelSums& channel, const std::vector<double>& predicted,
-                         const std::vector<double>& measured, double window_floor) {
-      const double before = channel.error;
-      channel.add_window(predicted, measured, window, window_floor);
-      sums.squares += (channel.error - before) / static_cast<double>(window.length) / (window_floor * window_floor);
-      ++sums.scores;
-    };
-    if (!floor.x.empty()) add(sums.x, prediction.x, prepared.record->x, floor.x[index]);
-    if (!floor.w.empty()) add(sums.w, prediction.w, prepared.record->w, floor.w[index]);
-  }
-}
+constexpr std::string_view kBaseKinds[] = {"inertia", "viscous", "coulomb"};
 
 /// Empty where the records cannot say: the axis never slides, or a record is too short for the filter.
 std::optional<double> inverse_error(const sim::DriveDescription& model, const std::vector<Record>& records) {
@@ -82,9 +26,9 @@ std::optional<double> inverse_error(const sim::DriveDescription& model, const st
   }
 }
 
-nlohmann::json channels_json(const std::vector<ChannelComparison>& channels) {
+nlohmann::json channels_json(const ErrorFigures& figures) {
   nlohmann::json object = nlohmann::json::object();
-  for (const ChannelComparison& channel : channels)
+  for (const ChannelFigures& channel : figures.channels)
     object[channel.name] = {{"rms", channel.rms}, {"fit", channel.fit_percent}, {"floor", channel.floor}};
   return object;
 }
@@ -104,25 +48,23 @@ double factor_in_file(const Record& record, std::vector<double> Record::*channel
 
 }  // namespace
 
-ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set,
-                              double window_s) {
+ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set) {
   const std::vector<Record>& records = measured.training();
   ModelComparison comparison;
-  comparison.window_s = window_s;
-  const sim::Drive drive(model);
-  Sums all;
-  Prediction prediction;
-  for (std::size_t r = 0; r < set.records.size(); ++r) {
-    predict(drive, set.records[r].prepared, prediction, set.stride);
-    Sums own;
-    add_record(set.records[r], prediction, set.stride, own);
-    add_record(set.records[r], prediction, set.stride, all);
-    comparison.records.push_back({records[r].path, own.channels(model.data.kind), own.combined(),
-                                  inverse_error(model, {records[r]}), free_run_rms(model, set.records[r].prepared)});
-  }
+  const SetError error = error_of(sim::Drive(model), set);
+  comparison.error = figures_of(error, set);
+  for (std::size_t r = 0; r < set.records.size(); ++r)
+    comparison.records.push_back({records[r].path, figures_of(error, set, r), inverse_error(model, {records[r]}),
+                                  free_run_rms(model, set.records[r].prepared)});
+  sim::DriveDescription base = model;
+  std::erase_if(base.effects, [&](const sim::EffectEntry& entry) {
+    const bool beyond = std::ranges::find(kBaseKinds, entry.kind) == std::end(kBaseKinds);
+    if (beyond) comparison.effects.push_back(entry.kind);
+    return beyond;
+  });
+  if (!comparison.effects.empty() && comparison.error.combined > 0.0)
+    comparison.without_effects = error_of(sim::Drive(base), set).combined / comparison.error.combined;
   comparison.log_faults = measured.log();
-  comparison.channels = all.channels(model.data.kind);
-  comparison.combined = all.combined();
   comparison.relative_error = inverse_error(model, records);
   comparison.where = error_regions(model, set);
   return comparison;
@@ -179,15 +121,18 @@ nlohmann::json comparison_json(const ModelComparison& comparison) {
   for (const RecordError& record : comparison.records)
     records.push_back(
         {{"record", record.path},
-         {"channels", channels_json(record.channels)},
-         {"combined", record.combined},
+         {"error", to_json(record.error)},
+         {"channels", channels_json(record.error)},
+         {"combined", record.error.combined},
          {"relative_error", number_or_null(record.relative_error)},
          {"free_run", {{"given_samples", kGivenSamples}, {"position_rms", number_or_null(record.free_run)}}}});
   return {{"format", "axis-comparison/1"},
           {"relative_error", number_or_null(comparison.relative_error)},
-          {"window_s", comparison.window_s},
-          {"channels", channels_json(comparison.channels)},
-          {"combined", comparison.combined},
+          {"window_s", comparison.error.window_s},
+          {"error", to_json(comparison.error)},
+          {"channels", channels_json(comparison.error)},
+          {"combined", comparison.error.combined},
+          {"without_effects", {{"kinds", comparison.effects}, {"times", comparison.without_effects}}},
           {"where", error_regions_json(comparison.where)},
           {"where_in_words", where_it_fails(comparison.where)},
           {"log", log_faults_json(comparison.log_faults)},

@@ -7,42 +7,34 @@
 #include <utility>
 #include <vector>
 
-#include "host/compare/comparison.hpp"
+#include "host/compare/error_figures.hpp"
 #include "host/compare/error_regions.hpp"
 #include "host/evidence/log_faults.hpp"
 #include "host/record/measurements.hpp"
 
 namespace host {
 
-struct ChannelComparison {
-  std::string name;  ///< column in the drive's own units: x_mm, w_rad_s, x_m, v_m_s
-  std::string unit;
-  double rms = 0.0;          ///< of the prediction error
-  double fit_percent = 0.0;  ///< 100 (1 - |error| / |measured - mean|); 100 is perfect, 0 as good as the mean
-  double floor = 0.0;        ///< RMS that the best possible model would leave
-};
-
 struct RecordError {
   std::string path;
-  std::vector<ChannelComparison> channels;
-  double combined = 0.0;                 ///< RMS of error/floor over windows and channels; about 1 for a perfect model
+  ErrorFigures error;
   std::optional<double> relative_error;  ///< of the inverse model; empty where the axis never slides
   std::optional<double> free_run;        ///< RMS position error of a run to the end by the command alone, mm or m
 };
 
 struct ModelComparison {
-  double window_s = kWindow_s;
-  std::vector<ChannelComparison> channels;  ///< all records together
-  double combined = 0.0;
+  ErrorFigures error;  ///< all records together
   std::optional<double> relative_error;
   std::vector<RecordError> records;
+  /// Kinds beyond inertia, viscous and Coulomb friction, and how many times as large `error.combined` is without them,
+  /// nothing fitted again; 1 where there are none.
+  std::vector<std::string> effects;
+  double without_effects = 1.0;
   std::vector<ErrorRegion> where;
   std::vector<LogFault> log_faults;
 };
 
-/// Compares on a set made of the training records with `compare_on`; `model` has its sensors (with_measured_sensors).
-ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set,
-                              double window_s);
+/// Compares on the figure_set() of the training records; `model` has its sensors (with_measured_sensors).
+ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set);
 
 /// Prediction of every row: the rows after the last whole window by a shorter one, row 0 as the restart state reads.
 Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord prepared);

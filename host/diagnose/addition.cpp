@@ -42,6 +42,8 @@ nlohmann::json to_json(const Addition& addition, const std::string& kind, const 
           {"train_after", judged.train_after},
           {"confidence", judged.confidence},
           {"held_back", addition.held_back},
+          {"error", {{"given", to_json(addition.given)}, {"after", to_json(addition.error)}}},
+          {"kept", addition.kept_given ? "given" : "improved"},
           {"parameters", std::move(estimates)},
           {"log", log_faults_json(measured.log())},
           {"warnings", messages_of(doubts_of(judged.model))},

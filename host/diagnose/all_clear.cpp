@@ -173,28 +173,30 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, cons
   for (const auto& [set, name, error] : {std::tuple(&diagnosis.training, "training", diagnosis.before_train),
                                          std::tuple(&diagnosis.validation, "validation", diagnosis.before_validate)}) {
     if (is_small(diagnosis.base, *set)) continue;
+    const double told = set == &diagnosis.validation ? diagnosis.told(error) : diagnosis.told_of_training(error);
     // Of few windows, a single bad one makes such an error.
     const auto windows = static_cast<double>(set->used_windows());
     if (error < kSmall * (1.0 + 1.0 / std::sqrt(windows)))
       return Objection{Status::insufficient_data,
                        fmt::format("The error on {} data is {:.2f} times the floor, more than a complete model leaves, "
                                    "but {:.0f} windows are too few to be sure of it",
-                                   name, error, windows),
+                                   name, told, windows),
                        "Record the same motions for longer."};
     if (const auto base = base_of_both(diagnosis)) return base_is_open(diagnosis, *base);
     return Objection{Status::unexplained,
                      fmt::format("The error on {} data is {:.2f} times the floor, and no effect of the catalogue "
                                  "accounts for it",
-                                 name, error),
+                                 name, told),
                      "Look where the error lives, and record that motion alone, slowly and fast, both ways."};
   }
   const ResidualDependence* depends = dependence_in(tests);
   if (depends != nullptr && !depends_on_base_alone(diagnosis))
-    return Objection{Status::unexplained,
-                     fmt::format("The error is small ({:.2f} times the floor), but what is left is no noise: {:.0f} % "
-                                 "of it depends on {}",
-                                 diagnosis.before_validate, 100.0 * depends->share, depends->coordinate),
-                     "Look where the error lives, and record that motion alone, slowly and fast, both ways."};
+    return Objection{
+        Status::unexplained,
+        fmt::format("The error is small ({:.2f} times the floor), but what is left is no noise: {:.0f} % "
+                    "of it depends on {}",
+                    diagnosis.told(diagnosis.before_validate), 100.0 * depends->share, depends->coordinate),
+        "Look where the error lives, and record that motion alone, slowly and fast, both ways."};
   std::vector<std::string> hidden, ways;
   for (const Visibility& effect : visibility_of_effects(diagnosis.base, diagnosis.training, diagnosis.validation)) {
     if (effect.floors >= kVisible || is_taken_up(effect.kind, diagnosis.base)) continue;
@@ -206,7 +208,7 @@ std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, cons
   return Objection{Status::insufficient_data,
                    fmt::format("What is left is noise ({:.2f} times the floor), but an effect of usual size that "
                                "these motions would not have shown may be there: {}",
-                               diagnosis.before_validate, fmt::join(hidden, ", ")),
+                               diagnosis.told(diagnosis.before_validate), fmt::join(hidden, ", ")),
                    ways.front() + "."};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/certainty.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -58,8 +59,10 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
 namespace {
 
 /// By a search over the effects, on sets of `model` whose base is fitted.
-Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& model, const ShareDone& progress) {
+Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& model, const FigureRows& rows,
+                             const ShareDone& progress) {
   Diagnosis result(std::move(sets));
+  result.rows = rows;
   const sim::Drive given(model);
   if (!result.moves_enough) {
     result.given_train = result.before_train = result.after_train = error_of(given, result.training).combined;
@@ -113,23 +116,28 @@ bool acts_late(const sim::EffectInfo& effect) {
   return drive.delay_s > 0.0 || drive.current_lag_s > 0.0;
 }
 
-Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress,
+Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before, const std::vector<std::string>& absent) {
+  const sim::DriveDescription model = with_measured_sensors(given, measured);
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const bool by_short_windows = before != nullptr && before->rough;
   PreparedSets split = by_short_windows ? PreparedSets{} : split_sets(model, training, validation);
   split.absent = absent;
+  const FigureRows rows = before != nullptr ? before->rows : figure_rows(given, measured, &split);
   std::shared_ptr<const EffortScreen> screen;
   const auto search = [&](PreparedSets sets) {
     sets.absent = absent;
-    Diagnosis result = diagnose_by_search(std::move(sets), model, progress);
+    Diagnosis result = diagnose_by_search(std::move(sets), model, rows, progress);
     result.log = measured.log();
     result.screen = screen;
     return result;
   };
   const auto by_effort = [&](bool rough) {
     std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, split, training, validation, screen, rough);
-    if (diagnosis) diagnosis->log = measured.log();
+    if (diagnosis) {
+      diagnosis->log = measured.log();
+      diagnosis->rows = rows;
+    }
     if (diagnosis && progress) progress(1.0);
     return diagnosis;
   };
@@ -168,15 +176,20 @@ Diagnosis diagnose_records(const sim::DriveDescription& model, const Measurement
 
 Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                    const Diagnosis* before, const std::vector<std::string>& known_absent) {
-  const sim::DriveDescription model = with_measured_sensors(given, measured);
   std::vector<std::string> absent = known_absent;
   if (timing_explains_delays(measured.training_records()))
     for (const sim::EffectInfo* effect : sim::catalogue())
       if (acts_late(*effect)) absent.emplace_back(effect->kind);
-  Diagnosis diagnosis = diagnose_records(model, measured, progress, before, absent);
+  Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent);
+  diagnosis.given_error = diagnosis.rows.error_of(given);
+  diagnosis.base_error = diagnosis.moves_enough ? diagnosis.rows.error_of(diagnosis.base) : diagnosis.given_error;
+  diagnosis.best_error =
+      diagnosis.verdict.effects.empty() ? diagnosis.base_error : diagnosis.rows.error_of(diagnosis.best);
   if (!diagnosis.moves_enough) return diagnosis;
+  diagnosis.verdict.explanation += said_by_the_motion(diagnosis);
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
   name_coordinate(diagnosis);
+  fill_found(diagnosis);
   for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
     diagnosis.verdict.data_sheet.push_back(conflict.words);
     diagnosis.verdict.explanation += " " + conflict.words;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "host/compare/error_regions.hpp"
 #include "host/compare/residual_tests.hpp"
 #include "host/diagnose/candidate_search.hpp"
+#include "host/diagnose/figure_rows.hpp"
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/record/measurements.hpp"
 
@@ -21,10 +23,9 @@ enum class Status { missing, adequate, parameters, ambiguous, unexplained, insuf
 
 std::string_view status_name(Status status);
 
-/// RMS of one measured channel (or of the effort, where that is the measure) on both sets, in its own unit, beside what
-/// the best possible model would leave.
-struct ChannelError {
-  std::string name;                                  ///< column name, e.g. "w_rad_s"
+/// RMS of the torque or force on both sets, Nm or N, where that was judged.
+struct EffortError {
+  std::string name;                                  ///< "effort_Nm" or "effort_N"
   double before_train = 0.0, before_validate = 0.0;  ///< of the base, re-fitted
   double after_train = 0.0, after_validate = 0.0;    ///< with the effects of the verdict
   double floor_train = 0.0, floor_validate = 0.0;
@@ -44,6 +45,21 @@ struct JudgedCandidate {
   std::vector<std::string> on_bound = {};  ///< parameters that ran to the end of their range
 };
 
+/// Effects that are certain, and the share of the signal that the error is before and after them, on held-back records:
+/// of the torque or force where that was judged, else of the channel that is farthest above its noise floor.
+struct CertainEffects {
+  std::vector<std::string> kinds;
+  double probability = 0.0;
+  double share_before = 0.0, share_after = 0.0;
+};
+
+/// What the best model leaves on held-back records.
+struct Remains {
+  double share = 0.0;       ///< of the signal, as in CertainEffects
+  double over_floor = 0.0;  ///< combined error over the noise floor
+  std::string coordinate, where;
+};
+
 struct DiagnosisVerdict {
   Status status = Status::adequate;
   std::vector<std::string> effects;                    ///< what to add, best first
@@ -51,11 +67,14 @@ struct DiagnosisVerdict {
   std::vector<std::vector<std::string>> alternatives;  ///< groups that these data cannot tell apart
   std::string next_experiment;
   std::string explanation;
+  std::vector<CertainEffects> found;    ///< what is certain, in the order in which it was found
+  std::optional<Remains> remains;       ///< beside named effects: what they leave; empty where only noise is left
   std::string coordinate;               ///< where unexplained: what carries most of what is left
   std::string where;                    ///< where along it, in words
   double probability_nothing = 0.0;     ///< that nothing is missing, 0..1
   std::vector<std::string> data_sheet;  ///< where the data fight what the model file holds or believes, in words
   double probability_other = 0.0;       ///< that something is missing that is no candidate, 0..1
+  double probability_unfitted = 0.0;    ///< part of it: members of an ambiguous group of which no form was fitted
 };
 
 /// What it began with, and what came of it.
@@ -65,7 +84,9 @@ struct Diagnosis : PreparedSets {
 
   std::vector<LogFault> log;  ///< what is doubtful about the records
   bool rough = false;  ///< even the best model stays far above the floors: what is missing, not noise, sets the limit
-  std::vector<ChannelError> channels;
+  FigureRows rows;
+  ErrorOnSets given_error, base_error, best_error;  ///< of the model as it was given, of `base`, of `best`
+  std::optional<EffortError> effort;
   double given_train = 0.0, given_validate = 0.0;    ///< combined, of the model as it was given
   double before_train = 0.0, before_validate = 0.0;  ///< combined, of the base re-fitted
   double before_train_robust = 0.0;                  ///< SetError::robust; 0 where the effort was judged
@@ -79,6 +100,20 @@ struct Diagnosis : PreparedSets {
   sim::DriveDescription best;                  ///< with the effects of the verdict; the base where there are none
   std::shared_ptr<const EffortScreen> screen;  ///< what plain least squares of the effort saw; may be absent
   bool by_effort = false;                      ///< that decided: errors are then of the effort over its sensors' noise
+
+  /// Whether candidates were judged in the measure of compare.
+  bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }
+
+  /// A combined error that judged held-back records, in the measure of `base_error`: candidates are judged over the
+  /// noise floors of the best of them, a model alone is told over its own.
+  double told(double judged) const {
+    const double now = base_error.validate.combined;
+    return judged_as_compared() && before_validate > 0.0 && now > 0.0 ? judged * now / before_validate : judged;
+  }
+  double told_of_training(double judged) const {
+    const double now = base_error.train.combined;
+    return judged_as_compared() && before_train > 0.0 && now > 0.0 ? judged * now / before_train : judged;
+  }
 };
 
 /// Windows of a machine whose missing effects, not its sensors, set the limit: 10 ms, in which the position shows a

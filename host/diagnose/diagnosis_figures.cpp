@@ -95,6 +95,18 @@ std::string change_in_percent(const ChannelError& channel) {
 
 }  // namespace
 
+std::vector<ChannelError> channel_errors(const ErrorFigures& before, const ErrorFigures& after,
+                                         const std::optional<EffortError>& effort) {
+  std::vector<ChannelError> channels;
+  for (const ChannelFigures& channel : after.channels)
+    if (const auto same = std::ranges::find(before.channels, channel.name, &ChannelFigures::name);
+        same != before.channels.end())
+      channels.push_back({channel.name, same->rms, channel.rms, channel.floor});
+  if (effort)
+    channels.push_back({effort->name, effort->before_validate, effort->after_validate, effort->floor_validate});
+  return channels;
+}
+
 Table error_table(const std::vector<ChannelError>& channels, bool added) {
   Table table;
   table.title = "Error on validation data";
@@ -276,7 +288,7 @@ void add_candidates(Report& report, const Diagnosis& diagnosis) {
                                                                                                      : rest;
     if (&chart == &others && others.rows.size() == kMostOthers) continue;
     chart.rows.push_back({fmt::format("{}", fmt::join(titles_of(candidate.kinds), " + ")),
-                          {candidate.before, candidate.after},
+                          {diagnosis.told(candidate.before), diagnosis.told(candidate.after)},
                           fmt::format("{:.0f} % probable", 100.0 * candidate.probability)});
   }
   if (rest.rows.size() == 1) rest.title = "One effect that was tried changes nothing";

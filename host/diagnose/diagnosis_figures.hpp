@@ -14,6 +14,14 @@ void add_found(Report& report, const std::vector<FoundEffect>& found, bool rival
 /// In the place of the winning panel: the residual over the coordinate that carries most of what nothing explains.
 void add_unexplained(Report& report, const Diagnosis& diagnosis);
 
+/// RMS errors of one channel on validation data, in its own unit.
+struct ChannelError {
+  std::string name;
+  double before_validate = 0.0, after_validate = 0.0, floor_validate = 0.0;
+};
+std::vector<ChannelError> channel_errors(const ErrorFigures& before, const ErrorFigures& after,
+                                         const std::optional<EffortError>& effort);
+
 /// Position, speed, and torque or force where that is the measure: the errors on validation data in the units of the
 /// machine. Where nothing was added, `before` alone is shown.
 Table error_table(const std::vector<ChannelError>& channels, bool added);

@@ -1,6 +1,7 @@
 #include "host/diagnose/diagnosis_json.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/verdict.hpp"
@@ -14,14 +15,44 @@ namespace host {
 
 namespace {
 
-nlohmann::json channels_json(const std::vector<ChannelError>& channels) {
-  nlohmann::json document = nlohmann::json::object();
-  for (const ChannelError& channel : channels) {
-    document[channel.name] = {{"before", {{"train", channel.before_train}, {"validate", channel.before_validate}}},
-                              {"after", {{"train", channel.after_train}, {"validate", channel.after_validate}}},
-                              {"floor", {{"train", channel.floor_train}, {"validate", channel.floor_validate}}}};
+nlohmann::json channel_json(const ErrorOnSets& error, const std::string& name, double ChannelFigures::*what) {
+  nlohmann::json document;
+  for (const auto& [set, figures] : {std::pair("train", &error.train), std::pair("validate", &error.validate)}) {
+    const auto channel = std::ranges::find(figures->channels, name, &ChannelFigures::name);
+    document[set] = channel == figures->channels.end() ? nlohmann::json(nullptr) : nlohmann::json((*channel).*what);
   }
   return document;
+}
+
+nlohmann::json channels_json(const Diagnosis& diagnosis) {
+  nlohmann::json document = nlohmann::json::object();
+  for (const ChannelFigures& channel : diagnosis.best_error.validate.channels)
+    document[channel.name] = {{"before", channel_json(diagnosis.base_error, channel.name, &ChannelFigures::rms)},
+                              {"after", channel_json(diagnosis.best_error, channel.name, &ChannelFigures::rms)},
+                              {"floor", channel_json(diagnosis.best_error, channel.name, &ChannelFigures::floor)}};
+  if (const std::optional<EffortError>& effort = diagnosis.effort)
+    document[effort->name] = {{"before", {{"train", effort->before_train}, {"validate", effort->before_validate}}},
+                              {"after", {{"train", effort->after_train}, {"validate", effort->after_validate}}},
+                              {"floor", {{"train", effort->floor_train}, {"validate", effort->floor_validate}}}};
+  return document;
+}
+
+std::string measure_name(const Diagnosis& diagnosis) {
+  return diagnosis.measure == Measure::effort ? "effort" : "motion";
+}
+
+nlohmann::json combined_json(double train, double validate) { return {{"train", train}, {"validate", validate}}; }
+
+/// By the measure that judged: where that is the motion over the usual windows, the figures of ErrorOnSets.
+nlohmann::json combined_json(const Diagnosis& diagnosis) {
+  const auto of = [](const ErrorOnSets& error) { return combined_json(error.train.combined, error.validate.combined); };
+  if (diagnosis.judged_as_compared())
+    return {{"given", of(diagnosis.given_error)},
+            {"before", of(diagnosis.base_error)},
+            {"after", of(diagnosis.best_error)}};
+  return {{"given", combined_json(diagnosis.given_train, diagnosis.given_validate)},
+          {"before", combined_json(diagnosis.before_train, diagnosis.before_validate)},
+          {"after", combined_json(diagnosis.after_train, diagnosis.after_validate)}};
 }
 
 nlohmann::json parameters_json(const sim::EffectEntry& entry, sim::DriveKind kind) {
@@ -47,15 +78,16 @@ nlohmann::json parameters_json(const sim::EffectEntry& entry, sim::DriveKind kin
   return document;
 }
 
-nlohmann::json candidate_json(const JudgedCandidate& candidate) {
+/// Candidates stand beside each other over the same noise floors; their scale is that of the base's error.
+nlohmann::json candidate_json(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const std::string& kind : candidate.kinds)
     parameters[kind] = parameters_json(*candidate.model.find(kind), candidate.model.data.kind);
   const sim::EffectInfo& info = *sim::find_effect(candidate.kinds.back());
   return {{"kinds", candidate.kinds},
-          {"before", candidate.before},
-          {"after", candidate.after},
-          {"train_after", candidate.train_after},
+          {"before", diagnosis.judged_as_compared() ? diagnosis.base_error.validate.combined : candidate.before},
+          {"after", diagnosis.told(candidate.after)},
+          {"train_after", diagnosis.told_of_training(candidate.train_after)},
           {"parameters", candidate.kinds.size() == 1 ? parameters.begin().value() : parameters},
           {"confidence", candidate.confidence},
           {"luck", candidate.luck},
@@ -91,8 +123,19 @@ nlohmann::json verdict_json(const DiagnosisVerdict& verdict) {
                              {"data_sheet", verdict.data_sheet},
                              {"probability_nothing", verdict.probability_nothing},
                              {"probability_other", verdict.probability_other},
+                             {"found", nlohmann::json::array()},
                              {"next_experiment", verdict.next_experiment},
                              {"explanation", verdict.explanation}};
+  for (const CertainEffects& found : verdict.found)
+    document["found"].push_back({{"kinds", found.kinds},
+                                 {"probability", found.probability},
+                                 {"share_before", found.share_before},
+                                 {"share_after", found.share_after}});
+  if (const std::optional<Remains>& remains = verdict.remains)
+    document["remains"] = {{"share", remains->share},
+                           {"over_floor", remains->over_floor},
+                           {"coordinate", remains->coordinate},
+                           {"where", remains->where}};
   if (!verdict.coordinate.empty()) {
     document["coordinate"] = verdict.coordinate;
     document["where"] = verdict.where;
@@ -112,29 +155,31 @@ nlohmann::json timing_json(const PreparedSets& sets) {
 
 nlohmann::json to_json(const Diagnosis& diagnosis) {
   nlohmann::json candidates = nlohmann::json::array();
-  for (const JudgedCandidate& candidate : diagnosis.candidates) candidates.push_back(candidate_json(candidate));
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    candidates.push_back(candidate_json(candidate, diagnosis));
   nlohmann::json document = {
       {"format", "axis-diagnosis/1"},
       {"effort_timing", timing_json(diagnosis)},
       {"error",
        {{"window_s", diagnosis.window_s},
-        {"measure", diagnosis.measure == Measure::effort ? "effort" : "motion"},
+        {"measure", measure_name(diagnosis)},
         {"held_back", diagnosis.held_back},
         {"kept_back", {{"block_s", diagnosis.blocks.block_s}, {"one_of", diagnosis.blocks.every}}},
         {"moving_s", {{"train", diagnosis.moving_train_s}, {"validate", diagnosis.moving_validate_s}}},
         {"independent_windows",
          {{"train", independent_windows(diagnosis.moving_train_s)},
           {"validate", independent_windows(diagnosis.moving_validate_s)}}},
-        {"channels", channels_json(diagnosis.channels)},
-        {"combined",
-         {{"given", {{"train", diagnosis.given_train}, {"validate", diagnosis.given_validate}}},
-          {"before", {{"train", diagnosis.before_train}, {"validate", diagnosis.before_validate}}},
-          {"after", {{"train", diagnosis.after_train}, {"validate", diagnosis.after_validate}}}}}}},
+        {"channels", channels_json(diagnosis)},
+        {"given", to_json(diagnosis.given_error)},
+        {"before", to_json(diagnosis.base_error)},
+        {"after", to_json(diagnosis.best_error)},
+        {"combined", combined_json(diagnosis)}}},
       {"log", log_faults_json(diagnosis.log)},
       {"where", error_regions_json(diagnosis.where)},
       {"candidates", candidates},
       {"search", {{"not_searched", diagnosis.not_searched}}},
       {"verdict", verdict_json(diagnosis.verdict)}};
+  document["found"] = document["verdict"]["found"];
   if (!diagnosis.residual.dependences.empty()) document["residual"] = residual_json(diagnosis.residual);
   if (diagnosis.screen) document["error"]["effort_screen"] = effort_screen_json(*diagnosis.screen);
   if (diagnosis.screen && diagnosis.screen->repeatable)
@@ -145,18 +190,22 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
 nlohmann::json to_json(const Improvement& improvement, const std::string& model_path) {
   nlohmann::json ladder = nlohmann::json::array(), channels = nlohmann::json::array();
   for (const Rung& rung : improvement.ladder) {
-    ladder.push_back({{"added", rung.added}, {"train", rung.train}, {"validate", rung.validate}});
+    ladder.push_back(
+        {{"added", rung.added}, {"train", rung.train}, {"validate", rung.validate}, {"error", to_json(rung.error)}});
     nlohmann::json row = {{"added", rung.added}, {"channels", nlohmann::json::object()}};
-    for (const ChannelError& channel : rung.channels)
-      row["channels"][channel.name] = {
-          {"train", channel.after_train},
-          {"validate", channel.after_validate},
-          {"floor", {{"train", channel.floor_train}, {"validate", channel.floor_validate}}}};
+    for (const ChannelFigures& channel : rung.error.validate.channels) {
+      row["channels"][channel.name] = channel_json(rung.error, channel.name, &ChannelFigures::rms);
+      row["channels"][channel.name]["floor"] = channel_json(rung.error, channel.name, &ChannelFigures::floor);
+    }
     channels.push_back(row);
   }
+  const Diagnosis& first = improvement.first;
   return {{"format", "axis-improvement/1"},
-          {"effort_timing", timing_json(improvement.first)},
-          {"given", {{"train", improvement.first.given_train}, {"validate", improvement.first.given_validate}}},
+          {"effort_timing", timing_json(first)},
+          {"measure", measure_name(first)},
+          {"given", combined_json(first)["given"]},
+          {"error", {{"given", to_json(first.given_error)}, {"after", to_json(improvement.error)}}},
+          {"kept", improvement.kept_given ? "given" : "improved"},
           {"ladder", ladder},
           {"channels", channels},
           {"stopped_because", improvement.stopped_because},

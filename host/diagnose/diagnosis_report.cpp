@@ -14,6 +14,10 @@ namespace host {
 
 namespace {
 
+std::vector<ChannelError> errors_of(const Diagnosis& diagnosis) {
+  return channel_errors(diagnosis.base_error.validate, diagnosis.best_error.validate, diagnosis.effort);
+}
+
 Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>& found) {
   const DiagnosisVerdict& verdict = diagnosis.verdict;
   Verdict block;
@@ -53,7 +57,7 @@ Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>
   const bool ambiguous = verdict.status == Status::ambiguous;
   for (const FoundEffect& effect : found)
     block.sentences.push_back(fmt::format("{}{}.", ambiguous ? "If it is " : "", size_in_words(effect)));
-  if (!found.empty()) block.sentences.push_back(errors_in_words(diagnosis.channels));
+  if (!found.empty()) block.sentences.push_back(errors_in_words(errors_of(diagnosis)));
   block.sentences.push_back(verdict.explanation);
   block.sentences.emplace_back(kNoiseFloorMeans);
   block.sentences.push_back("Next: " + verdict.next_experiment);
@@ -72,13 +76,14 @@ void add_errors(Report& report, const Diagnosis& diagnosis) {
   chart.caption = "All channels together.";
   chart.series = {{"train", SeriesRole::train}, {"validation", SeriesRole::validate}};
   chart.reference = {"noise floor", 1.0};
-  chart.rows = {{"model as given", {diagnosis.given_train, diagnosis.given_validate}, ""},
-                {"base re-fitted", {diagnosis.before_train, diagnosis.before_validate}, ""}};
+  const auto add = [&chart](const std::string& name, const ErrorOnSets& error) {
+    chart.rows.push_back({name, {error.train.combined, error.validate.combined}, ""});
+  };
+  add("model as given", diagnosis.given_error);
+  add("base re-fitted", diagnosis.base_error);
   if (!diagnosis.verdict.effects.empty())
-    chart.rows.push_back({fmt::format("+ {}", fmt::join(diagnosis.verdict.effects, ", ")),
-                          {diagnosis.after_train, diagnosis.after_validate},
-                          ""});
-  report.add(error_table(diagnosis.channels, !diagnosis.verdict.effects.empty()));
+    add(fmt::format("+ {}", fmt::join(diagnosis.verdict.effects, ", ")), diagnosis.best_error);
+  report.add(error_table(errors_of(diagnosis), !diagnosis.verdict.effects.empty()));
   report.add(chart);
 }
 

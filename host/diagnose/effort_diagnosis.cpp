@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/diagnose/all_clear.hpp"
+#include "host/diagnose/certainty.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_terms.hpp"
@@ -101,20 +102,6 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
 
 /// Errors of the forward prediction that are so near to each other say nothing.
 constexpr double kHardly = 0.98;
-/// What takes less than half of their square is no confirmation.
-constexpr double kHalfOfTheSquare = 0.71;
-
-/// What the forward prediction says to the effects that the regression chose.
-std::string confirmed(const SetError& before, const SetError& after) {
-  const char* said = after.combined < kHalfOfTheSquare * before.combined ? "falls, which confirms it"
-                     : after.combined < kHardly * before.combined        ? "falls a little"
-                     : after.combined > before.combined / kHardly
-                         ? "rises: it does not confirm that, so record more of the motion in which it shows"
-                         : "stays as it was";
-  return fmt::format(" Predicted forward from the command, the error {} ({:.3g} -> {:.3g} times the floor).", said,
-                     before.combined, after.combined);
-}
-
 /// Over windows so short that the position shows a force before it adds up to a drift; a second mass, whose state no
 /// sensor shows at a restart, needs the usual ones.
 PreparedSets predicted_forward(const sim::DriveDescription& best, const std::vector<const Record*>& training,
@@ -151,29 +138,35 @@ void share_with_the_gap(const EffortScreen& screen, Diagnosis& diagnosis) {
     if (std::ranges::find(candidate.kinds, "compliance") != candidate.kinds.end()) {
       candidate.probability *= 0.5;
       diagnosis.verdict.probability_other += candidate.probability;
+      diagnosis.verdict.probability_unfitted += candidate.probability;
     }
 }
 
-/// Channels predicted forward.
-void append_channels(const EffortScreen& screen, const std::vector<const Record*>& training,
-                     const std::vector<const Record*>& validation, Diagnosis& diagnosis) {
-  const PreparedSets sets = predicted_forward(diagnosis.best, training, validation);
-  const sim::Drive base(diagnosis.base), best(diagnosis.best);
-  const SetError before_train = error_of(base, sets.training), after_train = error_of(best, sets.training);
-  const SetError before = error_of(base, sets.validation), after = error_of(best, sets.validation);
-  if (!screen.chosen.empty() && !screen.rows.steady) diagnosis.verdict.explanation += confirmed(before, after);
-  const auto append = [&](std::vector<double> Record::*channel, double SetError::*rms, double SetError::*floor) {
-    diagnosis.channels.push_back({std::string(column_name(channel, diagnosis.base.data.kind)), before_train.*rms,
-                                  before.*rms, after_train.*rms, after.*rms, after_train.*floor, after.*floor});
-  };
-  const Record& record = *diagnosis.training.records.front().prepared.record;
-  if (record.has_position()) append(&Record::x, &SetError::x_rms, &SetError::x_floor);
-  if (record.has_speed()) append(&Record::w, &SetError::w_rms, &SetError::w_floor);
+/// The steps of a regression end where the verdict does.
+void keep_what_is_named(const Diagnosis& diagnosis, EffortScreen& screen) {
+  const std::vector<std::string> named = modelled_kinds(diagnosis);
+  while (!screen.chosen.empty() && !std::ranges::is_permutation(screen.chosen.back().kinds, named)) {
+    screen.chosen.pop_back();
+    screen.tied.pop_back();
+  }
+  if (!screen.chosen.empty() || named.empty()) return;
+  for (const std::vector<ScreenedModel>& step : screen.steps)
+    for (const ScreenedModel& tried : step)
+      if (screen.chosen.empty() && std::ranges::is_permutation(tried.kinds, named)) {
+        screen.chosen = {tried};
+        screen.tied = {{}};
+      }
+}
+
+EffortError effort_error(const EffortScreen& screen) {
   const ScreenedModel &first = screen.base, &last = screen.best();
-  diagnosis.channels.push_back({diagnosis.base.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
-                                first.train * screen.effort_train, first.validate * screen.effort_validate,
-                                last.train * screen.effort_train, last.validate * screen.effort_validate,
-                                screen.rows.noise, screen.rows.noise});
+  return {first.model.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
+          first.train * screen.effort_train,
+          first.validate * screen.effort_validate,
+          last.train * screen.effort_train,
+          last.validate * screen.effort_validate,
+          screen.rows.noise,
+          screen.rows.noise};
 }
 
 }  // namespace
@@ -222,7 +215,6 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   diagnosis.measure = Measure::effort;
   diagnosis.rough = diagnosis.by_effort = true;
   diagnosis.base = screen->base.model;
-  diagnosis.best = screen->best().model;
   for (std::size_t step = 0; step < screen->steps.size(); ++step)
     for (const ScreenedModel& tried : screen->steps[step]) {
       diagnosis.candidates.push_back(judged_by_effort(*screen, tried));
@@ -234,15 +226,18 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
   diagnosis.given_train = diagnosis.before_train = over_noise(*screen, screen->base, false);
   diagnosis.given_validate = diagnosis.before_validate = over_noise(*screen, screen->base, true);
+  diagnosis.verdict = verdict_of(*screen, model);
+  assign_probabilities(diagnosis);
+  share_with_the_gap(*screen, diagnosis);
+  settle_status(diagnosis);
+  keep_what_is_named(diagnosis, *screen);
+  diagnosis.best = screen->best().model;
   diagnosis.after_train = over_noise(*screen, screen->best(), false);
   diagnosis.after_validate = over_noise(*screen, screen->best(), true);
+  diagnosis.effort = effort_error(*screen);
   renew_floors(diagnosis.training, diagnosis.best);
   renew_floors(diagnosis.validation, diagnosis.best);
   diagnosis.where = error_regions(diagnosis.base, diagnosis.validation);
-  diagnosis.verdict = verdict_of(*screen, model);
-  assign_probabilities(diagnosis);
-  append_channels(*screen, training, validation, diagnosis);
-  share_with_the_gap(*screen, diagnosis);
   diagnosis.screen = std::move(screen);
   return diagnosis;
 }
@@ -276,6 +271,21 @@ bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdi
 }
 
 }  // namespace
+
+std::string said_by_the_motion(const Diagnosis& diagnosis) {
+  // What takes less than half of the squared error is no confirmation.
+  constexpr double kHalfOfTheSquare = 0.71;
+  const EffortScreen* screen = diagnosis.screen.get();
+  if (!diagnosis.by_effort || screen == nullptr || screen->chosen.empty() || screen->rows.steady) return {};
+  const double before = diagnosis.base_error.validate.combined, after = diagnosis.best_error.validate.combined;
+  const char* said = after < kHalfOfTheSquare * before ? "falls, which confirms it"
+                     : after < kHardly * before        ? "falls a little"
+                     : after > before / kHardly
+                         ? "rises: it does not confirm that, so record more of the motion in which it shows"
+                         : "stays as it was";
+  return fmt::format(" Predicted forward from the command, the error {} ({:.3g} -> {:.3g} times the noise floor).",
+                     said, before, after);
+}
 
 void name_coordinate(Diagnosis& diagnosis) {
   // Less is what 25 knots take of anything, and no help to a reader.

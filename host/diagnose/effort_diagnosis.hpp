@@ -29,6 +29,9 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
                                             const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& screen, bool rough = false);
 
+/// What the forward prediction says of the effects that the regression chose; a sentence, empty where none is due.
+std::string said_by_the_motion(const Diagnosis& diagnosis);
+
 /// Where unexplained: names the coordinate that carries most of what is left, and says what a free curve takes of it.
 void name_coordinate(Diagnosis& diagnosis);
 

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "host/diagnose/candidate_starts.hpp"
+#include "host/diagnose/certainty.hpp"
+#include "host/diagnose/claim.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
 #include "host/effort/effort_terms.hpp"
@@ -24,30 +27,106 @@ namespace {
 Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::string>& added) {
   Rung rung;
   rung.added = added;
-  rung.train = after ? diagnosis.after_train : diagnosis.before_train;
-  rung.validate = after ? diagnosis.after_validate : diagnosis.before_validate;
-  rung.channels = diagnosis.channels;
-  if (!after) {
-    for (ChannelError& channel : rung.channels) {
-      channel.after_train = channel.before_train;
-      channel.after_validate = channel.before_validate;
-    }
+  rung.error = after ? diagnosis.best_error : diagnosis.base_error;
+  if (diagnosis.judged_as_compared()) {
+    rung.train = rung.error.train.combined;
+    rung.validate = rung.error.validate.combined;
+  } else {
+    rung.train = after ? diagnosis.after_train : diagnosis.before_train;
+    rung.validate = after ? diagnosis.after_validate : diagnosis.before_validate;
   }
   return rung;
+}
+
+/// What was tried on top of the effects that a regression chose, and halves the squared error that they leave, on both
+/// sets and for certain: too little of the torque or force to be named, but not to be left to the controller. Null
+/// where there is none.
+const ScreenedModel* halves_the_rest(const EffortScreen& screen) {
+  constexpr double kHalf = 0.707;
+  constexpr double kLeastConfidence = 0.99;  // as for what is named (effort_screen.cpp)
+  if (screen.chosen.empty() || screen.steps.empty()) return nullptr;
+  const ScreenedModel& best = screen.best();
+  const ScreenedModel* found = nullptr;
+  for (const ScreenedModel& tried : screen.steps.back()) {
+    const bool on_top = tried.kinds.size() > best.kinds.size() &&
+                        std::ranges::equal(best.kinds, std::span(tried.kinds).first(best.kinds.size()));
+    if (!on_top || tried.confidence < kLeastConfidence) continue;
+    if (tried.train > kHalf * best.train || tried.validate > kHalf * best.validate) continue;
+    if (found == nullptr || tried.validate < found->validate) found = &tried;
+  }
+  return found;
+}
+
+/// The same of a search by motion, on top of what was added before.
+const JudgedCandidate* halves_the_rest(const Diagnosis& diagnosis) {
+  constexpr double kHalf = 0.707;
+  const JudgedCandidate* found = nullptr;
+  for (const JudgedCandidate& tried : diagnosis.candidates) {
+    if (!tried.on_bound.empty() || tried.luck > kMostLuck || tried.confidence < kClaimed) continue;
+    if (tried.train_after > kHalf * diagnosis.before_train || tried.after > kHalf * tried.before) continue;
+    if (found == nullptr || tried.after < found->after) found = &tried;
+  }
+  return found;
+}
+
+Rung rung_of(const Diagnosis& diagnosis, const JudgedCandidate& candidate) {
+  const ErrorOnSets error = diagnosis.rows.error_of(candidate.model);
+  if (diagnosis.judged_as_compared()) return {candidate.kinds, error.train.combined, error.validate.combined, error};
+  return {candidate.kinds, candidate.train_after, candidate.after, error};
 }
 
 /// The rungs of a regression: it chose one effect after the other against one floor, and stopped by itself.
 void append_effort_ladder(const Diagnosis& diagnosis, Improvement& result) {
   const EffortScreen& screen = *diagnosis.screen;
   std::size_t known = 0;
-  for (const ScreenedModel& step : screen.chosen) {
+  const auto append = [&](const ScreenedModel& step) {
     Rung rung = rung_of(diagnosis, true, {step.kinds.begin() + static_cast<std::ptrdiff_t>(known), step.kinds.end()});
     known = step.kinds.size();
     rung.train = over_noise(screen, step, false);
     rung.validate = over_noise(screen, step, true);
+    rung.error = diagnosis.rows.error_of(step.model);
     result.ladder.push_back(std::move(rung));
-  }
+    result.model = step.model;
+  };
+  for (const ScreenedModel& step : screen.chosen) append(step);
+  if (const ScreenedModel* further = halves_the_rest(screen)) append(*further);
   result.stopped_because = "no further effect takes its part of the effort that is left";
+}
+
+/// A fit of the motion, from where another one ended.
+sim::DriveDescription fitted_to_motion(const sim::DriveDescription& model, const FigureRows& rows) {
+  RecordSet training = figure_set(model, rows.train, kWindow_s);
+  renew_floors(training, model);
+  sim::DriveDescription fitted = fit_model(model, training).model;
+  document_fit(fitted, training);
+  return fitted;
+}
+
+/// No model is handed over that predicts held-back records worse than the one that came in. What was fitted to the
+/// torque or force is fitted to the motion first.
+void keep_the_better(Improvement& result, const sim::DriveDescription& given) {
+  // By less a re-fit changes nothing that anyone would call an improvement or a failure.
+  constexpr double kNothing = 0.02;
+  const ErrorOnSets& before = result.first.given_error;
+  if (!is_worse(result.error.validate, before.validate)) return;
+  if (result.first.moves_enough && !result.first.judged_as_compared()) {
+    const sim::DriveDescription fitted = fitted_to_motion(result.model, result.first.rows);
+    const ErrorOnSets error = result.first.rows.error_of(fitted);
+    if (!is_worse(error.validate, before.validate)) {
+      result.model = fitted;
+      result.error = error;
+      return;
+    }
+  }
+  result.kept_given = true;
+  result.is_refused =
+      result.ladder.size() > 1 || result.error.validate.combined > (1.0 + kNothing) * before.validate.combined;
+  result.stopped_because += fmt::format(
+      "; it predicts held-back records worse than the model as given ({:.3g} against {:.3g} times the noise "
+      "floor), which is kept",
+      result.error.validate.combined, before.validate.combined);
+  result.model = given;
+  result.error = before;
 }
 
 }  // namespace
@@ -81,16 +160,18 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
     }
     const bool adds = status == Status::missing || status == Status::ambiguous;
     if (adds) {
-      std::vector<std::string> added = diagnosis.verdict.effects;
-      if (status == Status::ambiguous) added.resize(1);
-      result.ladder.push_back(rung_of(diagnosis, true, added));
+      result.ladder.push_back(rung_of(diagnosis, true, modelled_kinds(diagnosis)));
     } else {
       result.stopped_because = status == Status::unexplained ? "no effect of the catalogue explains what is left"
                                : status == Status::insufficient_data
                                    ? "these motions cannot show what else may be there"
                                    : "nothing in the catalogue lowers the validation error beyond chance";
     }
-    const double left = result.ladder.back().validate;
+    if (const JudgedCandidate* further = adds || step == 0 ? nullptr : halves_the_rest(diagnosis)) {
+      result.ladder.push_back(rung_of(diagnosis, *further));
+      result.model = further->model;
+    }
+    const double left = adds ? diagnosis.after_validate : diagnosis.before_validate;
     if (step == 0) result.first = std::move(diagnosis);
     if (!adds) break;
     current = result.model;
@@ -102,6 +183,8 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
   if (result.stopped_because.empty()) result.stopped_because = "the ladder has as many rungs as it may";
   document_fit(result.model, result.first.training);
   result.model.data = model.data;
+  result.error = result.first.rows.error_of(result.model);
+  keep_the_better(result, model);
   return result;
 }
 
@@ -197,6 +280,11 @@ Addition on_measured_sensors(Adding adding, const sim::DriveDescription& model, 
                              const Measurements& measured) {
   Addition addition = adding(with_measured_sensors(model, measured), what, measured);
   addition.judged.model.data = model.data;
+  const FigureRows rows = figure_rows(model, measured);
+  addition.given = rows.error_of(model);
+  addition.error = rows.error_of(addition.judged.model);
+  addition.kept_given = is_worse(addition.error.validate, addition.given.validate);
+  if (addition.kept_given) addition.judged.model = model;
   return addition;
 }
 

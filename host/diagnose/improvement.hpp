@@ -13,8 +13,8 @@ namespace host {
 /// One rung: what was added since the rung before, and the errors that the model then leaves.
 struct Rung {
   std::vector<std::string> added;
-  double train = 0.0, validate = 0.0;  ///< combined
-  std::vector<ChannelError> channels;  ///< `after` holds this rung's errors
+  double train = 0.0, validate = 0.0;  ///< combined, in the measure that judged
+  ErrorOnSets error;                   ///< as compare prints it
 };
 
 struct Improvement {
@@ -22,7 +22,11 @@ struct Improvement {
   std::string stopped_because;
   DiagnosisVerdict verdict;  ///< of the last step
   sim::DriveDescription model;
-  Diagnosis first;  ///< the diagnosis that the ladder began with
+  Diagnosis first;    ///< the diagnosis that the ladder began with
+  ErrorOnSets error;  ///< of `model`
+  /// `model` is the one that came in: what the ladder ends with predicts held-back records worse.
+  bool kept_given = false;
+  bool is_refused = false;  ///< and what the ladder ends with was more than a re-fit that changes next to nothing
 };
 
 /// More rungs than a drive has ever needed; the ladder ends long before.
@@ -40,6 +44,9 @@ struct Addition {
   JudgedCandidate judged;
   std::vector<ParameterEstimate> estimates;
   bool held_back = false;
+  ErrorOnSets given, error;  ///< of the model that came in, and with the effect
+  /// The model with the effect predicts held-back records worse: the judged model is the one that came in.
+  bool kept_given = false;
 };
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
 

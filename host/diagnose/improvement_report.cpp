@@ -23,33 +23,34 @@ std::string join_words(const std::vector<std::string>& words) {
 
 /// "18.6 → 0.78 × noise floor"; empty where nothing could be judged.
 std::string fall(const Improvement& improvement) {
-  const double before = improvement.first.given_validate, after = improvement.ladder.back().validate;
+  const double before = improvement.first.given_error.validate.combined, after = improvement.error.validate.combined;
   if (!(before > 0.0) || !std::isfinite(before) || !std::isfinite(after)) return "";
   return fmt::format("{} → {} × noise floor", format_value(before), format_value(after));
 }
 
 std::vector<std::string> added_kinds(const Improvement& improvement) {
   std::vector<std::string> added;
+  if (improvement.kept_given) return added;
   for (const Rung& rung : improvement.ladder) added.insert(added.end(), rung.added.begin(), rung.added.end());
   return added;
 }
 
-/// Errors of the base re-fitted beside those of the last step.
+/// Errors of the base re-fitted beside those of the model that is handed over.
 std::vector<ChannelError> channels_of(const Improvement& improvement) {
-  std::vector<ChannelError> channels = improvement.ladder.back().channels;
-  for (ChannelError& channel : channels)
-    for (const ChannelError& first : improvement.ladder.front().channels)
-      if (first.name == channel.name) {
-        channel.before_train = first.after_train;
-        channel.before_validate = first.after_validate;
-      }
-  return channels;
+  return channel_errors(improvement.ladder.front().error.validate, improvement.error.validate,
+                        improvement.first.effort);
 }
 
 std::string headline(const Improvement& improvement) {
+  if (improvement.is_refused) return "Nothing is better than the model as given, which is kept";
   const std::vector<std::string> added = added_kinds(improvement);
   if (!added.empty()) return fmt::format("{} by adding {}", fall(improvement), join_words(added));
-  switch (improvement.verdict.status) {
+  constexpr double kLower = 0.95;  // of the error: by less a re-fit changes nothing that anyone would call a change
+  const Status status = improvement.verdict.status;
+  const double given = improvement.first.given_error.validate.combined, left = improvement.error.validate.combined;
+  if (left < kLower * given && (status == Status::unexplained || status == Status::insufficient_data))
+    return fmt::format("{} by fitting the parameters again; no effect of the catalogue was added", fall(improvement));
+  switch (status) {
     case Status::adequate:
       return "Nothing had to be added: the model explains these measurements";
     case Status::parameters:
@@ -74,18 +75,23 @@ std::string parameters_file(const std::string& model) {
 
 Verdict improvement_verdict(const Improvement& improvement, const ImprovementFiles& files) {
   Verdict verdict;
-  const bool added = improvement.ladder.size() > 1;
-  const bool fits = improvement.ladder.back().validate <= kExplained;
+  const bool added = improvement.ladder.size() > 1 && !improvement.kept_given;
+  const bool fits = improvement.error.validate.combined <= kExplained;
   const Status last = improvement.verdict.status;
   const bool done = last == Status::adequate || last == Status::parameters || fits;
   verdict.tone = done ? Tone::good : added ? Tone::attention : last == Status::unexplained ? Tone::bad : Tone::neutral;
-  verdict.label = added ? "improved" : std::string(status_name(last));
+  if (improvement.is_refused) verdict.tone = Tone::bad;
+  verdict.label = improvement.is_refused ? "not improved" : added ? "improved" : std::string(status_name(last));
   verdict.headline = headline(improvement);
   for (const LogFault& fault : improvement.first.log)
     verdict.sentences.push_back(fmt::format("{}: {}.", fault.accepted ? "Accepted" : "Doubtful", fault.message));
   verdict.sentences.push_back(
       fmt::format("Stopped because {}. {}", improvement.stopped_because, improvement.verdict.explanation));
   if (!done) verdict.sentences.push_back("To go on: " + improvement.verdict.next_experiment);
+  if (improvement.is_refused) {
+    verdict.sentences.push_back(fmt::format("{} holds the model as given.", files.output));
+    return verdict;
+  }
   verdict.sentences.push_back(
       fmt::format("The model is in {}. Next, the parameters of the board from it:", files.output));
   verdict.command =
@@ -99,11 +105,12 @@ BarChart ladder_chart(const Improvement& improvement) {
   chart.caption = "In multiples of the noise floor.";
   chart.series = {{"train", SeriesRole::train}, {"validation", SeriesRole::validate}};
   chart.reference = {"noise floor", 1.0};
-  chart.rows = {{"as given", {improvement.first.given_train, improvement.first.given_validate}, ""}};
+  const auto add = [&chart](const std::string& name, const ErrorOnSets& error) {
+    chart.rows.push_back({name, {error.train.combined, error.validate.combined}, ""});
+  };
+  add("as given", improvement.first.given_error);
   for (const Rung& rung : improvement.ladder)
-    chart.rows.push_back({rung.added.empty() ? "base re-fitted" : fmt::format("+ {}", fmt::join(rung.added, " + ")),
-                          {rung.train, rung.validate},
-                          ""});
+    add(rung.added.empty() ? "base re-fitted" : fmt::format("+ {}", fmt::join(rung.added, " + ")), rung.error);
   return chart;
 }
 

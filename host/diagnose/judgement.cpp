@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "host/compare/chance.hpp"
+#include "host/diagnose/certainty.hpp"
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
-#include "host/record/columns.hpp"
 
 namespace host {
 
@@ -18,24 +18,6 @@ std::size_t windows_in(double span_s, const RecordSet& set) {
   return std::max<std::size_t>(1,
                                static_cast<std::size_t>(std::lround(span_s / set.records.front().prepared.window_s())));
 }
-
-/// What a base and the best model leave on both sets.
-struct FourErrors {
-  SetError base_train, base_validate, best_train, best_validate;
-
-  FourErrors(const Diagnosis& diagnosis, const RecordSet& training, const RecordSet& validation) {
-    const sim::Drive base(diagnosis.base), best(diagnosis.best);
-    base_train = error_of(base, training);
-    base_validate = error_of(base, validation);
-    best_train = error_of(best, training);
-    best_validate = error_of(best, validation);
-  }
-
-  ChannelError channel(std::string_view name, double SetError::*rms, double SetError::*floor) const {
-    return {std::string(name),  base_train.*rms,   base_validate.*rms,  best_train.*rms,
-            best_validate.*rms, best_train.*floor, best_validate.*floor};
-  }
-};
 
 }  // namespace
 
@@ -92,30 +74,27 @@ void judge(Diagnosis& diagnosis, const sim::DriveDescription& given, const Findi
       is_rough(diagnosis.candidates.empty() ? before
                                             : error_of(sim::Drive(diagnosis.candidates.front().model), validation)) ||
       !moves || diagnosis.window_s < kWindow_s;
+  diagnosis.base_error = diagnosis.rows.error_of(diagnosis.base);
   diagnosis.verdict = reach_verdict(given, diagnosis);
   assign_probabilities(diagnosis);
+  settle_status(diagnosis);
   diagnosis.best = diagnosis.base;
+  const std::vector<std::string> modelled = modelled_kinds(diagnosis);
   for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (std::ranges::is_permutation(candidate.kinds, diagnosis.verdict.effects)) diagnosis.best = candidate.model;
-  if (diagnosis.verdict.status == Status::ambiguous) {
-    for (const JudgedCandidate& candidate : diagnosis.candidates)
-      if (candidate.kinds.size() == 1 && candidate.kinds.front() == diagnosis.verdict.effects.front())
-        diagnosis.best = candidate.model;
-  }
+    if (std::ranges::is_permutation(candidate.kinds, modelled)) diagnosis.best = candidate.model;
 
-  const FourErrors judged(diagnosis, training, validation);
-  diagnosis.after_train = judged.best_train.combined;
-  diagnosis.after_validate = judged.best_validate.combined;
-  const FourErrors seen = moves ? judged : FourErrors(diagnosis, seen_training, seen_validation);
-  const auto name = [&](std::vector<double> Record::*channel) { return column_name(channel, given.data.kind); };
-  const Record& record = *training.records.front().prepared.record;
-  if (record.has_position())
-    diagnosis.channels.push_back(seen.channel(name(&Record::x), &SetError::x_rms, &SetError::x_floor));
-  if (record.has_speed())
-    diagnosis.channels.push_back(seen.channel(name(&Record::w), &SetError::w_rms, &SetError::w_floor));
+  const sim::Drive best(diagnosis.best);
+  const SetError after_train = error_of(best, training), after = error_of(best, validation);
+  diagnosis.after_train = after_train.combined;
+  diagnosis.after_validate = after.combined;
   if (!moves)
-    diagnosis.channels.push_back(judged.channel(given.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
-                                                &SetError::effort_rms, &SetError::effort_floor));
+    diagnosis.effort = {given.data.kind == sim::DriveKind::rotary ? "effort_Nm" : "effort_N",
+                        before_train.effort_rms,
+                        before.effort_rms,
+                        after_train.effort_rms,
+                        after.effort_rms,
+                        after_train.effort_floor,
+                        after.effort_floor};
 }
 
 }  // namespace host

@@ -22,6 +22,12 @@ double cost_of(const JudgedCandidate& candidate, const ProbabilityScale& scale) 
          scale.bound * static_cast<double>(candidate.on_bound.size());
 }
 
+/// Whether the verdict has a name for what is missing.
+bool is_claimed(const Diagnosis& diagnosis) {
+  const Status status = diagnosis.verdict.status;
+  return status == Status::missing || status == Status::ambiguous;
+}
+
 /// That a base with these errors, and with what the verdict objects to it, lacks nothing.
 double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& scale) {
   const double windows = static_cast<double>(
@@ -30,9 +36,22 @@ double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& 
   const Status status = diagnosis.verdict.status;
   const double objected = status == Status::insufficient_data ? scale.unshown
                           : status == Status::unexplained     ? scale.traced
+                          : is_claimed(diagnosis)             ? scale.gained
                                                               : 0.0;
   return logistic((std::log(scale.complete) - std::log(error)) / (scale.complete_by + 0.25 / std::sqrt(windows)) -
                   objected);
+}
+
+/// That something else makes what the best candidate seems to explain, by the part that it leaves.
+double probability_of_other(double unexplained, const Diagnosis& diagnosis, const ProbabilityScale& scale) {
+  constexpr double kLeastPart = 0.01;
+  const bool claimed = is_claimed(diagnosis);
+  const double rough = claimed ? scale.rough_claim : scale.rough;
+  const double lapse = claimed ? scale.lapse_of_claim : scale.lapse;
+  const double at = claimed ? scale.other_at_claim : scale.other_at;
+  const double slope = claimed ? scale.other_slope_claim : scale.other_slope;
+  return lapse +
+         (1.0 - lapse) * logistic(slope * std::log((unexplained + kLeastPart) / at) - (diagnosis.rough ? rough : 0.0));
 }
 
 }  // namespace
@@ -58,11 +77,7 @@ void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
       &diagnosis.candidates[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
   const double unexplained =
       1.0 - std::min(explained_share(best->before, best->after), explained_in_training(*best, diagnosis));
-  constexpr double kLeastPart = 0.01;
-  const double other =
-      scale.lapse +
-      (1.0 - scale.lapse) * logistic(scale.other_slope * std::log((unexplained + kLeastPart) / scale.other_at) -
-                                     (diagnosis.rough ? scale.rough : 0.0));
+  const double other = probability_of_other(unexplained, diagnosis, scale);
   double candidates = 0.0;
   for (std::size_t k = 0; k < weights.size(); ++k) {
     diagnosis.candidates[k].probability = (1.0 - nothing) * (1.0 - other) * (1.0 - best->luck) * weights[k] / sum;

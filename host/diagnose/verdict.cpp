@@ -131,9 +131,15 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
         " A ripple every {:.4g} mm of travel ({}) lowers the error on training data from {:.2f} to {:.2f} times the "
         "floor, but not on validation data: its phase does not transfer from record to record, as after a new homing, "
         "so it is not claimed.",
-        period_mm, last.kind, train, candidate.train_after);
+        period_mm, last.kind, diagnosis.told_of_training(train), diagnosis.told_of_training(candidate.train_after));
   }
   return {};
+}
+
+/// Combined error of a candidate on held-back records, as compare prints it where that is what judged.
+double told_of(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
+  if (!diagnosis.judged_as_compared() || diagnosis.rows.validate.empty()) return candidate.after;
+  return diagnosis.rows.error_of(candidate.model).validate.combined;
 }
 
 double validation_s(const Diagnosis& diagnosis) {
@@ -142,8 +148,9 @@ double validation_s(const Diagnosis& diagnosis) {
 
 /// Why the closest candidate is not claimed, to follow a statement of the error.
 std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
-  const std::string what = fmt::format("; the closest, {}, leaves {:.2f} (training: {:.2f})",
-                                       fmt::join(closest.kinds, " + "), closest.after, closest.train_after);
+  const std::string what =
+      fmt::format("; the closest, {}, leaves {:.2f} (training: {:.2f})", fmt::join(closest.kinds, " + "),
+                  diagnosis.told(closest.after), diagnosis.told_of_training(closest.train_after));
   switch (reservation_about(closest, diagnosis)) {
     case Reservation::none:
       return {};
@@ -215,7 +222,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
                              gains_on(triple, pair) &&
                              explained_share(pair->after, triple->after) >= kLeastFurtherShare;
   const JudgedCandidate* chosen = triple_stands ? triple : pair_stands ? pair : single;
-  const double before = diagnosis.before_validate;
+  const double before = diagnosis.told(diagnosis.before_validate);
 
   if (chosen != nullptr && earns_its_place(*chosen, diagnosis)) {
     if (const std::optional<Objection> objection = objection_to_claim(diagnosis)) {
@@ -247,10 +254,10 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });
     if (shapes_friction && gap) verdict.next_experiment += " " + speeds_to_record(*gap);
     verdict.explanation = fmt::format(
-        "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the floor: {:.0f} % of what there is "
-        "to explain. {}.",
+        "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of what "
+        "there is to explain. {}.",
         fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
-        chosen->after, 100.0 * explained_share(before, chosen->after), first.shows);
+        told_of(*chosen, diagnosis), 100.0 * explained_share(diagnosis.before_validate, chosen->after), first.shows);
     for (const std::vector<std::string>& group : verdict.alternatives)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)
@@ -265,7 +272,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   const std::string closest = chosen == nullptr ? std::string() : reservation_in_words(*chosen, diagnosis);
   if (chosen != nullptr && reservation_about(*chosen, diagnosis) == Reservation::luck) {
     verdict.status = Status::insufficient_data;
-    verdict.explanation = fmt::format("The error on validation data is {:.2f} times the floor{}.", before, closest);
+    verdict.explanation =
+        fmt::format("The error on validation data is {:.2f} times the noise floor{}.", before, closest);
     verdict.next_experiment = fmt::format(
         "Record longer: of {} candidates the best may be lucky on so little; {:.1f} s of validation data (four times "
         "as much in all, where it is kept back) in which the axis moves throughout can decide.",
@@ -291,13 +299,14 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
   verdict.explanation =
       verdict.parameters.empty()
           ? fmt::format(
-                "The model leaves {:.2f} times the floor on validation data; nothing in the catalogue lowers that "
+                "The model leaves {:.2f} times the noise floor on validation data; nothing in the catalogue lowers "
+                "that "
                 "beyond chance.",
                 before)
           : fmt::format(
-                "Re-fitting {} brings the error on validation data from {:.2f} to {:.2f} times the floor; nothing in "
-                "the catalogue lowers that beyond chance.",
-                fmt::join(verdict.parameters, ", "), diagnosis.given_validate, before);
+                "Re-fitting {} leaves {:.2f} times the noise floor on validation data; nothing in the catalogue lowers "
+                "that beyond chance.",
+                fmt::join(verdict.parameters, ", "), before);
   verdict.next_experiment = "None needed for this model on motions like these.";
   return verdict;
 }

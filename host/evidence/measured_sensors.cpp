@@ -24,17 +24,22 @@ double noise_variance(const std::vector<double>& values) {
 }  // namespace
 
 sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const Measurements& measured) {
+  return with_measured_sensors(model, measured.training_records());
+}
+
+sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model,
+                                            const std::vector<const Record*>& records) {
   sim::DriveDescription complete = model;
   if (!(complete.data.encoder_resolution > 0.0)) {
     double finest = HUGE_VAL;
-    for (const Record& record : measured.training())
-      if (const double step = encoder_step(record, model.data); step > 0.0) finest = std::min(finest, step);
+    for (const Record* record : records)
+      if (const double step = encoder_step(*record, model.data); step > 0.0) finest = std::min(finest, step);
     complete.data.encoder_resolution = std::isfinite(finest) ? std::max(finest, kFinestStep) : kFinestStep;
   }
   if (!complete.data.tach_noise_variance) {
     double variance = 0.0;
-    for (const Record& record : measured.training())
-      if (record.has_speed()) variance = std::max(variance, noise_variance(record.w));
+    for (const Record* record : records)
+      if (record->has_speed()) variance = std::max(variance, noise_variance(record->w));
     if (variance > 0.0) complete.data.tach_noise_variance = variance;
   }
   return complete;

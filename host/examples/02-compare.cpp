@@ -15,7 +15,7 @@ int main(int argc, char** argv) try {
       host::MeasurementGate(read, {.accepted = {}, .as_logged = true}).read({drive + "/validate.csv"});
   const sim::DriveDescription model = host::with_measured_sensors(read, measured);
   const host::RecordSet set = host::compare_on(measured.training_records(), model);
-  std::printf("error over floor = %.16g\n", host::compare_model(model, measured, set, host::kWindow_s).combined);
+  std::printf("error over floor = %.16g\n", host::compare_model(model, measured, set).error.combined);
 } catch (const host::Failure& failure) {
   std::fprintf(stderr, "%s\n", failure.what());
   return static_cast<int>(failure.code);

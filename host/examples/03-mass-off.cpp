@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
       host::MeasurementGate(wrong, {.accepted = {}, .as_logged = true}).read({drive + "/train-steps.csv"});
   const sim::DriveDescription model = host::with_measured_sensors(wrong, measured);
   const host::RecordSet set = host::compare_on(measured.training_records(), model);
-  const host::ModelComparison found = host::compare_model(model, measured, set, host::kWindow_s);
+  const host::ModelComparison found = host::compare_model(model, measured, set);
   std::printf("%s\n", host::where_it_fails(found.where).c_str());
 } catch (const host::Failure& failure) {
   std::fprintf(stderr, "%s\n", failure.what());

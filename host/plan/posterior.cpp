@@ -114,6 +114,7 @@ void apply(const Decision& decision, const Beliefs& beliefs, Diagnosis& diagnosi
   verdict.status = Status::missing;
   verdict.effects = best.kinds;
   diagnosis.best = best.model;
+  diagnosis.best_error = diagnosis.rows.error_of(best.model);
   if (decision.left.size() < 2) return;
   verdict.status = Status::ambiguous;
   verdict.effects = left;

@@ -57,7 +57,7 @@ void try_out(const host::Measurements& measured, const sim::DriveDescription& mo
   }
   try {
     const host::RecordSet set = host::compare_on(measured.training_records(), model);
-    host::compare_model(model, measured, set, host::kWindow_s);
+    host::compare_model(model, measured, set);
     host::predictions_csv(model, set.records.front().prepared);
   } catch (const host::Failure&) {
   }

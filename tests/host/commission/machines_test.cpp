@@ -30,6 +30,9 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
   const auto [code, words] = commission(board, folder.path("x"), "look", "page", {}, options);
   EXPECT_EQ(code, host::ExitCode::done) << words;
   if (code != host::ExitCode::done) return {};
+  // Its steps, like its commands, have one set of figures for the model that they begin with.
+  const json diagnosed = read(folder.path("x/diagnosis.json"));
+  EXPECT_EQ(read(folder.path("x/comparison.json"))["error"], diagnosed["error"]["given"]["validate"]);
   return {read(folder.path("x/commission.json")), read(folder.path("x/errors.json"))};
 }
 

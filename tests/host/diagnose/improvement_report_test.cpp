@@ -13,10 +13,11 @@ using testing::HasSubstr;
 
 Improvement by_adding(const std::vector<std::string>& kinds, double left) {
   Improvement improvement;
-  improvement.first.given_train = 10.0;
-  improvement.first.given_validate = 18.6;
+  improvement.first.given_error.train.combined = 10.0;
+  improvement.first.given_error.validate.combined = 18.6;
   improvement.ladder.push_back({{}, 9.0, 17.0, {}});
   if (!kinds.empty()) improvement.ladder.push_back({kinds, left, left, {}});
+  improvement.error.validate.combined = kinds.empty() ? 17.0 : left;
   improvement.stopped_because = "nothing is left";
   improvement.verdict.status = Status::adequate;
   return improvement;

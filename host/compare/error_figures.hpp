@@ -1,0 +1,59 @@
+// How far a model's predictions are from records: the one set of figures that every command prints.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/compare/comparison.hpp"
+
+namespace host {
+
+/// Of one measured channel, over the windows of a record set.
+struct ChannelFigures {
+  std::string name;          ///< column in the drive's own units: x_mm, w_rad_s, x_m, v_m_s
+  std::string unit;          ///< of rms and floor
+  double rms = 0.0;          ///< of prediction less measurement
+  double fit_percent = 0.0;  ///< 100 (1 - |error| / |measured - mean|); 100 is perfect, 0 as good as the mean
+  /// rms over the RMS of the signal that the model has to explain: of a speed channel the measured speed, of a position
+  /// channel the travel since the restart of the window. Empty where the signal is zero.
+  std::optional<double> share = {};
+  double floor = 0.0;  ///< RMS noise floor: what the best possible model would leave, by sensors and restart
+
+  double over_floor() const { return floor > 0.0 ? rms / floor : 0.0; }
+};
+
+/// One model on one record or record set, by its own noise floors.
+struct ErrorFigures {
+  double window_s = kWindow_s;
+  std::vector<ChannelFigures> channels;  ///< speed, then position; those that were measured
+  double combined = 0.0;                 ///< SetError::combined: about 1 for a perfect model
+
+  /// The channel whose error is the most times its noise floor; null where nothing was measured.
+  const ChannelFigures* worst() const;
+};
+
+/// A record, and those of its rows that count.
+struct FigureRecord {
+  const Record* record;
+  std::optional<std::vector<Window>> windows = {};  ///< of the same length; empty: all that the record has room for
+};
+
+/// The records prepared for the figures of `model`: motion smoothed and noise floors propagated with it, each record by
+/// the sensors that it shows itself where the data sheet is silent. Keeps references to the records. Throws as
+/// prepare() does.
+RecordSet figure_set(const sim::DriveDescription& model, const std::vector<FigureRecord>& records, double window_s);
+
+/// Figures of a set by `error`, its error_of(); of one of its records where `record` is given.
+ErrorFigures figures_of(const SetError& error, const RecordSet& set, std::optional<std::size_t> record = {});
+
+/// figures_of the model on figure_set() of the records.
+ErrorFigures error_figures(const sim::DriveDescription& model, const std::vector<FigureRecord>& records,
+                           double window_s = kWindow_s);
+
+/// { "measure": "motion", "window_s", "channels": { NAME: { "unit", "rms", "share", "floor", "over_floor" } },
+/// "combined" }
+nlohmann::json to_json(const ErrorFigures& figures);
+
+}  // namespace host

@@ -1,0 +1,203 @@
+#include "host/diagnose/certainty.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "host/diagnose/all_clear.hpp"
+#include "host/diagnose/claim.hpp"
+#include "host/diagnose/verdict.hpp"
+#include "host/effort/effort_screen.hpp"
+
+namespace host {
+
+namespace {
+
+using Kinds = std::vector<std::string>;
+
+bool holds(const Kinds& all, const std::string& kind) { return std::ranges::find(all, kind) != all.end(); }
+
+bool holds_all(const Kinds& all, const Kinds& kinds) {
+  return std::ranges::all_of(kinds, [&](const std::string& kind) { return holds(all, kind); });
+}
+
+double probability_of_any(const Diagnosis& diagnosis, const Kinds& group) {
+  double sum = 0.0;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (std::ranges::any_of(group, [&](const std::string& kind) { return holds(candidate.kinds, kind); }))
+      sum += candidate.probability;
+  return sum;
+}
+
+const JudgedCandidate* candidate_of(const Diagnosis& diagnosis, const Kinds& kinds) {
+  const auto found = std::ranges::find_if(diagnosis.candidates, [&](const JudgedCandidate& candidate) {
+    return std::ranges::is_permutation(candidate.kinds, kinds);
+  });
+  return found == diagnosis.candidates.end() ? nullptr : &*found;
+}
+
+/// Part of the squared error on held-back records that a candidate takes, by the measure that judged.
+double taken_by(const JudgedCandidate& candidate) {
+  const double left = candidate.before > 0.0 ? candidate.after / candidate.before : 1.0;
+  return 1.0 - left * left;
+}
+
+bool may_be_named(const Diagnosis& diagnosis, const Kinds& kinds) {
+  const JudgedCandidate* candidate = candidate_of(diagnosis, kinds);
+  return candidate != nullptr && taken_by(*candidate) >= kLeastTaken && probability_of(diagnosis, kinds) >= kClaimed;
+}
+
+/// Those of the named effects that hold together, best first.
+Kinds certain_of(const Diagnosis& diagnosis, Kinds named) {
+  std::ranges::stable_sort(named, std::greater(),
+                           [&](const std::string& kind) { return probability_of(diagnosis, {kind}); });
+  while (!named.empty() && !may_be_named(diagnosis, named)) named.pop_back();
+  return named;
+}
+
+/// The most probable single effects, as few as together hold kClaimed; empty where that takes more than a reader can
+/// try, or where one of them hardly helps.
+Kinds tied_group(const Diagnosis& diagnosis) {
+  std::vector<const JudgedCandidate*> singles;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (candidate.kinds.size() == 1) singles.push_back(&candidate);
+  std::ranges::stable_sort(singles, std::greater(), &JudgedCandidate::probability);
+  if (singles.size() > kLargestGroup) singles.resize(kLargestGroup);
+  Kinds group;
+  for (const JudgedCandidate* candidate : singles) {
+    if (taken_by(*candidate) < kLeastTaken) break;
+    group.push_back(candidate->kinds.front());
+    if (probability_of_any(diagnosis, group) >= kClaimed) return group.size() > 1 ? group : Kinds{};
+  }
+  return {};
+}
+
+void leave_unexplained(Diagnosis& diagnosis) {
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  const auto best = std::ranges::max_element(diagnosis.candidates, {}, &JudgedCandidate::probability);
+  verdict.explanation += fmt::format(
+      " This is not claimed: {} has a probability of {:.0f} %, something that is no candidate {:.0f} %, and a name is "
+      "given from {:.0f} % on.",
+      fmt::join(best->kinds, " + "), 100.0 * best->probability, 100.0 * verdict.probability_other, 100.0 * kClaimed);
+  verdict.status = Status::unexplained;
+  verdict.effects.clear();
+  verdict.alternatives.clear();
+}
+
+void become_ambiguous(Diagnosis& diagnosis, Kinds group) {
+  diagnosis.verdict.status = Status::ambiguous;
+  diagnosis.verdict.effects = group;
+  diagnosis.verdict.alternatives = {std::move(group)};
+}
+
+/// The channel that is farthest above its noise floor before anything is added, in which the motion's shares are told.
+std::string told_channel(const Diagnosis& diagnosis) {
+  const ChannelFigures* worst = diagnosis.base_error.validate.worst();
+  return worst == nullptr ? std::string() : worst->name;
+}
+
+double share_in(const ErrorFigures& error, const std::string& name) {
+  const auto channel = std::ranges::find(error.channels, name, &ChannelFigures::name);
+  return channel == error.channels.end() ? 0.0 : channel->share.value_or(0.0);
+}
+
+/// Each step of a regression that is certain.
+void fill_by_effort(Diagnosis& diagnosis) {
+  const EffortScreen& screen = *diagnosis.screen;
+  double before = screen.base.validate;
+  std::size_t known = 0;
+  for (const ScreenedModel& step : screen.chosen) {
+    const Kinds added(step.kinds.begin() + static_cast<std::ptrdiff_t>(known), step.kinds.end());
+    const double probability = probability_of(diagnosis, added);
+    if (probability >= kClaimed) diagnosis.verdict.found.push_back({added, probability, before, step.validate});
+    before = step.validate;
+    known = step.kinds.size();
+  }
+}
+
+/// One by one, as far as the search has fitted the models between.
+void fill_by_motion(Diagnosis& diagnosis) {
+  const std::string channel = told_channel(diagnosis);
+  Kinds kinds;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    for (const std::string& kind : candidate.kinds)
+      if (!holds(kinds, kind) && probability_of(diagnosis, {kind}) >= kClaimed) kinds.push_back(kind);
+  std::ranges::stable_sort(kinds, std::greater(),
+                           [&](const std::string& kind) { return probability_of(diagnosis, {kind}); });
+  double before = share_in(diagnosis.base_error.validate, channel);
+  Kinds so_far, open;
+  for (const std::string& kind : kinds) {
+    so_far.push_back(kind);
+    open.push_back(kind);
+    const JudgedCandidate* candidate = candidate_of(diagnosis, so_far);
+    if (candidate == nullptr) continue;
+    const double after = share_in(diagnosis.rows.error_of(candidate->model).validate, channel);
+    diagnosis.verdict.found.push_back({open, probability_of(diagnosis, open), before, after});
+    open.clear();
+    before = after;
+  }
+}
+
+}  // namespace
+
+double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds) {
+  double sum = 0.0;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (holds_all(candidate.kinds, kinds)) sum += candidate.probability;
+  return sum;
+}
+
+void settle_status(Diagnosis& diagnosis) {
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  const bool named = verdict.status == Status::missing || verdict.status == Status::ambiguous;
+  if (!named || diagnosis.candidates.empty()) return;
+  if (verdict.status == Status::ambiguous &&
+      probability_of_any(diagnosis, verdict.effects) + verdict.probability_unfitted >= kClaimed)
+    return;
+  if (verdict.status == Status::missing) {
+    Kinds certain = certain_of(diagnosis, verdict.effects);
+    if (certain.size() == verdict.effects.size()) return;
+    if (!certain.empty()) {
+      verdict.effects = std::move(certain);
+      return;
+    }
+  }
+  Kinds group = tied_group(diagnosis);
+  if (group.empty())
+    leave_unexplained(diagnosis);
+  else
+    become_ambiguous(diagnosis, std::move(group));
+}
+
+std::vector<std::string> modelled_kinds(const Diagnosis& diagnosis) {
+  const DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (verdict.status == Status::ambiguous) return {verdict.effects.front()};
+  Kinds kinds = verdict.effects;
+  for (const Kinds& group : verdict.alternatives) {
+    if (std::ranges::any_of(group, [&](const std::string& kind) { return holds(kinds, kind); })) continue;
+    double sum = 0.0;
+    for (const JudgedCandidate& candidate : diagnosis.candidates)
+      if (holds_all(candidate.kinds, kinds) &&
+          std::ranges::any_of(group, [&](const std::string& kind) { return holds(candidate.kinds, kind); }))
+        sum += candidate.probability;
+    if (sum >= kClaimed) kinds.push_back(group.front());
+  }
+  return candidate_of(diagnosis, kinds) != nullptr ? kinds : verdict.effects;
+}
+
+void fill_found(Diagnosis& diagnosis) {
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (diagnosis.by_effort && diagnosis.screen)
+    fill_by_effort(diagnosis);
+  else
+    fill_by_motion(diagnosis);
+  const ErrorFigures& left = diagnosis.best_error.validate;
+  if (verdict.effects.empty() || std::min(diagnosis.after_validate, left.combined) <= kExplained) return;
+  const double share = diagnosis.by_effort && diagnosis.screen ? diagnosis.screen->best().validate
+                                                               : share_in(left, told_channel(diagnosis));
+  const Trace trace = strongest_trace(diagnosis, diagnosis.residual);
+  verdict.remains = {share, left.combined, trace.coordinate, trace.where};
+}
+
+}  // namespace host

@@ -1,0 +1,34 @@
+// What may be said with the probabilities that the candidates have: the losses, stated once, and the status that
+// follows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/diagnose/diagnosis.hpp"
+
+namespace host {
+
+/// Effects are named, and listed as certain, from this probability on: a wrong name, which sends an engineer to the
+/// wrong part of the machine, costs 19 times what "unexplained" does, after which he measures once more.
+inline constexpr double kClaimed = 0.95;
+/// So many rivals at most are a group: one further measurement tells as many apart.
+inline constexpr std::size_t kLargestGroup = 4;
+/// What takes less of the squared error on held-back records is certain at most, not what to begin with.
+inline constexpr double kLeastTaken = 0.1;
+
+/// Of all these effects together, whatever else is there besides: of all candidates that hold them.
+double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds);
+
+/// Takes back what the probabilities do not carry: the verdict names what together holds kClaimed and takes
+/// kLeastTaken; else the group that together holds it, as ambiguous; else it is unexplained.
+void settle_status(Diagnosis& diagnosis);
+
+/// What the model of the verdict holds: what it names, and the first of each group of which one is there for certain.
+/// Of an ambiguous verdict the first of its group.
+std::vector<std::string> modelled_kinds(const Diagnosis& diagnosis);
+
+/// Fills what is certain and what remains, once the errors of the models and the residual of the best are known.
+void fill_found(Diagnosis& diagnosis);
+
+}  // namespace host

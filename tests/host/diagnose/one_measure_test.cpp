@@ -1,0 +1,71 @@
+// One model and one record have one set of figures, whatever command prints them.
+#include <gtest/gtest.h>
+
+#include "host/compare/comparison_figures.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
+#include "tests/host/diagnose/drive_case.hpp"
+
+namespace {
+
+using nlohmann::json;
+
+json compared(const sim::DriveDescription& model, const std::vector<host::Record>& records) {
+  return host::comparison_json(host::compare_with("model", model, records, host::kWindow_s, {}).comparison);
+}
+
+/// Figures of all records together, to the digit.
+void expect_same(const json& told, const sim::DriveDescription& model, const std::vector<host::Record>& records,
+                 const std::string& where) {
+  const json by_compare = compared(model, records);
+  EXPECT_EQ(told, by_compare["error"]) << where;
+  EXPECT_EQ(told["combined"], by_compare["combined"]) << where;
+  for (const auto& [name, channel] : by_compare["channels"].items()) {
+    EXPECT_EQ(told["channels"][name]["rms"], channel["rms"]) << where << ' ' << name;
+    EXPECT_EQ(told["channels"][name]["floor"], channel["floor"]) << where << ' ' << name;
+  }
+}
+
+struct Asked {
+  const char* name;
+  bool swapped;  ///< the record that judges trains, and the others judge
+};
+
+class OneMeasure : public testing::TestWithParam<Asked> {};
+
+/// Catches floors of another model, other windows, other sensors and a smoother of another model: each made compare,
+/// ladder and sentence differ by a tenth or a factor of ten.
+TEST_P(OneMeasure, CommandsAgreeToTheDigit) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  DriveCase asked(GetParam().name);
+  if (GetParam().swapped) std::swap(asked.train, asked.validate);
+  const host::Measurements measured = host::MeasurementGate(asked.model).admit(asked.train, asked.validate);
+  ASSERT_EQ(measured.training().size(), asked.train.size());
+  const host::Improvement improvement = host::improve(asked.model, measured, {}, {}, {}, 1);
+  const host::Diagnosis& diagnosis = improvement.first;
+  const json diagnosed = host::to_json(diagnosis)["error"], improved = host::to_json(improvement, "");
+  sim::DriveDescription base = diagnosis.base, best = diagnosis.best;
+  base.data = best.data = asked.model.data;
+  for (const auto& [set, records] : {std::pair("train", &asked.train), std::pair("validate", &asked.validate)}) {
+    expect_same(diagnosed["given"][set], asked.model, *records, "diagnose, as given");
+    expect_same(diagnosed["before"][set], base, *records, "diagnose, before");
+    expect_same(diagnosed["after"][set], best, *records, "diagnose, after");
+    expect_same(improved["error"]["given"][set], asked.model, *records, "improve, as given");
+    expect_same(improved["ladder"].front()["error"][set], base, *records, "improve, first step");
+    expect_same(improved["error"]["after"][set], improvement.model, *records, "improve, its model");
+    if (!diagnosis.judged_as_compared()) continue;
+    EXPECT_EQ(diagnosed["combined"]["before"][set], diagnosed["before"][set]["combined"]);
+    EXPECT_EQ(diagnosed["combined"]["after"][set], diagnosed["after"][set]["combined"]);
+    EXPECT_EQ(improved["ladder"].front()[set], diagnosed["before"][set]["combined"]);
+  }
+  const double given = improved["error"]["given"]["validate"]["combined"];
+  EXPECT_LE(improved["error"]["after"]["validate"]["combined"].get<double>(), given * (1.0 + 1e-9));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, OneMeasure,
+                         testing::Values(Asked{"none/case-00", false}, Asked{"none/case-01", false},
+                                         Asked{"none/case-01", true}, Asked{"pairs/case-00", false},
+                                         Asked{"single/case-00", false}, Asked{"single/case-06", false},
+                                         Asked{"single/case-09", false}, Asked{"single/case-13", false},
+                                         Asked{"single/case-17", false}, Asked{"single/case-19", false}));
+
+}  // namespace
