@@ -2,10 +2,6 @@
 
 namespace axistool {
 
-void add_open(CLI::App& app);
-void add_sheet(CLI::App& app);
-void add_export(CLI::App& app);
-
 namespace {
 host::ExitCode status_at_end = host::ExitCode::done;
 }

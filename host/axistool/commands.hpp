@@ -14,6 +14,9 @@ namespace axistool {
 void add_all_commands(CLI::App& app);
 
 void add_help(CLI::App& app);
+void add_open(CLI::App& app);
+void add_sheet(CLI::App& app);
+void add_export(CLI::App& app);
 void add_import(CLI::App& app);
 void add_cut(CLI::App& app);
 void add_shift(CLI::App& app);

@@ -12,8 +12,6 @@
 
 namespace axistool {
 
-void add_export(CLI::App& app);
-
 namespace {
 
 struct ExportArguments {

@@ -25,8 +25,6 @@
 
 namespace axistool {
 
-void add_open(CLI::App& app);
-
 namespace {
 
 struct OpenArguments {

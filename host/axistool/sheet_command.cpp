@@ -10,8 +10,6 @@
 
 namespace axistool {
 
-void add_sheet(CLI::App& app);
-
 namespace {
 
 struct SheetArguments {

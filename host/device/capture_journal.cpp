@@ -21,8 +21,9 @@ constexpr double kEvery_s = 0.5;
 /// The rows from `begin` on, behind the first one, which the times count from.
 Capture tail_of(const Capture& capture, std::size_t begin) {
   const auto take = [begin](const auto& all, auto& some) {
+    some.reserve(all.size() - begin + 1);
     if (begin > 0) some.push_back(all.front());
-    some.insert(some.end(), all.begin() + static_cast<std::ptrdiff_t>(begin), all.end());
+    for (std::size_t row = begin; row < all.size(); ++row) some.push_back(all[row]);
   };
   Capture tail;
   tail.row_period_s = capture.row_period_s;

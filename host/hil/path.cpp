@@ -192,7 +192,12 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
 
   firmware::PathFollower<2, 32> follower;
   using Node = firmware::PathNode<2>;
-  follower.open(3, words.units, {}, firmware::kOneCount, firmware::kOneCount);
+  // The axes of a reference have no limits: they could reach the feed within a sample.
+  const auto unlimited = [&](std::size_t axis) {
+    const auto feed = static_cast<float>(limits.feed * sample_period_s / count_mm[axis]);
+    return firmware::PathLimits{feed, feed, feed};
+  };
+  follower.open(3, words.units, {}, {unlimited(0), unlimited(1)});
   std::vector<std::array<firmware::Increment, 2>> increments;
   LedAxes axes;
   std::size_t sent = 0;

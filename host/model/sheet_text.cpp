@@ -35,14 +35,13 @@ std::string sheet_text(const SheetValues& values) {
     text += field("torque_constant_Nm_per_A", values.motor_constant,
                   "Kt, Nm/A: the motor's data sheet; per A rms where the log is in A rms");
     // A log of the current holds what the motor got: the amplifier's gain does not enter.
-    text += field("amplifier_gain_A_per_V", values.by_current ? std::optional(1.0) : std::nullopt,
-                  values.by_current ? "A/V; not used by logs of the current"
-                                    : "Ka, A/V: the amplifier's current limit over its command range");
+    if (!values.by_current)
+      text += field("amplifier_gain_A_per_V", std::nullopt,
+                    "Ka, A/V: the amplifier's current limit over its command range");
     text += field("lead_mm_per_rad", lead(values), "mm/rad: travel of a motor turn over 2 pi (10 mm a turn: 1.5915)");
   } else {
     text += field("force_constant_N_per_A", values.motor_constant, "N/A: the motor's data sheet");
-    text += field("force_constant_N_per_V", values.by_current ? values.motor_constant : std::nullopt,
-                  values.by_current ? "N/V; not used by logs of the current" : "N/V: N/A times the amplifier's A/V");
+    if (!values.by_current) text += field("force_constant_N_per_V", std::nullopt, "N/V: N/A times the amplifier's A/V");
   }
   text += field("sample_period_s", values.sample_period_s, "s: the controller's period, that of the log");
   text += "\n[drive.encoder]\n";

@@ -43,12 +43,13 @@ class ExcitedAxis {
   /// From standstill to standstill, with a short rest behind it. Its end is `refused` where the axis does not take it.
   firmware::ExcitationStatePayload run(const Excitation& excitation) {
     const auto refused = static_cast<std::uint8_t>(firmware::ExcitationEnd::refused);
+    constexpr firmware::ClientToken kClient = 1;  // the only one
     firmware::ExcitationStatePayload none;
     none.end = refused;
     const bool is_open = excitation.request.input == static_cast<std::uint8_t>(firmware::ExcitationInput::open_loop);
     if (!is_usable_ || (!is_open && !enable())) return none;
     for (const auto& part : entry_requests(excitation, 0))
-      if (!excitation_.load(part, values_.axis(0), rate_Hz_)) return none;
+      if (!excitation_.load(part, kClient, values_.axis(0), rate_Hz_)) return none;
     if (!excitation_.plan(excitation.request, values_.axis(0), rate_Hz_)) return none;
     excitation_.start();
     // A stop within the limits of any drive takes less.

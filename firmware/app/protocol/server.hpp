@@ -8,23 +8,11 @@
 #include "firmware/app/board_application.hpp"
 #include "firmware/app/image_header.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
+#include "firmware/app/protocol/program_facts.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/request_rules.hpp"
 
 namespace firmware {
-
-/// What only the board's start-up knows.
-struct BootFacts {
-  std::uint8_t reset_cause = 0;  ///< boards/image/survival_record.hpp
-  std::uint16_t resets = 0;      ///< since power came on
-  bool simulated = false;
-};
-
-/// What the program takes of the processor, as it runs. Cycles: of the control interrupt; 0 where nothing counts them.
-struct ProgramUse {
-  std::uint32_t stack_used = 0, stack_size = 0;
-  std::uint32_t cycles_average = 0, cycles_worst = 0, processor_Hz = 0;
-};
 
 template <typename Application>
 class ProtocolServer {
