@@ -34,7 +34,8 @@ class FirstRecord : public testing::Test {
     request.volts = request.amplitude = 6000.0F;
     request.samples = 500;
     request.step = request.last_step = 40 * 4294967u;  // 40 Hz
-    const Status status = bench.application.excite(request);
+    firmware::RefusedValuePayload refused;
+    const Status status = bench.application.excite(request, refused);
     bench.application.become_owner(1);
     return status;
   }

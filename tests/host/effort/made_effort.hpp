@@ -43,6 +43,7 @@ host::Record record_of(Motion motion, Further further, double from_s, double to_
   host::Record record;
   record.path = "made.csv";
   record.sample_period_s = 0.001;
+  record.header["effort_timing_samples"] = "0";  // the current acts at the instant of its row
   std::mt19937 random(seed);
   std::normal_distribution<double> jitter_s(0.0, 2e-5), noise_A(0.0, 0.01);
   const double step = kTurn / 20000.0;

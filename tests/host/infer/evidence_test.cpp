@@ -90,8 +90,8 @@ TEST(Evidence, AWaveIsFoundInCorrelatedNoise) {
 }
 
 TEST(Evidence, WhatIsSmoothGoesToTheMemoryRatherThanToTheNearestEffect) {
-  // A bump that no sine is: without a memory the sine would take it.
-  const VectorXd bump = (-(VectorXd::LinSpaced(kRows, -4.0, 4.0).array() - 1.0).square()).exp();
+  // Half a wave that no sine of this period is: without a memory the sine would take it.
+  const VectorXd bump = wave(0.7).cwiseMax(0.0);
   const host::Evidence evidence = evidence_of(2.0 * bump + autoregressive(0.3, 0.05, 5));
   const host::EvidenceStart bare{.sizes = evidence.no_memory(), .hold_sizes = true};
   const double without =
