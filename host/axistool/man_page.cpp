@@ -32,11 +32,14 @@ std::string sentence(std::string text) {
   return text;
 }
 
-/// "--drive TEXT", "-o, --output TEXT", "RECORD...".
+/// "--drive TEXT", "-o, --output TEXT", "RECORD ...", "AXIS, --axis".
 std::string names_of(const CLI::Option& option) {
-  if (option.get_positional())
-    return option.get_name(true, false) + (option.get_items_expected_max() > 1 ? " ..." : "");
   std::string names;
+  if (option.get_positional()) {
+    names = option.get_name(true, false) + (option.get_items_expected_max() > 1 ? " ..." : "");
+    for (const std::string& name : option.get_lnames()) names += ", --" + name;
+    return names;
+  }
   for (const std::string& name : option.get_snames()) names += (names.empty() ? "-" : ", -") + name;
   for (const std::string& name : option.get_lnames()) names += (names.empty() ? "--" : ", --") + name;
   if (option.get_type_size() == 0) return names;

@@ -43,20 +43,7 @@ double taken_by(const JudgedCandidate& candidate) {
   return 1.0 - left * left;
 }
 
-bool may_be_named(const Diagnosis& diagnosis, const Kinds& kinds) {
-  const JudgedCandidate* candidate = candidate_of(diagnosis, kinds);
-  return candidate != nullptr && taken_by(*candidate) >= kLeastTaken && probability_of(diagnosis, kinds) >= kClaimed;
-}
-
-/// Those of the named effects that hold together, best first.
-Kinds certain_of(const Diagnosis& diagnosis, Kinds named) {
-  std::ranges::stable_sort(named, std::greater(),
-                           [&](const std::string& kind) { return probability_of(diagnosis, {kind}); });
-  while (!named.empty() && !may_be_named(diagnosis, named)) named.pop_back();
-  return named;
-}
-
-/// The most probable single effects, as few as together hold kClaimed; empty where that takes more than a reader can
+/// The most probable single effects, as few as together hold kNamed; empty where that takes more than a reader can
 /// try, or where one of them hardly helps.
 Kinds tied_group(const Diagnosis& diagnosis) {
   std::vector<const JudgedCandidate*> singles;
@@ -68,7 +55,7 @@ Kinds tied_group(const Diagnosis& diagnosis) {
   for (const JudgedCandidate* candidate : singles) {
     if (taken_by(*candidate) < kLeastTaken) break;
     group.push_back(candidate->kinds.front());
-    if (probability_of_any(diagnosis, group) >= kClaimed) return group.size() > 1 ? group : Kinds{};
+    if (probability_of_any(diagnosis, group) >= kNamed) return group.size() > 1 ? group : Kinds{};
   }
   return {};
 }
@@ -79,7 +66,7 @@ void leave_unexplained(Diagnosis& diagnosis) {
   verdict.explanation += fmt::format(
       " This is not claimed: {} has a probability of {:.0f} %, something that is no candidate {:.0f} %, and a name is "
       "given from {:.0f} % on.",
-      fmt::join(best->kinds, " + "), 100.0 * best->probability, 100.0 * verdict.probability_other, 100.0 * kClaimed);
+      fmt::join(best->kinds, " + "), 100.0 * best->probability, 100.0 * verdict.probability_other, 100.0 * kNamed);
   verdict.status = Status::unexplained;
   verdict.effects.clear();
   verdict.alternatives.clear();
@@ -153,16 +140,13 @@ void settle_status(Diagnosis& diagnosis) {
   const bool named = verdict.status == Status::missing || verdict.status == Status::ambiguous;
   if (!named || diagnosis.candidates.empty()) return;
   if (verdict.status == Status::ambiguous &&
-      probability_of_any(diagnosis, verdict.effects) + verdict.probability_unfitted >= kClaimed)
+      probability_of_any(diagnosis, verdict.effects) + verdict.probability_unfitted >= kNamed)
     return;
-  if (verdict.status == Status::missing) {
-    Kinds certain = certain_of(diagnosis, verdict.effects);
-    if (certain.size() == verdict.effects.size()) return;
-    if (!certain.empty()) {
-      verdict.effects = std::move(certain);
-      return;
-    }
-  }
+  const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
+  const bool hardly_helps = whole != nullptr && taken_by(*whole) < kLeastTaken;
+  if (verdict.status == Status::missing && !hardly_helps &&
+      probability_of(diagnosis, {verdict.effects.front()}) >= kNamed)
+    return;
   Kinds group = tied_group(diagnosis);
   if (group.empty())
     leave_unexplained(diagnosis);

@@ -104,6 +104,13 @@ bool completes(const Diagnosis& by_motion) {
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
 }
 
+/// Whether the motion names anything that the force balance does not, which knows its rivals better.
+bool names_more(const Diagnosis& by_motion, const Diagnosis& by_effort) {
+  const std::vector<std::string>& known = by_effort.verdict.effects;
+  return std::ranges::any_of(by_motion.verdict.effects,
+                             [&](const std::string& kind) { return std::ranges::find(known, kind) == known.end(); });
+}
+
 /// Whether an effect changes when the motor's effort acts.
 bool acts_late(const sim::EffectInfo& effect) {
   if (effect.stage != sim::Stage::command) return false;
@@ -150,7 +157,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
         return *std::move(diagnosis);
       // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
       over_long_windows = search(with_base_fitted(split));
-      const bool is_better = tells ? completes(*over_long_windows) : goes_beyond(*over_long_windows, *screen);
+      const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
+                                   : goes_beyond(*over_long_windows, *screen);
       return *std::move(is_better ? over_long_windows : diagnosis);
     }
   }

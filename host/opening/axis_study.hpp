@@ -64,7 +64,7 @@ class AxisStudy {
   std::vector<bool> settled_;
   OpenedAxis* axis_ = nullptr;
   Understanding* found_ = nullptr;
-  const NamedChannel *position_ = nullptr, *speed_ = nullptr, *position_ref_ = nullptr, *effort_ = nullptr;
+  const NamedChannel *position_ = nullptr, *speed_ = nullptr, *effort_ = nullptr;
   std::optional<Decision> position_taken_;
 };
 

@@ -52,7 +52,7 @@ double home_mm(int phase, bool is_late) {
   std::int64_t counts = 0;
   bool was_late = false;
   const auto offset = static_cast<std::int64_t>(31.5 / kEncoderResolution_mm);
-  const auto turn_of = [offset](std::int64_t place) {
+  const auto turn_of = [&](std::int64_t place) {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(place - offset) / static_cast<double>(kTurn)));
   };
   const auto run = [&](int samples) {

@@ -64,7 +64,7 @@ TEST_F(SensorStop, ADeadTachometerLeavesTheEncoder) {
     DrivenAxis axis(parameters());
     const Stop found = stop(axis, speed, [](DrivenAxis& a, int) { a.io.tachometer().reading.code = 0; });
     EXPECT_EQ(axis.axis.fault(), AxisFault::encoder_tachometer_disagreement);
-    expect_ramp(found, speed);
+    expect_ramp(found, static_cast<double>(speed));
   }
 }
 

@@ -171,7 +171,7 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {256, axis, "unfitted.volts", real, "V", "V", 0, 20, 6, while_disabled,
      "largest command of an experiment while the axis is not fitted"},
     {257, axis, "unfitted.time", real, "s", "s", 0, 3600, 120, while_disabled, "longest experiment, likewise"},
-    {258, axis, "unfitted.counts", whole, "", "", 1, 268435456, 200000, while_disabled,
+    {258, axis, "unfitted.counts", whole, "", "", 1, 268435456, 1000000, while_disabled,
      "farthest travel of an experiment to either side, counts, likewise"},
 
     // Behind the feedback: firmware/core/control/control_filter.hpp.

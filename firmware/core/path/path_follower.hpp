@@ -67,7 +67,7 @@ class PathFollower {
       ramp = std::min(ramp, PathClock::ramp_limit(limit.velocity, limit.jerk));
     }
     clock_.configure(ScalarTraits<float>::to_increment(change), ScalarTraits<float>::to_increment(ramp));
-    run_out_ = static_cast<std::uint64_t>((1.1F * change / ramp + 8) * kShortestPiece);
+    run_out_ = std::uint64_t{static_cast<std::uint32_t>(1.1F * change / ramp) + 9} * kShortestPiece;
     made_time_ = 0;
     near_ = kHeadrooms.size() - 1;
     ring_first_ = ring_count_ = 0;

@@ -26,6 +26,7 @@ class DropWatch {
   }
 
   constexpr void begin() { left_ = brake_samples_ + while_samples_; }
+  constexpr void end() { left_ = 0; }
   constexpr bool is_active() const { return left_ > 0; }
 
   /// Each sample while active: whether the drive is still on. `speed`: magnitude, by the slower sensor.

@@ -439,6 +439,7 @@ class SupervisedAxis {
     state_ = next;
     homing_.abandon();
     is_braking_ = false;
+    if (outputs_are_on(next)) drop_watch_.end();  // it is to be on again
     if (next == SupervisorState::starting) {
       sequence_.begin();
       standstill_.begin_start(axis_.telemetry().encoder_counts);
@@ -453,10 +454,7 @@ class SupervisedAxis {
       }
     }
     if (next == SupervisorState::stopping && !sensor_stop_.is_active()) {
-      if (is_interpolated_)
-        axis_.stop_interpolated();
-      else
-        axis_.stop();
+      is_interpolated_ ? axis_.stop_interpolated() : axis_.stop();
       stop_end_.begin();
     }
     if (!outputs_are_on(state_)) {

@@ -298,7 +298,7 @@ TEST(UnfittedAxis, HasLimitsOfItsOwn) {
   bench.run(200);
   firmware::ExcitationRequest r;
   r.kind = static_cast<std::uint8_t>(firmware::ExcitationKind::chirp);
-  r.travel_counts = 200'000;
+  r.travel_counts = 1'000'000;
   r.speed = 16384;
   r.volts = r.amplitude = 6.0F / (20.0F / 65536);
   r.samples = 120'000;

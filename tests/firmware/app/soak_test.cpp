@@ -143,6 +143,20 @@ class Day {
     return false;
   }
 
+  /// The loops close once the axes stand.
+  bool wait_for_enabled() {
+    constexpr int kLongest = 1000;  // periods, a second
+    const auto is_enabled = [this](std::size_t i) {
+      return application_.axes()[i].state() == firmware::SupervisorState::enabled;
+    };
+    for (int k = 0; k < kLongest && !(is_enabled(0) && is_enabled(1)); ++k) period();
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if (!is_enabled(i))
+        ADD_FAILURE() << "axis " << i << " in state " << static_cast<int>(application_.axes()[i].state()) << ", fault "
+                      << static_cast<int>(application_.axis_status(i).fault);
+    return is_enabled(0) && is_enabled(1);
+  }
+
   void fit() {
     const auto wanted = values();
     application_.staged() = wanted;
@@ -183,7 +197,7 @@ class Day {
         ASSERT_EQ(ask(MessageType::disable, firmware::AxesRequest{3}), Status::ok);
         wait(400);
         ASSERT_EQ(ask(MessageType::enable, firmware::AxesRequest{3}), Status::ok);
-        wait(150);
+        ASSERT_TRUE(wait_for_enabled());
         break;
       default:
         break;

@@ -176,7 +176,7 @@ TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
 
 /// Catches a capture that a signal ends without a file.
 TEST_F(DeviceCommands, ASignalEndsACaptureWithWhatCame) {
-  const ProgramRun done = run_program("timeout -s INT 2 \"" AXISTOOL_PROGRAM "\" capture" + board_.device() + "-o " +
+  const ProgramRun done = run_program("timeout -s INT 4 \"" AXISTOOL_PROGRAM "\" capture" + board_.device() + "-o " +
                                           file("cut.csv") + " --for 3600 --json -",
                                       "2>/dev/null");
   EXPECT_EQ(done.exit_code, 124) << "timeout had to send it";
