@@ -27,6 +27,7 @@ NOT_RUN = [
     (r"…|\b(COMMAND|KIND|MODEL)\b", "has a gap to fill in"),
     (r"emps|EMPS|\.mat\b", "a data set that is not shipped"),
     (r"--trigger|--last", "waits for something to happen to the machine"),
+    (r"--map x/mapping.toml|pid.txt", "a log of the reader's own"),
     (r"\bbench\b", "ten minutes"),
     (r"\bscoreboard\b", "minutes; make scoreboard"),
     (r"\bcommission\b", "a minute and more; host/commission's tests run it"),
