@@ -152,7 +152,6 @@ void Board::acknowledge_control() {
 
 void Board::control_has_run(bool all_is_alive) {
   if (all_is_alive) pump_.beat();
-  pins::dac_not_clear().set(all_is_alive);  // without its beat: 0 V whatever the converter was told
   period_watchdog_.period_passed(period_us_);
 }
 

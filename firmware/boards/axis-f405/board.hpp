@@ -95,7 +95,7 @@ class Board {
   bool start_usb();
   /// First thing in the control interrupt.
   void acknowledge_control();
-  /// Last thing in it. The charge pump outside gets its beat only while all is alive; else the converter is cleared.
+  /// Last thing in it. The charge pump outside gets its beat only while all is alive.
   void control_has_run(bool all_is_alive);
   /// The converter's interrupt.
   void recover_conversions() { scan_.recover_from_overrun(); }
