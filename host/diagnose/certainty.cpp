@@ -53,7 +53,7 @@ Kinds tied_group(const Diagnosis& diagnosis) {
   if (singles.size() > kLargestGroup) singles.resize(kLargestGroup);
   Kinds group;
   for (const JudgedCandidate* candidate : singles) {
-    if (taken_by(*candidate) < kLeastTaken) break;
+    if (taken_by(*candidate) < kWorthNaming) break;
     group.push_back(candidate->kinds.front());
     if (probability_of_any(diagnosis, group) >= kNamed) return group.size() > 1 ? group : Kinds{};
   }
@@ -143,7 +143,7 @@ void settle_status(Diagnosis& diagnosis) {
       probability_of_any(diagnosis, verdict.effects) + verdict.probability_unfitted >= kNamed)
     return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
-  const bool hardly_helps = whole != nullptr && taken_by(*whole) < kLeastTaken;
+  const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
   if (verdict.status == Status::missing && !hardly_helps &&
       probability_of(diagnosis, {verdict.effects.front()}) >= kNamed)
     return;

@@ -6,25 +6,20 @@
 #include <vector>
 
 #include "host/diagnose/diagnosis.hpp"
+#include "host/infer/posterior.hpp"
 
 namespace host {
 
-/// Effects are listed as certain from this probability on: a wrong name, which sends an engineer to the
-/// wrong part of the machine, costs 19 times what "unexplained" does, after which he measures once more.
-inline constexpr double kClaimed = 0.95;
-/// The verdict keeps a name that is more probable than all else together. The probabilities of today's two judges are not
-/// calibrated between this and kClaimed: of the real machines that they answer rightly some stand at 60 %.
+/// The verdict keeps a name that is more probable than all else together. The probabilities of today's two judges are
+/// not calibrated between this and kClaimed: of the real machines that they answer rightly some stand at 60 %.
 inline constexpr double kNamed = 0.5;
 /// So many rivals at most are a group: one further measurement tells as many apart.
 inline constexpr std::size_t kLargestGroup = 4;
-/// What takes less of the squared error on held-back records is certain at most, not what to begin with.
-inline constexpr double kLeastTaken = 0.1;
-
 /// Of all these effects together, whatever else is there besides: of all candidates that hold them.
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds);
 
 /// Takes back what the probabilities do not carry: effects stay named where the first of them holds kNamed; else the
-/// group is named that together holds it and takes kLeastTaken, as ambiguous; else the verdict is unexplained.
+/// group is named that together holds it and takes kWorthNaming, as ambiguous; else the verdict is unexplained.
 void settle_status(Diagnosis& diagnosis);
 
 /// What the model of the verdict holds: what it names, and the first of each group of which one is there for certain.
