@@ -11,10 +11,8 @@
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/compare/tracking_error.hpp"
-#include "host/identify/effort_timing.hpp"
 #include "host/model/model_file.hpp"
 #include "host/output_target.hpp"
-#include "host/record/channel_checks.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/terminal.hpp"
 #include "host/report/text_format.hpp"
@@ -39,17 +37,6 @@ std::string predictions_path(const CompareArguments& arguments, std::size_t inde
   return (path.parent_path() /
           fmt::format("{}-{}-{}{}", path.stem().string(), index + 1, stem, path.extension().string()))
       .string();
-}
-
-/// The records, where none of them holds an effort: the gate is for those that can be held against a model.
-std::vector<host::Record> records_of_tracking(const CompareArguments& arguments, const sim::DataSheet& data) {
-  std::vector<host::Record> records;
-  for (const std::string& path : arguments.records) {
-    records.push_back(host::read_record(path));
-    if (!host::has_reference_only(records.back())) return {};
-    host::adapt_to(records.back(), data);
-  }
-  return records;
 }
 
 /// Records without any effort: what position and reference say.
@@ -84,26 +71,12 @@ host::ComparedModel compared(const std::string& path, const CompareArguments& ar
   return host::compare_with(path, model, std::move(records), arguments.window_s, arguments.accepted);
 }
 
-/// As of the first model alone; all of them in "models".
-nlohmann::json document_of(const std::vector<host::ComparedModel>& models) {
-  nlohmann::json document = host::comparison_json(models.front().comparison);
-  document["model"] = models.front().path;
-  document["effort_timing"] = host::effort_timing_json(models.front().measured.training_records());
-  if (models.size() == 1) return document;
-  for (const host::ComparedModel& one : models) {
-    nlohmann::json part = host::comparison_json(one.comparison);
-    part.erase("format");
-    part["model"] = one.path;
-    document["models"].push_back(std::move(part));
-  }
-  return document;
-}
-
 void run(CompareArguments& arguments) {
   sort_files(arguments);
   if (!arguments.predictions.empty())
     for (std::size_t r = 0; r < arguments.records.size(); ++r) host::output_target(predictions_path(arguments, r));
-  if (std::vector<host::Record> tracks = records_of_tracking(arguments, host::read_model(arguments.model).data);
+  if (std::vector<host::Record> tracks =
+          host::tracking_records(arguments.records, host::read_model(arguments.model).data);
       !tracks.empty()) {
     run_tracking(arguments, tracks);
     return;
@@ -117,7 +90,7 @@ void run(CompareArguments& arguments) {
                                   host::predictions_csv(models[0].model, models[0].set.records[r].prepared));
   }
   if (!arguments.report.empty()) host::comparison_report(models).write(arguments.report);
-  if (!arguments.json.empty()) write_json(document_of(models), arguments.json);
+  if (!arguments.json.empty()) write_json(host::comparison_document(models), arguments.json);
   if (arguments.json != "-") {
     fmt::print("{}", host::comparison_text(models, host::terminal_of(stdout)));
     if (!arguments.report.empty()) fmt::print("\nReport: {}\n", arguments.report);

@@ -13,6 +13,7 @@
 #include "host/evidence/measured_sensors.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/record/drive_units.hpp"
 #include "host/record/record_origin.hpp"
 
@@ -31,6 +32,20 @@ ComparedModel compare_with(const std::string& path, const sim::DriveDescription&
   return {path, std::move(completed), std::move(measured), std::move(set), std::move(comparison)};
 }
 
+nlohmann::json comparison_document(std::span<const ComparedModel> models) {
+  nlohmann::json document = comparison_json(models.front().comparison);
+  document["model"] = models.front().path;
+  document["effort_timing"] = effort_timing_json(models.front().measured.training_records());
+  if (models.size() == 1) return document;
+  for (const ComparedModel& one : models) {
+    nlohmann::json part = comparison_json(one.comparison);
+    part.erase("format");
+    part["model"] = one.path;
+    document["models"].push_back(std::move(part));
+  }
+  return document;
+}
+
 SeriesRole role_of_model(std::size_t index) {
   constexpr std::array roles{SeriesRole::predicted, SeriesRole::model, SeriesRole::other, SeriesRole::residual,
                              SeriesRole::train};
@@ -40,7 +55,8 @@ SeriesRole role_of_model(std::size_t index) {
 std::string ComparedModel::name() const { return std::filesystem::path(path).filename().string(); }
 
 TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record_index) {
-  const PreparedRecord& prepared = models.front().set.records[record_index].prepared;
+  const ComparedRecord& compared = models.front().set.records[record_index];
+  const PreparedRecord& prepared = compared.prepared;
   const Record& record = *prepared.record;
   const DriveUnits units = units_of(record.kind);
   std::vector<Prediction> predictions;
@@ -51,8 +67,15 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
   plot.caption =
       "The prediction restarts from the measurement at every window; error that grows within a window is model error.";
   plot.t_s = record.t_s;
+  const auto floor_of = [&](const std::vector<double>& floors, double sign) {
+    std::vector<double> rows(record.size(), std::nan(""));
+    for (std::size_t w = 0; w < std::min(floors.size(), prepared.windows.size()); ++w)
+      for (std::size_t k = 1; k <= prepared.windows[w].length; ++k)
+        rows[prepared.windows[w].begin + k] = sign * floors[w];
+    return rows;
+  };
   const auto add = [&](const char* quantity, const char* unit, const std::vector<double>& measured,
-                       std::vector<double> Prediction::*channel) {
+                       std::vector<double> Prediction::*channel, const std::vector<double>& floors) {
     TracePanel traces{quantity, unit, {{"measured", SeriesRole::measured, measured}}};
     TracePanel errors{std::string(quantity) + " error", unit, {}};
     for (std::size_t m = 0; m < models.size(); ++m) {
@@ -65,11 +88,13 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
       errors.traces.push_back(
           {alone ? "error" : models[m].name(), alone ? SeriesRole::residual : role_of_model(m), error});
     }
+    errors.traces.push_back({"noise floor", SeriesRole::floor, floor_of(floors, 1.0)});
+    errors.traces.push_back({"−noise floor", SeriesRole::floor, floor_of(floors, -1.0)});
     plot.panels.push_back(std::move(traces));
     plot.panels.push_back(std::move(errors));
   };
-  if (record.has_speed()) add("speed", units.speed, record.w, &Prediction::w);
-  if (record.has_position()) add("position", units.travel, record.x, &Prediction::x);
+  if (record.has_speed()) add("speed", units.speed, record.w, &Prediction::w, compared.floor.w);
+  if (record.has_position()) add("position", units.travel, record.x, &Prediction::x, compared.floor.x);
   plot.panels.push_back({"command", "V", {{"command", SeriesRole::other, prepared.u_V}}});
   return plot;
 }
@@ -93,6 +118,15 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
                   "samples the line breaks; the strip at the foot shows how many there are.",
                   effort, models.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
   add_residual_plots(report, views, first, period, Layout::overlaid);
+  const DriveUnits units = units_of(first.data.kind);
+  for (const auto& [name, title] :
+       {std::pair("travel_since_reversal", "After a reversal"), std::pair("rest", "After a rest"),
+        std::pair("current", "Against the command"), std::pair("temperature", "Against temperature")}) {
+    const ResidualCoordinate over = coordinate_of(name, first.data.kind);
+    if ((views.front().force.*over.along).empty()) continue;
+    add_residual_plot(report, over, title, {"missing " + effort, units.effort}, views, &ResidualView::force,
+                      Layout::overlaid);
+  }
   if (models.size() == 1) add_residual_maps(report, views, first, period);
 }
 

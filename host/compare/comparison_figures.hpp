@@ -1,6 +1,7 @@
 // Figures of a comparison, of one model or of several on top of each other.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
@@ -24,6 +25,9 @@ struct ComparedModel {
 /// Throws Failure(usage) where that is no time, and what MeasurementGate, compare_on and compare_model throw.
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
                            double window_s, const std::vector<std::string>& accepted);
+
+/// "axis-comparison/1" of the first model; of several, each in "models".
+nlohmann::json comparison_document(std::span<const ComparedModel> models);
 
 /// Roles that differ in colour, one a model; further models take their turn again.
 SeriesRole role_of_model(std::size_t index);

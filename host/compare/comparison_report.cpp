@@ -191,6 +191,7 @@ BarChart bars_of(const std::vector<ErrorRegion>& where, const std::string& parti
   chart.title = title;
   chart.unit = "%";
   chart.series = {{"squared error", SeriesRole::residual}, {"samples", SeriesRole::floor}};
+  chart.folded = partition == "time";
   if (partition == "order") chart.series.pop_back();
   for (const ErrorRegion& region : where) {
     if (region.partition != partition) continue;
@@ -313,8 +314,8 @@ Report comparison_report(std::span<const ComparedModel> models) {
   const auto worst =
       std::ranges::max_element(comparison.records, {}, [](const RecordError& record) { return record.error.combined; });
   report.add(prediction_traces(models, static_cast<std::size_t>(worst - comparison.records.begin())));
-  add_where_it_fails(models, report);
   add_missing_effort(models, report);
+  add_where_it_fails(models, report);
   return report;
 }
 

@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "host/exit_codes.hpp"
+#include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
+#include "host/record/read_record.hpp"
 
 namespace host {
 
@@ -66,6 +68,16 @@ std::vector<PeriodPeak> periods_of(const Record& record, const Eigen::VectorXd& 
 
 bool has_reference_only(const Record& record) {
   return record.u_V.empty() && record.i_A.empty() && (by_position(record) || by_speed(record));
+}
+
+std::vector<Record> tracking_records(const std::vector<std::string>& paths, const sim::DataSheet& data) {
+  std::vector<Record> records;
+  for (const std::string& path : paths) {
+    records.push_back(read_record(path));
+    if (!has_reference_only(records.back())) return {};
+    adapt_to(records.back(), data);
+  }
+  return records;
 }
 
 TrackingError tracking_error(const Record& record) {

@@ -8,6 +8,7 @@
 
 #include "host/evidence/period_search.hpp"
 #include "host/record/record.hpp"
+#include "sim/drive_description.hpp"
 
 namespace host {
 
@@ -30,6 +31,9 @@ struct TrackingError {
 
 /// Whether a record holds no effort, but a reference beside what it is the reference of.
 bool has_reference_only(const Record& record);
+
+/// The records of these files, where none of them holds an effort; otherwise none. `data` is of their drive.
+std::vector<Record> tracking_records(const std::vector<std::string>& paths, const sim::DataSheet& data);
 
 /// Throws Failure(bad_input) where has_reference_only() does not hold.
 TrackingError tracking_error(const Record& record);

@@ -1,4 +1,5 @@
-// Draws the plots of a report with dygraphs. The data stand in the element "plots"; frames "plot-N" wait for them.
+// Draws plots with dygraphs into the frames "plot-N" that wait for them. A report carries their data in the element
+// "plots"; the workbench calls axisPlots.draw with those that it fetched.
 (function () {
   "use strict";
 
@@ -345,12 +346,23 @@
     new ResizeObserver(resized).observe(chart.graphDiv.parentElement);
   }
 
-  JSON.parse(document.getElementById("plots").textContent).forEach(function (plot, index) {
-    const frame = document.getElementById("plot-" + index);
-    if (plot.kind === "time") drawTimePlot(frame, plot);
-    else if (plot.kind === "map") recolour.push(axisHeatMap(panelElements(frame, plot.label, "map"), plot, resolved, formatted));
-    else drawScatterPlot(frame, plot);
-  });
+  // Draws each plot into its frame; what it returns takes them away again.
+  function draw(plots, frames) {
+    const drawn = charts.length;
+    const coloured = recolour.length;
+    plots.forEach(function (plot, index) {
+      const frame = frames[index];
+      if (plot.kind === "time") drawTimePlot(frame, plot);
+      else if (plot.kind === "map") recolour.push(axisHeatMap(panelElements(frame, plot.label, "map"), plot, resolved, formatted));
+      else drawScatterPlot(frame, plot);
+    });
+    const own = charts.slice(drawn);
+    const ownColours = recolour.slice(coloured);
+    return function () {
+      own.forEach((chart) => (chart.destroy(), charts.splice(charts.indexOf(chart), 1)));
+      ownColours.forEach((again) => recolour.splice(recolour.indexOf(again), 1));
+    };
+  }
   for (const query of ["(prefers-color-scheme: dark)", "print"])
     matchMedia(query).addEventListener("change", () => recolour.forEach((again) => again()));
   // What report.css prints by: the width of the contents, and how much smaller they fit a page in landscape.
@@ -362,7 +374,12 @@
     root.setProperty("--screen-width", width + "px");
     root.setProperty("--print-zoom", Math.min(1, 960 / width));
   }
+  window.axisCharts = charts;
+  window.axisPlots = { draw: draw };
+  const carried = document.getElementById("plots");
+  if (!carried) return;
+  const plots = JSON.parse(carried.textContent);
+  draw(plots, plots.map((plot, index) => document.getElementById("plot-" + index)));
   notePrintSize();
   window.addEventListener("resize", () => matchMedia("print").matches || notePrintSize());
-  window.axisCharts = charts;
 })();
