@@ -38,7 +38,8 @@ endif()
 set(FOR_CPP COMPONENT development)
 install(TARGETS axis_host axis_sim axis_hal_usbip ARCHIVE DESTINATION lib/axis ${FOR_CPP})
 install(DIRECTORY "${AXIS_ROOT}/host" "${AXIS_ROOT}/sim" "${AXIS_ROOT}/hal" "${AXIS_ROOT}/firmware"
-  DESTINATION include/axis ${FOR_CPP} FILES_MATCHING PATTERN "*.hpp" PATTERN "axistool" EXCLUDE PATTERN "boards" EXCLUDE)
+  DESTINATION include/axis ${FOR_CPP} FILES_MATCHING PATTERN "*.hpp" PATTERN "axistool" EXCLUDE
+  PATTERN "workbench" EXCLUDE PATTERN "boards" EXCLUDE)
 include(CMakePackageConfigHelpers)
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/axis-config-version.cmake" VERSION ${AXIS_VERSION}
                                  COMPATIBILITY SameMinorVersion)

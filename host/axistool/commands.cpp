@@ -24,6 +24,7 @@ void add_all_commands(CLI::App& app) {
   add_plan(app);
   add_add(app);
   add_improve(app);
+  add_serve(app);
   add_export(app);
   add_scoreboard(app);
   add_commission(app);

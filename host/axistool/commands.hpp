@@ -59,6 +59,7 @@ void add_diagnose(CLI::App& app);
 void add_plan(CLI::App& app);
 void add_improve(CLI::App& app);
 void add_add(CLI::App& app);
+void add_serve(CLI::App& app);
 void add_scoreboard(CLI::App& app);
 void add_commission(CLI::App& app);
 

@@ -24,6 +24,7 @@ NOT_RUN = [
     (r"\bsudo\b|--usb\b", "as root"),
     (r"\bflash\b|usb:|IMAGE|FILE\.bin", "a board, and an image for it"),
     (r"\baxistool sim\b", "does not end by itself; the board of this test is one"),
+    (r"\bserve\b", "does not end by itself; host/workbench's tests run it"),
     (r"…|\b(COMMAND|KIND|MODEL)\b", "has a gap to fill in"),
     (r"emps|EMPS|\.mat\b", "a data set that is not shipped"),
     (r"--trigger|--last", "waits for something to happen to the machine"),

@@ -1,0 +1,101 @@
+// axistool serve: the workbench, a page in the browser on the same functions as the commands.
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "host/atomic_file.hpp"
+#include "host/axistool/commands.hpp"
+#include "host/axistool/interrupts.hpp"
+#include "host/own_folder.hpp"
+#include "host/workbench/server.hpp"
+
+extern char** environ;
+
+namespace axistool {
+
+namespace {
+
+struct ServeArguments {
+  std::string folder = ".";
+  int port = 0;
+  bool no_browser = false;
+};
+
+/// Opens the page by a file of the user's own that leads to it: words of a command line are there for all users to see,
+/// and the address holds the token. The file is gone when this object is.
+class BrowserStart {
+ public:
+  explicit BrowserStart(const std::string& url) {
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+    file_ = fmt::format("{}/axistool-{}.html", host::own_folder("XDG_RUNTIME_DIR", ".local/state/axis"), ::getpid());
+    const mode_t before = ::umask(077);
+    host::write_file_atomically(file_, fmt::format("<meta http-equiv=\"refresh\" content=\"0;url={}\">\n", url));
+    ::umask(before);
+    char* words[] = {const_cast<char*>("xdg-open"), file_.data(), nullptr};
+    pid_t child = 0;
+    ::posix_spawnp(&child, words[0], nullptr, nullptr, words, environ);
+  }
+  BrowserStart(const BrowserStart&) = delete;
+  BrowserStart& operator=(const BrowserStart&) = delete;
+  ~BrowserStart() {
+    std::error_code ignored;
+    if (!file_.empty()) std::filesystem::remove(file_, ignored);
+  }
+
+ private:
+  std::string file_;
+};
+
+void run(const ServeArguments& arguments) {
+  std::error_code failed;
+  std::filesystem::current_path(arguments.folder, failed);
+  if (failed)
+    throw host::Failure(host::ExitCode::bad_input,
+                        fmt::format("{}: {}; name a folder", arguments.folder, failed.message()));
+  host::workbench::Server server(arguments.port);
+  catch_interrupts();
+  std::jthread answering([&server] { server.run(); });
+  host::write_standard_output(server.url() + "\n");
+  {
+    const std::unique_ptr<BrowserStart> browser =
+        arguments.no_browser ? nullptr : std::make_unique<BrowserStart>(server.url());
+    while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  release_interrupts();  // a second Ctrl-C waits for nobody
+  server.stop();
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app) {
+  auto arguments = std::make_shared<ServeArguments>();
+  CLI::App* command =
+      app.add_subcommand("serve", "the workbench: compare, diagnose and add effects in the browser, on a folder");
+  command->add_option("DIR", arguments->folder, "folder of models and records")->capture_default_str();
+  constexpr int kLastPort = 65535;
+  command->add_option("--port", arguments->port, "of 127.0.0.1; 0 takes a free one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, kLastPort));
+  command->add_flag("--no-browser", arguments->no_browser, "print the address only");
+  command->footer(
+      "Examples:\n"
+      "  axistool serve\n"
+      "  axistool serve measurements --port 8080 --no-browser\n"
+      "Prints one line, the address, when it answers; Ctrl-C ends it. It answers this computer alone, and only "
+      "whoever\n"
+      "has the address: the token in it is a key. Nothing outside the folder is read or written. Results of jobs lie "
+      "in\n"
+      "its folder \"workbench\"; models that were added to lie beside the model that they came from. Every figure is "
+      "the\n"
+      "one that the command prints, and the page shows the command.");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace axistool

@@ -1,0 +1,36 @@
+// Who may talk to the workbench: pages that it served itself, on this computer, to whoever holds its token.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace host::workbench {
+
+/// 128 random bits in hexadecimal. Throws Failure(permission) where the system gives none.
+std::string random_token();
+
+/// A web page that is open in the same browser can send requests to this computer too: under another name that resolves
+/// to it (Host), or from another origin. Neither has the cookie, and neither is answered.
+class Access {
+ public:
+  Access(std::string token, int port) : token_(std::move(token)), port_(port) {}
+
+  std::string url() const;  ///< with the token: what the user opens
+  /// What keeps the token once the page is open: out of the reach of scripts and of other sites.
+  std::string cookie() const;
+
+  bool is_own_host(std::string_view host) const;
+  /// No origin is that of a program which is no browser; it needs the cookie all the same.
+  bool is_own_origin(std::string_view origin) const;
+  bool is_token(std::string_view text) const;  ///< takes as long for a wrong one
+  bool has_cookie(std::string_view cookies) const;
+
+ private:
+  std::string cookie_name() const;  ///< by port: cookies are shared by all ports of a host
+
+  std::string token_;
+  int port_;
+};
+
+}  // namespace host::workbench

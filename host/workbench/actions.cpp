@@ -1,0 +1,87 @@
+#include "host/workbench/actions.hpp"
+
+#include <vector>
+
+#include "host/cancellation.hpp"
+#include "host/compare/comparison_report.hpp"
+#include "host/compare/tracking_error.hpp"
+#include "host/diagnose/addition.hpp"
+#include "host/diagnose/diagnosis_json.hpp"
+#include "host/diagnose/diagnosis_report.hpp"
+#include "host/diagnose/improvement_report.hpp"
+#include "host/evidence/measurement_gate.hpp"
+#include "host/identify/plausibility.hpp"
+#include "host/model/effect_forms.hpp"
+#include "host/model/model_file.hpp"
+#include "host/record/read_record.hpp"
+
+namespace host::workbench {
+
+namespace {
+
+void require_files(const Folder& folder, const Request& request) {
+  for (const auto* names : {&request.models, &request.train, &request.validate})
+    for (const std::string& name : *names) folder.existing(name);
+}
+
+nlohmann::json diagnosed(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
+                         const Outputs& outputs, const ShareDone& progress) {
+  const Diagnosis diagnosis = diagnose(model, measured, progress, nullptr, request.absent);
+  throw_if_cancelled();
+  write_diagnosis_report(diagnosis, request.models.front(), outputs.report);
+  return to_json(diagnosis);
+}
+
+nlohmann::json added(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
+                     const Outputs& outputs) {
+  const Addition addition = add_kind(model, request.kind, request.over, measured);
+  throw_if_cancelled();
+  write_model(addition.judged.model, outputs.model);
+  return to_json(addition, request.kind, measured, outputs.model);
+}
+
+nlohmann::json improved(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
+                        const Outputs& outputs, const ShareDone& progress) {
+  const Improvement improvement = improve(model, measured, progress, request.absent);
+  throw_if_cancelled();
+  write_model(improvement.model, outputs.model);
+  write_improvement_report(improvement, {request.models.front(), outputs.model}, outputs.report);
+  nlohmann::json document = to_json(improvement, outputs.model);
+  document["warnings"] = messages_of(doubts_of(improvement.model));
+  return document;
+}
+
+}  // namespace
+
+Comparison compare(const Folder& folder, const Request& request) {
+  require_files(folder, request);
+  const sim::DriveDescription first = read_model(request.models.front());
+  if (const std::vector<Record> tracks = tracking_records(request.train, first.data); !tracks.empty()) {
+    std::vector<TrackingError> errors;
+    for (const Record& record : tracks) errors.push_back(tracking_error(record));
+    return {tracking_json(errors), "", tracking_text(errors)};
+  }
+  std::vector<ComparedModel> models;
+  for (const std::string& path : request.models) {
+    std::vector<Record> records;
+    for (const std::string& record : request.train) records.push_back(read_record(record));
+    models.push_back(compare_with(path, read_model(path), std::move(records), kWindow_s, request.accepted));
+    throw_if_cancelled();
+  }
+  return {comparison_document(models), comparison_report(models).html(), ""};
+}
+
+nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
+                         const std::function<void(double)>& progress) {
+  require_files(folder, request);
+  for (const std::string& kind : request.absent) known_effect(kind);
+  if (request.task == Task::add) known_effect(request.kind);
+  const sim::DriveDescription model = read_model(request.models.front());
+  const Measurements measured =
+      MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);
+  if (request.task == Task::add) return added(request, model, measured, outputs);
+  if (request.task == Task::improve) return improved(request, model, measured, outputs, progress);
+  return diagnosed(request, model, measured, outputs, progress);
+}
+
+}  // namespace host::workbench

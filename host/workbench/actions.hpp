@@ -1,0 +1,27 @@
+// What the page asks for, by the functions that the commands call: the same documents, to the digit.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/workbench/folder.hpp"
+#include "host/workbench/request.hpp"
+
+namespace host::workbench {
+
+struct Comparison {
+  nlohmann::json document;  ///< of `axistool compare --json`
+  std::string report;       ///< its page; empty where no effort was recorded
+  std::string text;         ///< in place of the page
+};
+
+/// Throws as the command does.
+Comparison compare(const Folder& folder, const Request& request);
+
+/// Diagnoses, adds or improves, writes the outputs, and returns the document of the command's --json. Throws as the
+/// command does, and Cancelled.
+nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
+                         const std::function<void(double)>& progress);
+
+}  // namespace host::workbench

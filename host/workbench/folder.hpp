@@ -1,0 +1,71 @@
+// The folder that the workbench serves: the working directory, so that names are those that commands take there.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace host::workbench {
+
+/// Where jobs keep their results, and the page what is chosen.
+inline constexpr const char* kOwnFolder = "workbench";
+
+/// A name below the folder: no "..", no leading "/" or "-", nothing hidden, no control characters.
+bool is_plain_name(std::string_view name);
+
+struct FolderFile {
+  std::string name;
+  std::string kind;  ///< "model", "record", or "log" of a layout that `axistool open` reads
+  std::size_t bytes = 0;
+};
+
+class Folder {
+ public:
+  Folder();
+
+  const std::filesystem::path& root() const { return root_; }
+
+  /// Models, records and logs, sorted; at most some thousand. What lies outside is left out, links to it too.
+  std::vector<FolderFile> files() const;
+
+  /// `name`, where it is a file of the folder. Throws Failure: usage for a name that is none, permission where links
+  /// lead out of the folder, bad_input where there is no such file.
+  std::string existing(const std::string& name) const;
+
+  /// A name that nothing has yet: "x+cogging.toml", "x+cogging-2.toml", ...
+  std::string free_name(const std::string& stem, const std::string& extension) const;
+
+  /// Makes kOwnFolder and returns the name of a file in it. Throws Failure(permission) where links lead out of the
+  /// folder.
+  std::string own_file(const std::string& name) const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+/// A file on its way into the folder: under its name, or a free one like it, once it is whole.
+class Upload {
+ public:
+  /// Throws Failure(usage) for a name with a folder or of a kind that is not read here.
+  Upload(const Folder& folder, const std::string& name);
+  Upload(const Upload&) = delete;
+  Upload& operator=(const Upload&) = delete;
+  ~Upload();
+
+  /// False where that would be more than `kLogSize`, or the disk is full.
+  bool append(const char* data, std::size_t size);
+
+  std::string finish();
+
+ private:
+  const Folder& folder_;
+  std::string name_, partial_;
+  std::ofstream file_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace host::workbench

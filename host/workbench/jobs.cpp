@@ -1,0 +1,201 @@
+#include "host/workbench/jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "host/atomic_file.hpp"
+#include "host/cancellation.hpp"
+#include "host/evidence/log_faults.hpp"
+#include "host/exit_codes.hpp"
+#include "host/read_file.hpp"
+#include "host/workbench/actions.hpp"
+
+namespace host::workbench {
+
+namespace {
+
+constexpr std::size_t kMostWaiting = 50;
+constexpr int kMostJobs = 100'000;
+
+std::string state_name(int id) { return fmt::format("{:04}.job.json", id); }
+
+/// Cogging on x.toml goes to x+cogging.toml.
+std::string model_stem(const Request& request) {
+  const std::string stem = std::filesystem::path(request.models.front()).replace_extension().string();
+  return request.task == Task::add ? fmt::format("{}+{}", stem, request.kind) : stem + "-improved";
+}
+
+std::int64_t now_s() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// A state that an earlier session wrote, or somebody since: null unless it is one.
+nlohmann::json read_state(const std::string& path) {
+  try {
+    nlohmann::json state = nlohmann::json::parse(read_file(path), nullptr, false);
+    if (!state.is_object()) return nullptr;
+    const bool is_state = state.value("format", "") == "axis-job/1" && state.contains("request") &&
+                          state.value("id", 0) > 0 && state.value("id", 0) < kMostJobs &&
+                          !state.value("state", "").empty() && !state.value("command", "").empty();
+    for (const char* text : {"model", "report", "message"}) state[text] = state.value(text, "");
+    return is_state ? state : nullptr;
+  } catch (const Failure&) {
+    return nullptr;
+  } catch (const nlohmann::json::exception&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+Jobs::Jobs(const Folder& folder) : folder_(folder) {
+  load();
+  worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+}
+
+Jobs::~Jobs() {
+  worker_.request_stop();
+  const std::lock_guard lock(mutex_);
+  for (const auto& item : jobs_) item.second->is_cancelled = true;
+}
+
+void Jobs::load() {
+  const std::filesystem::path own = folder_.root() / kOwnFolder;
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(own))) return;
+  for (const auto& entry : std::filesystem::directory_iterator(own)) {
+    if (!entry.path().string().ends_with(".job.json") || !entry.is_regular_file() || entry.is_symlink()) continue;
+    nlohmann::json state = read_state(entry.path().string());
+    if (state.is_null()) continue;
+    auto job = std::make_unique<Job>();
+    try {
+      job->request = parse_request(state["request"].dump());
+    } catch (const Failure&) {
+      continue;
+    }
+    const int id = state["id"];
+    if (state["state"] == "running" || state["state"] == "queued") state["state"] = "interrupted";
+    job->state = std::move(state);
+    jobs_[id] = std::move(job);
+  }
+}
+
+int Jobs::submit(const Request& request) {
+  const std::lock_guard lock(mutex_);
+  const int id = jobs_.empty() ? 1 : jobs_.rbegin()->first + 1;
+  if (queue_.size() >= kMostWaiting || id >= kMostJobs)
+    throw Failure(ExitCode::refused, fmt::format("{} jobs wait already", queue_.size()));
+  auto job = std::make_unique<Job>();
+  job->request = request;
+  const std::string stem = fmt::format("{:04}-{}", id, task_name(request.task));
+  job->outputs.json = folder_.own_file(stem + ".json");
+  if (request.task != Task::add) job->outputs.report = folder_.own_file(stem + ".html");
+  if (request.task != Task::diagnose) job->outputs.model = folder_.free_name(model_stem(request), ".toml");
+  for (const auto& item : jobs_)  // one that waits has no file yet
+    if (!job->outputs.model.empty() && item.second->outputs.model == job->outputs.model)
+      job->outputs.model = folder_.free_name(fmt::format("{}-{}", model_stem(request), id), ".toml");
+  job->state = {{"format", "axis-job/1"},       {"id", id},
+                {"request", to_json(request)},  {"command", command_line(request, job->outputs)},
+                {"asked_s", now_s()},           {"model", job->outputs.model},
+                {"report", job->outputs.report}};
+  keep(*job, "queued");
+  jobs_[id] = std::move(job);
+  queue_.push_back(id);
+  changed_.notify_all();
+  return id;
+}
+
+void Jobs::keep(Job& job, const std::string& state, const std::string& message) {
+  job.state["state"] = state;
+  job.state["message"] = message;
+  write_file_atomically(folder_.own_file(state_name(job.state["id"])), job.state.dump(2) + "\n");
+}
+
+void Jobs::work(const std::stop_token& stop) {
+  while (true) {
+    Job* job = nullptr;
+    {
+      std::unique_lock lock(mutex_);
+      if (!changed_.wait(lock, stop, [this] { return !queue_.empty(); }) || stop.stop_requested()) return;
+      job = jobs_.at(queue_.front()).get();
+      queue_.pop_front();
+      if (job->is_cancelled) continue;
+    }
+    run(*job, stop);
+  }
+}
+
+void Jobs::run(Job& job, const std::stop_token& stop) {
+  std::string state = "done", message;
+  nlohmann::json log;
+  try {
+    {
+      const std::lock_guard lock(mutex_);
+      keep(job, "running");
+    }
+    const CancelledBy scope(&job.is_cancelled);
+    const nlohmann::json document =
+        carry_out(folder_, job.request, job.outputs, [&job](double share) { job.share = share; });
+    write_file_atomically(job.outputs.json, document.dump(2) + "\n");
+  } catch (const Cancelled&) {
+    state = stop.stop_requested() ? "interrupted" : "cancelled";
+  } catch (const FaultyLog& refused) {
+    state = "failed";
+    message = refused.what();
+    log = log_faults_json(refused.faults);
+  } catch (const std::exception& failure) {
+    state = "failed";
+    message = failure.what();
+  }
+  const std::lock_guard lock(mutex_);
+  if (!log.is_null()) job.state["log"] = log;
+  try {
+    keep(job, state, message);
+  } catch (const std::exception& failure) {  // a full disk: the page is told all the same
+    job.state["message"] = failure.what();
+  }
+}
+
+nlohmann::json Jobs::told(const Job& job) {
+  nlohmann::json state = job.state;
+  state["share"] = state["state"] == "done" ? 1.0 : job.share.load();
+  return state;
+}
+
+nlohmann::json Jobs::list() const {
+  const std::lock_guard lock(mutex_);
+  nlohmann::json all = nlohmann::json::array();
+  for (auto item = jobs_.rbegin(); item != jobs_.rend(); ++item) all.push_back(told(*item->second));
+  return {{"format", "axis-jobs/1"}, {"jobs", std::move(all)}};
+}
+
+std::optional<nlohmann::json> Jobs::state(int id) const {
+  nlohmann::json state;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end()) return std::nullopt;
+    state = told(*found->second);
+    if (state["state"] != "done") return state;
+    const std::string name = fmt::format("{:04}-{}.json", id, task_name(found->second->request.task));
+    try {
+      state["document"] = nlohmann::json::parse(read_file(folder_.existing(folder_.own_file(name))), nullptr, false);
+    } catch (const Failure& failure) {
+      state["message"] = failure.what();
+    }
+  }
+  return state;
+}
+
+bool Jobs::cancel(int id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) return false;
+  found->second->is_cancelled = true;
+  if (found->second->state["state"] == "queued") keep(*found->second, "cancelled");
+  return true;
+}
+
+}  // namespace host::workbench

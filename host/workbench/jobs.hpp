@@ -1,0 +1,66 @@
+// Long work, one after the other, with progress and cancel. All that is known of a job lies in the folder: its state in
+// workbench/0007.job.json, its results beside that, so that a reload, another page or a crash loses nothing.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "host/workbench/folder.hpp"
+#include "host/workbench/request.hpp"
+
+namespace host::workbench {
+
+class Jobs {
+ public:
+  /// Reads what is there of earlier sessions. What was under way then is "interrupted".
+  explicit Jobs(const Folder& folder);
+  Jobs(const Jobs&) = delete;
+  Jobs& operator=(const Jobs&) = delete;
+  /// Cancels what is under way and waits for its end.
+  ~Jobs();
+
+  /// Throws Failure(refused) where too many wait.
+  int submit(const Request& request);
+
+  /// "axis-jobs/1": states without results, latest first.
+  nlohmann::json list() const;
+
+  /// "axis-job/1": { "id", "request", "command", "state": "queued"|"running"|"done"|"failed"|"cancelled"|"interrupted",
+  /// "share", "message", "model", "report", "document": the command's --json }; empty where there is no such job.
+  std::optional<nlohmann::json> state(int id) const;
+
+  /// Whether there is such a job; one that has ended stays as it is.
+  bool cancel(int id);
+
+ private:
+  struct Job {
+    Request request;
+    Outputs outputs;
+    nlohmann::json state;
+    std::atomic<bool> is_cancelled = false;
+    std::atomic<double> share = 0.0;
+  };
+
+  void load();
+  void work(const std::stop_token& stop);
+  void run(Job& job, const std::stop_token& stop);
+  void keep(Job& job, const std::string& state, const std::string& message = "");
+  static nlohmann::json told(const Job& job);
+
+  const Folder& folder_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::map<int, std::unique_ptr<Job>> jobs_;
+  std::deque<int> queue_;
+  std::jthread worker_;  ///< last: it uses the others
+};
+
+}  // namespace host::workbench

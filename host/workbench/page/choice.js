@@ -1,0 +1,127 @@
+// What is worked on: one model, models to draw beside it, and the role of each record. Kept in the folder.
+import { el, notice } from "./elements.js";
+import { get, post, upload } from "./exchange.js";
+
+/** @type {{folder: string, files: {name: string, kind: string, bytes: number}[], model: string|null, beside: string[], roles: Object<string, string>}} */
+export const choice = { folder: "", files: [], model: null, beside: [], roles: {} };
+
+const listeners = [];
+/** @param {() => void} listener */
+export function onChoice(listener) {
+  listeners.push(listener);
+}
+
+const folderOf = (name) => name.slice(0, name.lastIndexOf("/") + 1);
+const namesOf = (kind) => choice.files.filter((file) => file.kind === kind).map((file) => file.name);
+
+/** @param {string} role @returns {string[]} */
+export function recordsAs(role) {
+  return namesOf("record").filter((name) => choice.roles[name] === role);
+}
+
+/** Training and held-back records, for a request. */
+export function chosenRecords() {
+  return { train: recordsAs("train"), validate: recordsAs("judge") };
+}
+
+/** At first: what lies beside the model, and what is called so judges. */
+function usualRole(name) {
+  if (choice.model && folderOf(name) !== folderOf(choice.model)) return "off";
+  return /valid|judge|held|test/i.test(name) ? "judge" : "train";
+}
+
+export async function loadFolder() {
+  const told = await get("/api/folder");
+  choice.folder = told.folder;
+  choice.files = told.files;
+  const kept = told.choice || {};
+  const models = namesOf("model");
+  choice.model = models.includes(kept.model) ? kept.model : models.includes(choice.model) ? choice.model : models[0] || null;
+  choice.beside = (kept.beside || choice.beside).filter((name) => models.includes(name) && name !== choice.model);
+  const records = namesOf("record");
+  choice.roles = Object.fromEntries(records.map((name) => [name, (kept.roles || choice.roles)[name] || usualRole(name)]));
+  if (!recordsAs("train").length && recordsAs("judge").length) choice.roles[recordsAs("judge")[0]] = "train";
+  render();
+}
+
+async function changed() {
+  render();
+  listeners.forEach((listener) => listener());
+  await post("/api/choice", { model: choice.model || "", beside: choice.beside, roles: choice.roles }).catch((error) => notice(error.message));
+}
+
+/** @param {string} name */
+export async function workOn(name) {
+  choice.model = name;
+  choice.beside = choice.beside.filter((other) => other !== name);
+  await changed();
+}
+
+async function take(files) {
+  for (const file of files) {
+    try {
+      const { name } = await upload(file);
+      notice(name + " is in the folder.");
+    } catch (error) {
+      notice(file.name + ": " + error.message);
+    }
+  }
+  await loadFolder();
+  await changed();
+}
+
+function modelRow(name) {
+  const beside = el("input", {
+    type: "checkbox", checked: choice.beside.includes(name), disabled: name === choice.model,
+    "aria-label": "Draw " + name + " beside it",
+    onchange: (event) => {
+      choice.beside = event.target.checked ? [...choice.beside, name] : choice.beside.filter((other) => other !== name);
+      changed();
+    },
+  });
+  const chosen = el("input", { type: "radio", name: "model", checked: name === choice.model, onchange: () => workOn(name) });
+  return el("li", {}, el("label", { className: "name" }, chosen, el("span", {}, name)), el("label", { className: "beside", title: "Draw it beside the model that is worked on" }, beside, "beside"));
+}
+
+const kRoles = [["train", "train"], ["judge", "held back"], ["off", "leave out"]];
+
+function recordRow(name) {
+  const select = el("select", {
+    "aria-label": "Role of " + name,
+    onchange: (event) => {
+      choice.roles[name] = event.target.value;
+      changed();
+    },
+  }, ...kRoles.map(([value, text]) => el("option", { value, selected: choice.roles[name] === value }, text)));
+  return el("li", { className: "role-" + choice.roles[name] }, el("span", { className: "name" }, name), select);
+}
+
+function group(title, rows, empty) {
+  return el("section", {}, el("h2", {}, title), rows.length ? el("ul", {}, ...rows) : el("p", { className: "soft" }, empty));
+}
+
+function render() {
+  document.getElementById("folder").textContent = choice.folder;
+  const place = document.getElementById("choice");
+  const focused = document.activeElement && place.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
+  const input = el("input", { type: "file", multiple: true, id: "add-files", className: "hidden", onchange: (event) => take(event.target.files) });
+  const drop = el("div", { className: "drop" }, el("button", { type: "button", onclick: () => input.click() }, "Add files…"), el("span", { className: "soft" }, "or drop them anywhere"), input);
+  const logs = namesOf("log");
+  place.replaceChildren(
+    drop,
+    group("Models", namesOf("model").map(modelRow), "None yet: identify writes one, or drop a .toml."),
+    group("Records", namesOf("record").map(recordRow), "None yet: drop a .csv."),
+    ...(logs.length ? [group("Other logs", logs.map((name) => el("li", {}, el("span", { className: "name" }, name), el("code", {}, "axistool open " + name + " -o records"))), "")] : [])
+  );
+  if (focused) place.querySelector('[aria-label="' + CSS.escape(focused) + '"]')?.focus();
+}
+
+export function acceptDrops() {
+  const hold = (event) => {
+    if (![...event.dataTransfer.types].includes("Files")) return;
+    event.preventDefault();
+    document.body.classList.toggle("dropping", event.type === "dragover");
+    if (event.type === "drop") take(event.dataTransfer.files);
+  };
+  for (const type of ["dragover", "dragleave", "drop"]) document.addEventListener(type, hold);
+}

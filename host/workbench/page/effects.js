@@ -1,0 +1,183 @@
+// Which effect is missing, as cards in the order of their probability; a click adds one, and the error falls.
+import { choice, chosenRecords, workOn } from "./choice.js";
+import { showComparison } from "./compare.js";
+import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
+import { fileAddress, get, report } from "./exchange.js";
+import { errorBars, errorTable, parameterTable, probabilityBar } from "./figures.js";
+import { begin, jobs, whole } from "./jobs.js";
+import { forgetPlots, partsOf, showBlocks } from "./report_parts.js";
+
+const kLeastGain = 0.05; // of the error; less changes nothing
+const documents = new Map(); // of jobs that are done: they do not change
+let catalogue = null;
+let next = []; // kinds of a set that are still to be added, one after the other
+let accepted = [];
+let shown = 0;
+
+async function documentOf(job) {
+  if (!documents.has(job.id)) documents.set(job.id, (await whole(job)).document || {});
+  return documents.get(job.id);
+}
+
+/** All of axis-effects/1, fetched once. */
+export async function effects() {
+  catalogue ??= (await get("/api/effects")).effects;
+  return catalogue;
+}
+
+function titleOf(kinds) {
+  return kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ");
+}
+
+const madeBy = (model) => jobs.find((job) => job.state === "done" && job.model === model);
+
+/** The jobs that led to a model, first one first. */
+function stepsTo(model) {
+  const steps = [];
+  for (let job = madeBy(model); job && !steps.includes(job); job = madeBy(job.request.model)) steps.unshift(job);
+  return steps;
+}
+
+function request(task) {
+  return { do: task, model: choice.model, ...chosenRecords(), accept: accepted };
+}
+
+const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+const sameRecords = (job) => isSame([job.request.train, job.request.validate], Object.values(chosenRecords()));
+
+/** @param {string} kind */
+export function add(kind) {
+  return begin({ ...request("add"), kind });
+}
+
+/** When a job has ended: the new model is worked on, and the rest of a set follows. @param {any[]} ended */
+export async function follow(ended) {
+  for (const job of ended) {
+    if (job.state === "failed") notice(job.message);
+    if (job.state !== "done") next = [];
+    if (job.state !== "done" || !job.model || job.request.model !== choice.model) continue;
+    if ((await documentOf(job)).kept === "given") {
+      next = [];
+      notice("Held-back records would be predicted worse: the model stays as it was.");
+      continue;
+    }
+    await workOn(job.model);
+    if (next.length) await add(next.shift());
+  }
+}
+
+function undo() {
+  const made = madeBy(choice.model);
+  if (!made) return notice("Nothing to undo: this model was not made here.");
+  workOn(made.request.model);
+}
+
+async function ladder(place, steps) {
+  const rows = [];
+  for (const job of steps) {
+    const told = await documentOf(job);
+    const row = (label, error) => ({ label, train: error.train.combined, validate: error.validate.combined });
+    if (!rows.length) rows.push(row(job.request.model, told.error.given));
+    if (job.request.do === "add") rows.push(row("+ " + titleOf([job.request.kind]), told.error.after));
+    else for (const step of told.ladder.filter((one) => one.added.length)) rows.push(row("+ " + titleOf(step.added), step.error));
+  }
+  const last = steps.at(-1), told = await documentOf(last);
+  place.append(el("div", { className: "row" }, el("h2", {}, "The ladder so far"),
+    el("button", { type: "button", id: "undo", title: "Key U", onclick: undo }, "Undo: back to " + last.request.model)));
+  if (told.kept === "given") place.append(el("p", { className: "lead" }, "The last step predicts held-back records worse: " + last.model + " holds the model as it was."));
+  place.append(el("div", { className: "pair" }, errorBars(rows), errorTable(told.error.given, told.error.after)));
+  if (told.parameters) place.append(parameterTable(told.parameters));
+  place.append(commandLine(last.command));
+}
+
+function card(candidate, told) {
+  const info = catalogue.find((one) => one.kind === candidate.kinds.at(-1));
+  const click = () => {
+    next = candidate.kinds.slice(1);
+    add(candidate.kinds[0]);
+  };
+  const found = told.verdict.effects.includes(candidate.kinds[0]) && candidate.kinds.every((kind) => told.verdict.effects.includes(kind));
+  return el("li", { className: found ? "card found" : "card", "data-kinds": candidate.kinds.join(" ") },
+    el("h3", {}, titleOf(candidate.kinds)), probabilityBar(candidate.probability),
+    el("p", { className: "soft" }, "Held-back error " + short(candidate.before) + " → " + short(candidate.after) + " × noise floor" + (candidate.luck < 1 ? "; by chance with p = " + short(candidate.luck) : "")),
+    el("p", {}, info ? info.shows.split(". ")[0] + "." : ""),
+    candidate.confused_with.length ? el("p", { className: "soft" }, "Easily taken for: " + candidate.confused_with.map((kind) => titleOf([kind])).join(", ")) : null,
+    el("div", { className: "row" }, el("button", { type: "button", className: "primary", onclick: click }, "Add it"), el("a", { href: "#gallery/" + candidate.kinds.at(-1) }, "About it")));
+}
+
+function plainCard(title, share, text) {
+  return el("li", { className: "card plain" }, el("h3", {}, title), probabilityBar(share), el("p", {}, text));
+}
+
+function cards(told) {
+  const gains = (one) => one.after < (1 - kLeastGain) * one.before;
+  const verdict = told.verdict;
+  const useful = told.candidates.filter((one) => gains(one) || one.probability >= 0.01), rest = told.candidates.filter((one) => !useful.includes(one));
+  const list = useful.map((one) => card(one, told));
+  if (verdict.probability_other > 0) list.push(plainCard("Something else", verdict.probability_other,
+    (verdict.coordinate ? "Most of what is left goes with " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment));
+  if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "What is left would be noise."));
+  const places = [el("h2", {}, "What it could be"), el("ol", { className: "cards", id: "cards" }, ...list)];
+  for (const group of verdict.alternatives) places.push(el("p", { className: "lead" }, "These records cannot tell apart: " + group.map((kind) => titleOf([kind])).join(", ") + "."));
+  if (rest.length) places.push(el("details", {}, el("summary", {}, rest.length + " effects that were tried change nothing"), el("ol", { className: "cards" }, ...rest.map((one) => card(one, told)))));
+  return places;
+}
+
+/** The first panel, then the cards, then all the rest of the report. */
+async function diagnosis(place, job) {
+  const [told, html] = await Promise.all([documentOf(job), report(job.report)]);
+  const parts = partsOf(html);
+  const second = parts.blocks.filter((block) => block.tagName === "H2")[1];
+  const isFirst = (block) => block !== second && !(second && second.compareDocumentPosition(block) & Node.DOCUMENT_POSITION_FOLLOWING);
+  return () => {
+    place.append(parts.verdict ? document.importNode(parts.verdict, true) : "");
+    if (told.verdict.effects.length || told.verdict.coordinate) showBlocks(place, parts, isFirst);
+    place.append(...cards(told), commandLine(job.command), el("p", {}, el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "The whole report on a page of its own")));
+    const more = el("details", {}, el("summary", {}, "Errors, residuals and traces"));
+    more.addEventListener("toggle", () => more.children.length === 1 && showBlocks(more, parts, (block) => !isFirst(block)), { once: true });
+    place.append(more);
+  };
+}
+
+function head() {
+  const ready = choice.model && chosenRecords().train.length;
+  const records = chosenRecords();
+  return [el("div", { className: "row head" }, el("h1", {}, "Effects"),
+    el("button", { type: "button", className: "primary", id: "diagnose", title: "Key D", disabled: !ready, onclick: () => begin(request("diagnose")) }, "Find what is missing"),
+    el("button", { type: "button", disabled: !ready, onclick: () => begin(request("improve")) }, "Add all that are significant")),
+  el("p", { className: "lead" }, ready ? choice.model + ", trained on " + records.train.join(", ") + (records.validate.length ? ", judged on " + records.validate.join(", ") : ", judged on blocks of them that are held back") + "."
+    : "Choose a model and at least one training record.")];
+}
+
+/** @param {Element} place */
+export async function showEffects(place) {
+  const mine = ++shown;
+  await effects();
+  const body = el("div"), steps = stepsTo(choice.model), draw = [];
+  try {
+    if (steps.length) {
+      await ladder(body, steps);
+      const before = steps.at(-1).request.model, records = chosenRecords();
+      const overlay = el("div", { id: "overlay" });
+      const { show } = await showComparison(overlay, [before, choice.model], records.validate.length ? records.validate : records.train);
+      body.append(el("h2", {}, "Before and after, on " + (records.validate.length ? "held-back" : "training") + " records"), overlay);
+      draw.push(show);
+    }
+    const asked = jobs.find((job) => job.request.do === "diagnose" && job.request.model === choice.model && sameRecords(job));
+    if (asked?.state === "done") {
+      const found = el("div", { id: "diagnosis" });
+      body.prepend(found);
+      if (steps.length) body.append(found);
+      draw.push(await diagnosis(found, asked));
+    } else if (asked?.state === "failed")
+      body.append(errorBox(Object.assign(new Error(asked.message), { log: asked.log }), (words) => ((accepted = [...accepted, ...words]), begin(request("diagnose")))));
+  } catch (error) {
+    body.append(errorBox(error));
+  }
+  if (mine !== shown || !place.isConnected) return;
+  forgetPlots();
+  place.replaceChildren(...head(), body);
+  draw.forEach((show) => show());
+}
+
+export const keys = { d: () => document.getElementById("diagnose")?.click(), u: undo };

@@ -1,0 +1,61 @@
+// Errors before and after, as bars and in units of the machine.
+import { el, percent, short } from "./elements.js";
+
+/** Channel, factor and unit that a mechanic reads. @param {string} name */
+function shown(name) {
+  const known = { x_mm: ["position", 1e3, "µm"], x_m: ["position", 1e6, "µm"], w_rad_s: ["speed", 1, "rad/s"], v_m_s: ["speed", 1e3, "mm/s"] };
+  return known[name] || [name, 1, ""];
+}
+
+function change(before, after) {
+  const part = after / before - 1;
+  return (part > 0 ? "+" : "−") + Math.round(100 * Math.abs(part)) + " %";
+}
+
+/**
+ * Combined error over the noise floor of steps, training and held back.
+ * @param {{label: string, train: number, validate: number}[]} steps
+ */
+export function errorBars(steps) {
+  const longest = Math.max(1, ...steps.flatMap((step) => [step.train, step.validate]).filter(isFinite));
+  const bar = (name, value, colour) => el("div", { className: "bar" },
+    el("span", { className: "track" }, el("i", { style: "width:" + (100 * value) / longest + "%;background:var(--" + colour + ")" }), el("i", { className: "reference", style: "left:" + 100 / longest + "%" })),
+    el("span", { className: "value", title: name }, short(value) + " ×"));
+  const rows = steps.map((step) => el("tr", {}, el("th", { scope: "row" }, step.label), el("td", {}, bar("training", step.train, "train"), bar("held back", step.validate, "model"))));
+  const swatch = (colour, text) => el("span", {}, el("i", { className: "swatch", style: "background:var(--" + colour + ")" }), text);
+  return el("figure", { className: "bars" },
+    el("figcaption", {}, el("strong", {}, "Error in multiples of the noise floor"), el("span", {}, "All channels together; 1 is what a perfect model leaves.")),
+    el("div", { className: "legend" }, swatch("train", "training"), swatch("model", "held back"), el("span", {}, el("i", { className: "swatch line" }), "noise floor")),
+    el("table", {}, ...rows));
+}
+
+/** Of every channel, before and after. @param {any} given @param {any} after each { train, validate } of figures */
+export function errorTable(given, after) {
+  const rows = [];
+  for (const [set, title] of [["train", "training"], ["validate", "held back"]])
+    for (const [name, channel] of Object.entries(after[set]?.channels || {})) {
+      const before = given[set]?.channels?.[name];
+      const [quantity, factor, unit] = shown(name);
+      const value = (figures) => short(factor * figures.rms) + " " + unit + (figures.share === null || figures.share === undefined ? "" : " (" + short(100 * figures.share) + " %)");
+      rows.push(el("tr", {}, el("td", {}, title), el("td", {}, quantity), el("td", { className: "number" }, before ? value(before) : "–"), el("td", { className: "number" }, value(channel)),
+        el("td", { className: "number" }, before ? change(before.rms, channel.rms) : ""), el("td", { className: "number" }, short(factor * channel.floor) + " " + unit)));
+    }
+  const heads = ["records", "channel", "before", "after", "change", "noise floor"].map((text) => el("th", { scope: "col" }, text));
+  return el("figure", { className: "table" }, el("figcaption", {}, el("strong", {}, "Error in units of the machine"), el("span", {}, "RMS, and share of the signal.")),
+    el("div", { className: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), el("tbody", {}, ...rows))));
+}
+
+/** What was fitted. @param {any[]} parameters of axis-addition/1 */
+export function parameterTable(parameters) {
+  const k95 = 1.96;
+  const rows = parameters.map((one) => el("tr", {}, el("td", {}, one.name), el("td", { className: "number" }, String(Number(one.value.toPrecision(5)))),
+    el("td", { className: "number" }, one.determined ? "± " + short(k95 * one.deviation) : "not determined")));
+  const heads = ["parameter", "value", "95 %"].map((text) => el("th", { scope: "col" }, text));
+  return el("figure", { className: "table" }, el("figcaption", {}, el("strong", {}, "Parameters, all fitted again")),
+    el("div", { className: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), el("tbody", {}, ...rows))));
+}
+
+/** @param {number} share 0 to 1 */
+export function probabilityBar(share) {
+  return el("div", { className: "bar" }, el("span", { className: "track" }, el("i", { style: "width:" + 100 * share + "%;background:var(--model)" })), el("span", { className: "value" }, percent(share)));
+}

@@ -1,0 +1,36 @@
+// The catalogue: what each effect does, what it is confused with, what tells them apart, and what can be done.
+import { choice } from "./choice.js";
+import { el } from "./elements.js";
+import { add, effects } from "./effects.js";
+
+const kStages = { command: "Command and current loop", motor: "Motor", load: "Torques on the shaft", friction: "Friction", mechanics: "Masses and what connects them", encoder: "Encoder", tachometer: "Tachometer" };
+
+function entry(info, catalogue) {
+  const link = (kind) => el("a", { href: "#gallery/" + kind }, catalogue.find((one) => one.kind === kind)?.title || kind);
+  const term = (name, ...what) => [el("dt", {}, name), el("dd", {}, ...what)];
+  const confused = info.confused_with.flatMap((kind, k) => (k ? [", ", link(kind)] : [link(kind)]));
+  return el("details", { className: "effect", id: "effect-" + info.kind },
+    el("summary", {}, info.title, el("span", { className: "soft" }, " " + info.shows.split(". ")[0] + ".")),
+    el("dl", {},
+      ...term("How it shows", info.shows), ...term("Goes with", info.along.join(", ").replaceAll("_", " ") || "–"), ...term("Equation", el("code", {}, info.equation)),
+      ...term("Where it comes from", info.origin || "–"), ...term("Easily taken for", ...(confused.length ? confused : ["–"])),
+      ...term("What tells them apart", info.separate_by || "–"), ...term("What can be done", info.remedy || "–")),
+    info.base || !choice.model ? null : el("button", { type: "button", onclick: () => add(info.kind) }, "Add it to " + choice.model));
+}
+
+/** @param {Element} place @param {string} [kind] opened */
+export async function showGallery(place, kind) {
+  const catalogue = await effects();
+  const groups = Object.entries(kStages).map(([stage, heading]) => el("section", {}, el("h2", {}, heading), ...catalogue.filter((one) => one.stage === stage).map((one) => entry(one, catalogue))));
+  const filter = (event) => {
+    const words = event.target.value.toLowerCase();
+    for (const info of catalogue) document.getElementById("effect-" + info.kind).hidden = !JSON.stringify(info).toLowerCase().includes(words);
+    for (const group of groups) group.hidden = !group.querySelector("details:not([hidden])");
+  };
+  place.replaceChildren(el("div", { className: "row head" }, el("h1", {}, "Gallery"), el("input", { type: "search", placeholder: "Search, e.g. reversal", "aria-label": "Search the effects", oninput: filter })),
+    el("p", { className: "lead" }, "Every effect that the plant has and that diagnose looks for."), el("div", { className: "gallery" }, ...groups));
+  const opened = kind && document.getElementById("effect-" + kind);
+  if (!opened) return;
+  opened.open = true;
+  opened.scrollIntoView();
+}

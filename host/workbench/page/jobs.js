@@ -1,0 +1,84 @@
+// Long work in the program: asked for, watched, cancelled. The folder keeps it; this is a picture of it.
+import { commandLine, el, notice, percent } from "./elements.js";
+import { fileAddress, get, post } from "./exchange.js";
+
+/** @type {any[]} latest first */
+export let jobs = [];
+const listeners = [];
+const isOpen = (job) => job.state === "queued" || job.state === "running";
+let timer = 0;
+
+/** Called with the jobs that have ended since the last look. @param {(ended: any[]) => void} listener */
+export function onJobs(listener) {
+  listeners.push(listener);
+}
+
+export async function lookAtJobs() {
+  clearTimeout(timer);
+  const before = jobs.filter(isOpen).map((job) => job.id);
+  try {
+    jobs = (await get("/api/jobs")).jobs;
+  } catch (error) {
+    notice(error.message);
+    timer = setTimeout(lookAtJobs, 5000);
+    return;
+  }
+  const ended = jobs.filter((job) => before.includes(job.id) && !isOpen(job));
+  listeners.forEach((listener) => listener(ended));
+  if (jobs.some(isOpen)) timer = setTimeout(lookAtJobs, 500);
+}
+
+/** @param {any} request */
+export async function begin(request) {
+  try {
+    await post("/api/jobs", request);
+  } catch (error) {
+    notice(error.message);
+  }
+  await lookAtJobs();
+}
+
+/** @param {any} job */
+export async function cancel(job) {
+  await post("/api/jobs/" + job.id + "/cancel", {}).catch((error) => notice(error.message));
+  await lookAtJobs();
+}
+
+/** With its document. @param {any} job */
+export function whole(job) {
+  return get("/api/jobs/" + job.id);
+}
+
+const kVerbs = { diagnose: "Searching what is missing", add: "Fitting", improve: "Adding what is significant" };
+
+/** @param {any} job */
+export function titleOf(job) {
+  const kind = job.request.kind ? " " + job.request.kind.replaceAll("_", " ") : "";
+  return (kVerbs[job.request.do] || job.request.do) + kind + ": " + job.request.model;
+}
+
+/** A bar for each job that is under way. */
+export function progressBars() {
+  return jobs.filter(isOpen).reverse().map((job) => {
+    const known = job.state === "running" && job.share > 0;
+    return el("div", { className: "progress", id: "progress-" + job.id },
+      el("span", {}, titleOf(job) + (job.state === "queued" ? " (waits)" : known ? " · " + percent(job.share) : "")),
+      el("progress", known ? { max: 1, value: job.share, "aria-label": titleOf(job) } : { "aria-label": titleOf(job) }),
+      el("button", { type: "button", onclick: () => cancel(job) }, "Cancel"));
+  });
+}
+
+/** @param {Element} place */
+export function showJobs(place) {
+  const rows = jobs.map((job) => el("li", { className: "job " + job.state },
+    el("div", { className: "row" }, el("span", { className: "badge" }, job.state), el("strong", {}, titleOf(job)),
+      el("span", { className: "soft" }, new Date(1000 * (job.asked_s || 0)).toLocaleString())),
+    job.message ? el("p", {}, job.message) : null,
+    commandLine(job.command),
+    el("div", { className: "row" },
+      job.state === "done" && job.report ? el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Whole report") : null,
+      isOpen(job) ? el("button", { type: "button", onclick: () => cancel(job) }, "Cancel") : el("button", { type: "button", onclick: () => begin(job.request) }, "Run again"))));
+  place.replaceChildren(el("h1", {}, "Jobs"),
+    el("p", { className: "lead" }, "What was computed here, latest first. Results lie in the folder, in “workbench”; models beside the one that they came from."),
+    rows.length ? el("ol", { className: "jobs" }, ...rows) : el("p", { className: "soft" }, "None yet."));
+}

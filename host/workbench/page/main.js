@@ -1,0 +1,69 @@
+// The page: views by their address, keys, and what makes them draw again.
+import { acceptDrops, loadFolder, onChoice } from "./choice.js";
+import { showCompare } from "./compare.js";
+import { el, errorBox } from "./elements.js";
+import { follow, keys, showEffects } from "./effects.js";
+import { showGallery } from "./gallery.js";
+import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
+import { forgetPlots } from "./report_parts.js";
+
+const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs]];
+const content = el("div", { id: "content" }), progress = el("div", { id: "progress" });
+
+const address = () => location.hash.slice(1).split("/");
+const isShown = (name) => (address()[0] || "compare") === name;
+
+function links() {
+  document.getElementById("views").replaceChildren(...kViews.map(([name, text], index) =>
+    el("a", { href: "#" + name, title: "Key " + (index + 1), ...(isShown(name) ? { "aria-current": "page" } : {}) }, text)));
+}
+
+async function show() {
+  const [name, detail] = address();
+  const view = kViews.find((one) => one[0] === name) || kViews[0];
+  links();
+  try {
+    await view[2](content, detail);
+  } catch (error) {
+    forgetPlots();
+    content.replaceChildren(errorBox(error));
+  }
+}
+
+function goTo() {
+  forgetPlots();
+  content.replaceChildren();
+  show();
+  window.scrollTo(0, 0);
+}
+
+function pressed(event) {
+  if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("input:not([type=radio]):not([type=checkbox]), select, textarea")) return;
+  const view = kViews[Number(event.key) - 1];
+  if (view) location.hash = view[0];
+  else if (isShown("effects")) keys[event.key]?.();
+}
+
+async function start() {
+  if (location.search) history.replaceState(null, "", "/" + location.hash); // the token is in the cookie now
+  document.getElementById("view").replaceChildren(progress, content);
+  acceptDrops();
+  onChoice(() => !isShown("jobs") && show());
+  onJobs(async (ended) => {
+    progress.replaceChildren(...progressBars());
+    await follow(ended);
+    if (isShown("jobs") || (ended.length && isShown("effects"))) show();
+    if (ended.length) await loadFolder();
+  });
+  window.addEventListener("hashchange", goTo);
+  document.addEventListener("keydown", pressed);
+  try {
+    await loadFolder();
+    await lookAtJobs();
+    await show();
+  } catch (error) {
+    content.replaceChildren(errorBox(error));
+  }
+}
+
+start();

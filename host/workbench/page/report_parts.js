@@ -1,0 +1,60 @@
+// The reports of the commands as parts of this page: the same blocks and the same plots, drawn by the same script.
+
+/**
+ * @typedef {{verdict: Element|null, blocks: Element[], plots: any[]}} ReportParts
+ * @param {string} html a report that the program wrote @returns {ReportParts}
+ */
+export function partsOf(html) {
+  const page = new DOMParser().parseFromString(html, "text/html");
+  const carried = page.getElementById("plots");
+  return {
+    verdict: page.querySelector("main > .verdict"),
+    blocks: [...(page.querySelector("main > .blocks")?.children || [])],
+    plots: carried ? JSON.parse(carried.textContent) : [],
+  };
+}
+
+let drawn = [];
+
+/** Takes away all plots: called before a view goes. */
+export function forgetPlots() {
+  drawn.forEach((forget) => forget());
+  drawn = [];
+}
+
+/**
+ * Puts the blocks into the page and draws their plots. Frames lose their ids: several reports may stand in one view.
+ * @param {Element} place @param {ReportParts} parts @param {(block: Element) => boolean} [wanted]
+ */
+export function showBlocks(place, parts, wanted = () => true) {
+  const frames = [], plots = [];
+  const box = document.createElement("div");
+  box.className = "blocks";
+  for (const block of parts.blocks) {
+    if (!wanted(block)) continue;
+    box.append(document.importNode(block, true));
+  }
+  place.append(box);
+  for (const frame of box.querySelectorAll("[id^=plot-]")) {
+    frames.push(frame);
+    plots.push(parts.plots[Number(frame.id.slice(5))]);
+    frame.removeAttribute("id");
+  }
+  drawn.push(window.axisPlots.draw(plots, frames));
+  return box;
+}
+
+/** Links to the sections of the boxes. @param {Element[]} boxes */
+export function sectionLinks(boxes) {
+  const list = document.createElement("nav");
+  list.className = "sections";
+  list.setAttribute("aria-label", "Sections");
+  for (const heading of boxes.flatMap((box) => [...box.querySelectorAll("h2")])) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = heading.textContent;
+    button.addEventListener("click", () => heading.scrollIntoView({ behavior: "smooth" }));
+    list.append(button);
+  }
+  return list;
+}

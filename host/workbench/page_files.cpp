@@ -1,0 +1,48 @@
+#include "host/workbench/page_files.hpp"
+
+#include "host/embedded_file.hpp"
+#include "host/report/assets.hpp"
+
+AXIS_EMBED(axis_workbench_index, AXIS_PAGE_DIR "/index.html");
+AXIS_EMBED(axis_workbench_style, AXIS_PAGE_DIR "/workbench.css");
+AXIS_EMBED(axis_workbench_main, AXIS_PAGE_DIR "/main.js");
+AXIS_EMBED(axis_workbench_elements, AXIS_PAGE_DIR "/elements.js");
+AXIS_EMBED(axis_workbench_exchange, AXIS_PAGE_DIR "/exchange.js");
+AXIS_EMBED(axis_workbench_choice, AXIS_PAGE_DIR "/choice.js");
+AXIS_EMBED(axis_workbench_compare, AXIS_PAGE_DIR "/compare.js");
+AXIS_EMBED(axis_workbench_effects, AXIS_PAGE_DIR "/effects.js");
+AXIS_EMBED(axis_workbench_figures, AXIS_PAGE_DIR "/figures.js");
+AXIS_EMBED(axis_workbench_gallery, AXIS_PAGE_DIR "/gallery.js");
+AXIS_EMBED(axis_workbench_jobs, AXIS_PAGE_DIR "/jobs.js");
+AXIS_EMBED(axis_workbench_report_parts, AXIS_PAGE_DIR "/report_parts.js");
+
+namespace host::workbench {
+
+const std::vector<PageFile>& page_files() {
+  constexpr std::string_view kScript = "text/javascript; charset=utf-8", kStyle = "text/css; charset=utf-8";
+#define AXIS_PAGE_FILE(SYMBOL) embedded_file(axis_workbench_##SYMBOL##_begin, axis_workbench_##SYMBOL##_end)
+  static const std::vector<PageFile> files{
+      {"index.html", "text/html; charset=utf-8", AXIS_PAGE_FILE(index)},
+      {"workbench.css", kStyle, AXIS_PAGE_FILE(style)},
+      {"main.js", kScript, AXIS_PAGE_FILE(main)},
+      {"elements.js", kScript, AXIS_PAGE_FILE(elements)},
+      {"exchange.js", kScript, AXIS_PAGE_FILE(exchange)},
+      {"choice.js", kScript, AXIS_PAGE_FILE(choice)},
+      {"compare.js", kScript, AXIS_PAGE_FILE(compare)},
+      {"effects.js", kScript, AXIS_PAGE_FILE(effects)},
+      {"figures.js", kScript, AXIS_PAGE_FILE(figures)},
+      {"gallery.js", kScript, AXIS_PAGE_FILE(gallery)},
+      {"jobs.js", kScript, AXIS_PAGE_FILE(jobs)},
+      {"report_parts.js", kScript, AXIS_PAGE_FILE(report_parts)},
+      {"dygraphs.js", kScript, assets::dygraphs_script()},
+      {"synchronizer.js", kScript, assets::synchronizer_script()},
+      {"dygraphs.css", kStyle, assets::dygraphs_style()},
+      {"heat_map.js", kScript, assets::heat_map_script()},
+      {"report.js", kScript, assets::report_script()},
+      {"report.css", kStyle, assets::report_style()},
+  };
+#undef AXIS_PAGE_FILE
+  return files;
+}
+
+}  // namespace host::workbench

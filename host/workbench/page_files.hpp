@@ -1,0 +1,18 @@
+// The page's own files, which the program carries within itself.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace host::workbench {
+
+struct PageFile {
+  std::string_view name;  ///< "main.js"
+  std::string_view type;  ///< "text/javascript; charset=utf-8"
+  std::string_view text;
+};
+
+/// The page itself first.
+const std::vector<PageFile>& page_files();
+
+}  // namespace host::workbench

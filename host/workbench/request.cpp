@@ -1,0 +1,165 @@
+#include "host/workbench/request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <utility>
+
+#include "host/exit_codes.hpp"
+#include "host/report/text_format.hpp"
+#include "host/workbench/folder.hpp"
+
+namespace host::workbench {
+
+namespace {
+
+constexpr std::size_t kMostNames = 500;
+constexpr std::array kTasks{std::pair{"compare", Task::compare}, std::pair{"diagnose", Task::diagnose},
+                            std::pair{"add", Task::add}, std::pair{"improve", Task::improve}};
+
+[[noreturn]] void refuse(const std::string& field, const std::string& what) {
+  throw Failure(ExitCode::usage, fmt::format("request, \"{}\": {}", field, what));
+}
+
+nlohmann::json object_of(std::string_view text) {
+  if (text.size() > kLongestRequest)
+    throw Failure(ExitCode::usage, fmt::format("request: longer than {} bytes", kLongestRequest));
+  nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+  if (!document.is_object()) throw Failure(ExitCode::usage, "request: a JSON object belongs here");
+  return document;
+}
+
+void require_known(const nlohmann::json& object, std::initializer_list<std::string_view> known) {
+  for (const auto& item : object.items())
+    if (std::ranges::find(known, item.key()) == known.end()) refuse(item.key(), "no such field");
+}
+
+std::string text_of(const nlohmann::json& object, const std::string& field) {
+  const auto found = object.find(field);
+  if (found == object.end()) return "";
+  if (!found->is_string()) refuse(field, "a text belongs here");
+  return found->get<std::string>();
+}
+
+/// Lower-case words of the catalogue and of the log's faults.
+std::string word_of(const std::string& text, const std::string& field) {
+  constexpr std::size_t kLongestWord = 60;
+  const bool is_word = text.size() <= kLongestWord &&
+                       std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+  if (!is_word) refuse(field, "a word of small letters and _ belongs here");
+  return text;
+}
+
+std::string file_of(const std::string& name, const std::string& field) {
+  if (!is_plain_name(name)) refuse(field, "the name of a file below the folder belongs here");
+  return name;
+}
+
+template <typename Check>
+std::vector<std::string> list_of(const nlohmann::json& object, const std::string& field, Check check) {
+  std::vector<std::string> texts;
+  const auto found = object.find(field);
+  if (found == object.end()) return texts;
+  if (!found->is_array() || found->size() > kMostNames) refuse(field, "a list of names belongs here");
+  for (const nlohmann::json& item : *found) {
+    if (!item.is_string()) refuse(field, "a list of names belongs here");
+    texts.push_back(check(item.get<std::string>(), field));
+  }
+  return texts;
+}
+
+std::string options_of(const char* option, const std::vector<std::string>& values, bool one_by_one = false) {
+  std::string text = values.empty() || one_by_one ? "" : fmt::format(" {}", option);
+  for (const std::string& value : values)
+    text += fmt::format("{} {}", one_by_one ? fmt::format(" {}", option) : "", shell_word(value));
+  return text;
+}
+
+std::string output_option(const char* option, const std::string& name) {
+  return name.empty() ? "" : fmt::format(" {} {}", option, shell_word(name));
+}
+
+}  // namespace
+
+std::string_view task_name(Task task) {
+  return std::ranges::find(kTasks, task, &std::pair<const char*, Task>::second)->first;
+}
+
+Request parse_request(std::string_view text) {
+  const nlohmann::json document = object_of(text);
+  const std::string name = text_of(document, "do");
+  const auto* const task = std::ranges::find(kTasks, name, &std::pair<const char*, Task>::first);
+  if (task == kTasks.end()) refuse("do", "compare, diagnose, add or improve belongs here");
+  Request request;
+  request.task = task->second;
+  if (request.task == Task::compare) {
+    require_known(document, {"do", "models", "records", "accept"});
+    request.models = list_of(document, "models", file_of);
+    request.train = list_of(document, "records", file_of);
+  } else {
+    require_known(document, {"do", "model", "train", "validate", "accept", "absent", "kind", "over"});
+    request.models = {file_of(text_of(document, "model"), "model")};
+    request.train = list_of(document, "train", file_of);
+    request.validate = list_of(document, "validate", file_of);
+    request.absent = list_of(document, "absent", word_of);
+    request.kind = word_of(text_of(document, "kind"), "kind");
+    request.over = word_of(text_of(document, "over"), "over");
+  }
+  request.accepted = list_of(document, "accept", word_of);
+  if (request.models.empty()) refuse("models", "at least one model belongs here");
+  if (request.train.empty())
+    refuse(request.task == Task::compare ? "records" : "train", "at least one record belongs here");
+  if ((request.task == Task::add) == request.kind.empty()) refuse("kind", "add needs an effect, and it alone");
+  if (request.task != Task::add && !request.over.empty()) refuse("over", "belongs to add");
+  if (request.task == Task::add && !request.absent.empty()) refuse("absent", "belongs to diagnose and improve");
+  return request;
+}
+
+nlohmann::json parse_choice(std::string_view text) {
+  const nlohmann::json document = object_of(text);
+  require_known(document, {"model", "beside", "roles"});
+  nlohmann::json choice = {{"model", nullptr}, {"beside", list_of(document, "beside", file_of)}};
+  if (const std::string model = text_of(document, "model"); !model.empty()) choice["model"] = file_of(model, "model");
+  choice["roles"] = nlohmann::json::object();
+  const auto roles = document.find("roles");
+  if (roles == document.end()) return choice;
+  if (!roles->is_object() || roles->size() > kMostNames) refuse("roles", "an object of names and roles belongs here");
+  for (const auto& item : roles->items()) {
+    const nlohmann::json& role = item.value();
+    if (role != "train" && role != "judge" && role != "off") refuse("roles", "train, judge or off belongs here");
+    choice["roles"][file_of(item.key(), "roles")] = role;
+  }
+  return choice;
+}
+
+nlohmann::json to_json(const Request& request) {
+  nlohmann::json document = {{"do", task_name(request.task)}, {"accept", request.accepted}};
+  if (request.task == Task::compare) {
+    document["models"] = request.models;
+    document["records"] = request.train;
+    return document;
+  }
+  document["model"] = request.models.front();
+  document["train"] = request.train;
+  document["validate"] = request.validate;
+  if (!request.absent.empty()) document["absent"] = request.absent;
+  if (!request.kind.empty()) document["kind"] = request.kind;
+  if (!request.over.empty()) document["over"] = request.over;
+  return document;
+}
+
+std::string command_line(const Request& request, const Outputs& outputs) {
+  std::string line = fmt::format("axistool {}", task_name(request.task));
+  for (const std::string& model : request.models) line += fmt::format(" {}", shell_word(model));
+  if (!request.kind.empty()) line += fmt::format(" {}", shell_word(request.kind));
+  if (request.task != Task::compare) line += " --train";
+  for (const std::string& record : request.train) line += fmt::format(" {}", shell_word(record));
+  line += options_of("--validate", request.validate) + options_of("--absent", request.absent);
+  line += options_of("--accept", request.accepted, true);
+  line += output_option("--over", request.over) + output_option("-o", outputs.model);
+  return line + output_option("--json", outputs.json) + output_option("--report", outputs.report);
+}
+
+}  // namespace host::workbench

@@ -1,0 +1,45 @@
+// What the page asks for, as JSON, and the command that does the same.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace host::workbench {
+
+enum class Task { compare, diagnose, add, improve };
+
+std::string_view task_name(Task task);
+
+/// A task on files of the folder: { "do": "add", "model": "x.toml", "kind": "cogging", "train": [...], "validate":
+/// [...], "accept": [...] }; compare has "models" and "records".
+struct Request {
+  Task task = Task::compare;
+  std::vector<std::string> models;  ///< one, but for compare
+  std::vector<std::string> train;   ///< all records of a comparison
+  std::vector<std::string> validate, accepted, absent;
+  std::string kind, over;  ///< of add
+};
+
+inline constexpr std::size_t kLongestRequest = 64 * 1024;
+
+/// Throws Failure(usage) naming the field and what belongs there; names are plain (is_plain_name), the files may be
+/// missing.
+Request parse_request(std::string_view text);
+
+/// What is chosen on the page: { "model": NAME, "beside": [NAME...], "roles": { NAME: "train"|"judge"|"off" } }. The
+/// same again, checked.
+nlohmann::json parse_choice(std::string_view text);
+
+nlohmann::json to_json(const Request& request);
+
+/// Where the results go. Empty names are left out.
+struct Outputs {
+  std::string model, json, report;
+};
+
+/// To paste into a shell in the folder.
+std::string command_line(const Request& request, const Outputs& outputs);
+
+}  // namespace host::workbench

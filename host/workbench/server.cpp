@@ -1,0 +1,278 @@
+#include "host/workbench/server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "host/atomic_file.hpp"
+#include "host/cancellation.hpp"
+#include "host/evidence/log_faults.hpp"
+#include "host/exit_codes.hpp"
+#include "host/input_limits.hpp"
+#include "host/read_file.hpp"
+#include "host/report/effect_pages.hpp"
+#include "host/workbench/access.hpp"
+#include "host/workbench/actions.hpp"
+#include "host/workbench/folder.hpp"
+#include "host/workbench/jobs.hpp"
+#include "host/workbench/page_files.hpp"
+#include "host/workbench/request.hpp"
+
+namespace host::workbench {
+
+namespace {
+
+using httplib::ContentReader;
+using Query = httplib::Request;
+using httplib::Response;
+using Clock = std::chrono::steady_clock;
+
+enum Status { ok = 200, bad_request = 400, forbidden = 403, not_found = 404, too_large = 413, refused = 422 };
+
+/// Slow clients hold a thread each; a new connection shall still find one.
+constexpr std::size_t kThreads = 64;
+constexpr time_t kPatience_s = 5;
+constexpr std::chrono::seconds kLongestBody(10), kLongestUpload(600);
+
+/// Nothing but the page's own files is loaded, and no script stands in what it shows.
+constexpr const char* kPagePolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; connect-src "
+    "'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// A report carries its scripts within itself. It is given an origin of its own, from which nothing here can be asked.
+constexpr const char* kReportPolicy =
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
+
+std::string text_of(const nlohmann::json& document) {
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+void send(Response& response, const nlohmann::json& document, int status = ok) {
+  response.status = status;
+  response.set_content(text_of(document), "application/json");
+}
+
+int status_of(ExitCode code) {
+  if (code == ExitCode::usage) return bad_request;
+  return code == ExitCode::permission ? forbidden : refused;
+}
+
+/// Whatever `work` throws becomes an answer.
+template <typename Work>
+void answer(Response& response, Work work) {
+  try {
+    work();
+  } catch (const FaultyLog& faulty) {
+    send(response, {{"error", faulty.what()}, {"log", log_faults_json(faulty.faults)}}, refused);
+  } catch (const Failure& failure) {
+    send(response, {{"error", failure.what()}}, status_of(failure.code));
+  } catch (const std::exception& error) {
+    send(response, {{"error", error.what()}}, refused);
+  }
+}
+
+/// Read here and not by the library: it ends at the limit, and a client that sends a byte now and then has its time.
+std::optional<std::string> body_of(const ContentReader& content, Response& response) {
+  std::string body;
+  const Clock::time_point until = Clock::now() + kLongestBody;
+  content([&](const char* data, std::size_t size) {
+    body.append(data, size);
+    return body.size() <= kLongestRequest && Clock::now() < until;
+  });
+  if (body.size() <= kLongestRequest && Clock::now() < until) return body;
+  send(response, {{"error", fmt::format("a request has {} bytes at most", kLongestRequest)}}, too_large);
+  return std::nullopt;
+}
+
+nlohmann::json document_or_null(const Folder& folder, const std::string& name) {
+  try {
+    return parse_choice(read_file(folder.existing(name)));
+  } catch (const Failure&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+struct Server::Parts {
+  Folder folder;
+  Jobs jobs{folder};
+  httplib::Server http;
+  int port = 0;
+  std::optional<Access> access;
+  std::mutex comparing;
+  std::atomic<bool> is_ending = false, has_ended = false;
+
+  using Handled = httplib::Server::HandlerResponse;
+
+  Handled guard(const Query& request, Response& response) const {
+    response.set_header("X-Content-Type-Options", "nosniff");
+    response.set_header("Referrer-Policy", "no-referrer");
+    response.set_header("Cache-Control", "no-store");
+    response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+    const bool is_opened =
+        request.path == "/" && request.has_param("token") && access->is_token(request.get_param_value("token"));
+    const bool is_known = is_opened || access->has_cookie(request.get_header_value("Cookie"));
+    if (is_known && access->is_own_host(request.get_header_value("Host")) &&
+        (request.method == "GET" || access->is_own_origin(request.get_header_value("Origin")))) {
+      if (is_opened) response.set_header("Set-Cookie", access->cookie());
+      return Handled::Unhandled;
+    }
+    response.status = forbidden;
+    response.set_content("Not yours: open the address that axistool serve printed.\n", "text/plain");
+    return Handled::Handled;
+  }
+
+  static void send_page(const PageFile& file, Response& response) {
+    response.set_header("Content-Security-Policy", kPagePolicy);
+    response.set_content(file.text.data(), file.text.size(), std::string(file.type));
+  }
+
+  void send_file(const Query& request, Response& response) const {
+    const std::string name = folder.existing(request.get_param_value("name"));
+    const bool is_report = name.ends_with(".html");
+    response.set_header("Content-Security-Policy", kReportPolicy);
+    if (!is_report) response.set_header("Content-Disposition", "attachment");
+    response.set_content(read_file(name, kLogSize),
+                         is_report ? "text/html; charset=utf-8" : "application/octet-stream");
+  }
+
+  void send_folder(Response& response) const {
+    nlohmann::json files = nlohmann::json::array();
+    for (const FolderFile& file : folder.files())
+      files.push_back({{"name", file.name}, {"kind", file.kind}, {"bytes", file.bytes}});
+    send(response, {{"folder", folder.root().string()},
+                    {"files", std::move(files)},
+                    {"choice", document_or_null(folder, std::string(kOwnFolder) + "/choice.json")}});
+  }
+
+  void take_upload(const Query& request, Response& response, const ContentReader& content) const {
+    Upload upload(folder, request.get_param_value("name"));
+    const Clock::time_point until = Clock::now() + kLongestUpload;
+    const bool whole = content([&](const char* data, std::size_t size) {
+      return !is_ending && Clock::now() < until && upload.append(data, size);
+    });
+    if (whole) return send(response, {{"name", upload.finish()}});
+    send(response, {{"error", fmt::format("a file has {} MiB at most", kLogSize.bytes / kMebibyte)}}, too_large);
+  }
+
+  void send_comparison(const Request& request, Response& response) {
+    if (request.task != Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare belongs here");
+    const std::lock_guard one_at_a_time(comparing);
+    const CancelledBy scope(&is_ending);
+    Comparison comparison = compare(folder, request);
+    send(response, {{"command", command_line(request, {})},
+                    {"document", std::move(comparison.document)},
+                    {"report", std::move(comparison.report)},
+                    {"text", std::move(comparison.text)}});
+  }
+
+  void submit(const Request& request, Response& response) {
+    if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is no job");
+    send(response, {{"id", jobs.submit(request)}});
+  }
+
+  /// A POST with a JSON body.
+  template <typename Work>
+  void post(const std::string& path, Work work) {
+    http.Post(path, [work](const Query& request, Response& response, const ContentReader& content) {
+      const std::optional<std::string> body = body_of(content, response);
+      if (body) answer(response, [&] { work(request, response, *body); });
+    });
+  }
+
+  template <typename Work>
+  void get(const std::string& path, Work work) {
+    http.Get(path,
+             [work](const Query& request, Response& response) { answer(response, [&] { work(request, response); }); });
+  }
+
+  void add_page() {
+    http.Get("/", [](const Query&, Response& response) { send_page(page_files().front(), response); });
+    for (const PageFile& file : page_files())
+      http.Get("/page/" + std::string(file.name),
+               [&file](const Query&, Response& response) { send_page(file, response); });
+  }
+
+  void add_routes() {
+    get("/api/folder", [this](const Query&, Response& response) { send_folder(response); });
+    get("/api/file", [this](const Query& request, Response& response) { send_file(request, response); });
+    get("/api/effects", [](const Query&, Response& response) { send(response, effects_json()); });
+    get("/api/jobs", [this](const Query&, Response& response) { send(response, jobs.list()); });
+    get(R"(/api/jobs/(\d{1,6}))", [this](const Query& request, Response& response) {
+      const std::optional<nlohmann::json> state = jobs.state(std::stoi(request.matches[1]));
+      state ? send(response, *state) : send(response, {{"error", "no such job"}}, not_found);
+    });
+    post(R"(/api/jobs/(\d{1,6})/cancel)", [this](const Query& request, Response& response, const std::string&) {
+      const bool is_there = jobs.cancel(std::stoi(request.matches[1]));
+      send(response, nlohmann::json::object(), is_there ? ok : not_found);
+    });
+    post("/api/jobs",
+         [this](const Query&, Response& response, const std::string& body) { submit(parse_request(body), response); });
+    post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
+      send_comparison(parse_request(body), response);
+    });
+    post("/api/choice", [this](const Query&, Response& response, const std::string& body) {
+      write_file_atomically(folder.own_file("choice.json"), parse_choice(body).dump(2) + "\n");
+      send(response, nlohmann::json::object());
+    });
+    http.Post("/api/files", [this](const Query& request, Response& response, const ContentReader& content) {
+      answer(response, [&] { take_upload(request, response, content); });
+    });
+  }
+
+  explicit Parts(int wanted_port) {
+    http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+    // One request a connection: what is left unread of a refused one is never taken for another.
+    http.set_keep_alive_max_count(1);
+    http.set_keep_alive_timeout(1);
+    http.set_read_timeout(kPatience_s);
+    http.set_write_timeout(kPatience_s);
+    http.set_payload_max_length(kLogSize.bytes);
+    http.set_tcp_nodelay(true);
+    // Without SO_REUSEPORT, which the library sets by itself: another program could listen on the same port.
+    http.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    http.set_pre_routing_handler([this](const Query& request, Response& response) { return guard(request, response); });
+    add_page();
+    add_routes();
+    const bool is_bound = wanted_port > 0 && http.bind_to_port("127.0.0.1", wanted_port);
+    port = is_bound ? wanted_port : wanted_port > 0 ? -1 : http.bind_to_any_port("127.0.0.1");
+    if (port <= 0)
+      throw Failure(ExitCode::permission,
+                    fmt::format("port {} of 127.0.0.1 is taken or not allowed; name another with --port", wanted_port));
+    access.emplace(random_token(), port);
+  }
+};
+
+Server::Server(int port) : parts_(std::make_unique<Parts>(port)) {}
+Server::~Server() = default;
+
+std::string Server::url() const { return parts_->access->url(); }
+int Server::port() const { return parts_->port; }
+
+void Server::run() {
+  parts_->http.listen_after_bind();
+  parts_->has_ended = true;
+}
+
+void Server::stop() {
+  parts_->is_ending = true;
+  // The library stops what runs already, and only once.
+  for (bool is_told = false; !parts_->has_ended; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    if (is_told || !parts_->http.is_running()) continue;
+    parts_->http.stop();
+    is_told = true;
+  }
+}
+
+}  // namespace host::workbench

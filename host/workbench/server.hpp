@@ -1,0 +1,29 @@
+// The workbench as a browser meets it: pages and JSON over HTTP, for this computer alone.
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace host::workbench {
+
+class Server {
+ public:
+  /// Serves the working directory on 127.0.0.1; port 0 takes a free one. Connections wait from now on. Throws
+  /// Failure(permission) where the port is not to be had.
+  explicit Server(int port);
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+  ~Server();
+
+  std::string url() const;  ///< with the token
+  int port() const;
+
+  void run();   ///< answers until stop()
+  void stop();  ///< of a run() that another thread began; waits for its end
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace host::workbench

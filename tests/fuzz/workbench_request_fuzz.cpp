@@ -1,0 +1,29 @@
+// Any body of a request to the workbench: understood or refused, and what is understood names nothing outside the
+// folder.
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "host/exit_codes.hpp"
+#include "host/workbench/folder.hpp"
+#include "host/workbench/request.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  using namespace host::workbench;
+  try {
+    const Request request = parse_request(text);
+    for (const auto* names : {&request.models, &request.train, &request.validate})
+      for (const std::string& name : *names)
+        if (!is_plain_name(name)) std::abort();
+    if (to_json(parse_request(to_json(request).dump())) != to_json(request)) std::abort();
+    if (command_line(request, {"m.toml", "d.json", "r.html"}).find('\0') != std::string::npos) std::abort();
+  } catch (const host::Failure&) {
+  }
+  try {
+    const nlohmann::json choice = parse_choice(text);
+    if (parse_choice(choice.dump()) != choice) std::abort();
+  } catch (const host::Failure&) {
+  }
+  return 0;
+}

@@ -1,0 +1,182 @@
+#!/usr/bin/python3
+"""The workbench as its user meets it, in a real browser: drop a record, compare, find what is missing, click an effect,
+and the error falls; reload in the middle of a job; dark, wide and narrow; no console message, nothing sideways.
+AXIS_SCREENSHOTS names a folder that keeps what it saw."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.support.ui import WebDriverWait
+except ImportError:
+    print("python3-selenium is not installed: the workbench was not opened in a browser", file=sys.stderr)
+    sys.exit(77)
+if not shutil.which("chromium") or not shutil.which("chromedriver"):
+    print("chromium or chromium-driver is not installed: the workbench was not opened in a browser", file=sys.stderr)
+    sys.exit(77)
+
+PROGRAM = os.environ["AXISTOOL"]
+CASE = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases/single/case-00"  # this machine cogs
+PATIENCE_S = 240
+
+# Drops a file on the page as a hand does; its content comes from a file input that exists for this purpose only.
+DROP = """
+const input = document.getElementById("test-input"), data = new DataTransfer();
+for (const file of input.files) data.items.add(file);
+for (const type of ["dragover", "drop"]) document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
+input.remove();
+"""
+DRAWN = """
+return [...document.querySelectorAll("#content .canvas canvas")].filter((canvas) => canvas.width && [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data].some((value) => value)).length;
+"""
+
+
+class Workbench(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="axis-workbench-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        for name in ("model.toml", "train-jog.csv", "validate.csv"):
+            shutil.copy(CASE / name, self.folder)
+        self.program = subprocess.Popen([PROGRAM, "serve", str(self.folder), "--no-browser"], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(self.end)
+        self.url = self.program.stdout.readline().strip()
+        options = webdriver.ChromeOptions()
+        for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1440,1000",
+                     f"--user-data-dir={tempfile.mkdtemp(dir=self.folder.parent, prefix='axis-profile-')}"):
+            options.add_argument(word)
+        self.addCleanup(shutil.rmtree, options.arguments[-1].split("=")[1], True)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.addCleanup(self.browser.quit)
+        self.browser.set_page_load_timeout(60)
+        self.browser.get(self.url)
+
+    def end(self) -> None:
+        self.program.send_signal(signal.SIGTERM)
+        self.assertEqual(self.program.wait(30), 0, "ends in order")
+        self.assertEqual(self.program.stdout.read(), "", "one line is all that it prints")
+        self.program.stdout.close()
+
+    def until(self, selector: str, patience_s: float = PATIENCE_S):
+        return WebDriverWait(self.browser, patience_s, 0.1).until(
+            lambda browser: next(iter(browser.find_elements(By.CSS_SELECTOR, selector)), None), selector)
+
+    def texts(self, selector: str) -> list[str]:
+        return [element.text for element in self.browser.find_elements(By.CSS_SELECTOR, selector)]
+
+    def click(self, selector: str) -> None:
+        element = self.until(selector)
+        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", element)
+        element.click()
+
+    def drop(self, path: Path) -> None:
+        self.browser.execute_script("const i = document.createElement('input'); i.type = 'file'; i.id = 'test-input'; document.body.append(i);")
+        self.browser.find_element(By.ID, "test-input").send_keys(str(path))
+        self.browser.execute_script(DROP)
+
+    def keep(self, name: str) -> None:
+        """A picture of the whole page, where AXIS_SCREENSHOTS asks for it; and what must hold in any view."""
+        wide = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        self.assertLessEqual(wide, 0, f"{name}: nothing lies beside the page")
+        if not (folder := os.environ.get("AXIS_SCREENSHOTS")):
+            return
+        size = self.browser.get_window_size()
+        height = self.browser.execute_script("return document.documentElement.scrollHeight")
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": size["width"], "height": min(height, 6000), "deviceScaleFactor": 1, "mobile": False})
+        time.sleep(0.5)
+        self.browser.save_screenshot(f"{folder}/{name}.png")
+        self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    def quiet(self) -> None:
+        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [], "no console message")
+
+    def test_from_a_dropped_record_to_an_effect_that_was_added(self) -> None:
+        browser = self.browser
+        self.until("#content .verdict")
+        self.assertNotIn("token", browser.current_url, "the address no longer holds the key")
+        began = time.monotonic()
+        self.drop(CASE / "train-sweep.csv")
+        self.until("[aria-label='Role of train-sweep.csv']")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "train-sweep.csv" in " ".join(self.texts(".command code")))
+        print(f"dropped to compared: {time.monotonic() - began:.2f} s", file=sys.stderr)
+        self.assertGreater(browser.execute_script(DRAWN), 10)
+        titles = " ".join(self.texts("#content figcaption strong"))
+        for title in ("Against speed", "Along the travel", "Against acceleration", "After a reversal", "Over time", "Position and speed"):
+            self.assertIn(title, titles)
+        legends = " ".join(self.texts("#content .legend"))
+        self.assertTrue("forward" in legends and "backward" in legends and "noise floor" in legends, legends)
+        self.keep("compare")
+        self.quiet()
+
+        # Two clicks: find, add.
+        self.click("a[href='#effects']")
+        self.click("#diagnose")
+        self.until(".progress progress")
+        browser.refresh()  # in the middle of the job
+        self.until(".progress progress", 20)
+        first = self.until("#cards .card")
+        self.assertIn("Cogging", first.text)
+        self.keep("effects")
+        self.click("#cards .card button")
+        self.until("#undo")
+        self.until("#overlay .blocks .canvas canvas")
+        self.keep("added")
+        given, after = (json.loads((self.folder / "workbench/0002-add.json").read_text())["error"][which]["validate"]["combined"] for which in ("given", "after"))
+        self.assertLess(after, 0.5 * given)
+        bars = self.texts(".bars .value")
+        self.assertIn(f"{after:.3g} ×", bars)
+        self.assertIn(f"{given:.3g} ×", bars)
+        self.assertTrue((self.folder / "model+cogging.toml").exists())
+        self.assertEqual(browser.execute_script("return document.querySelector('input[name=model]:checked').parentElement.textContent"), "model+cogging.toml")
+        self.quiet()
+
+        # The same figures as the command's, and what was done can be undone.
+        command = next(text for text in self.texts(".command code") if text.startswith("axistool add"))
+        told = json.loads((self.folder / "workbench/0002-add.json").read_text())
+        subprocess.run(command.replace("axistool", PROGRAM, 1), shell=True, cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        self.assertEqual(json.loads((self.folder / "workbench/0002-add.json").read_text()), told)
+        self.click("#undo")
+        self.until("#cards .card.found")
+        self.assertFalse(browser.find_elements(By.ID, "undo"))
+        self.quiet()
+
+    def test_every_view_by_keys_on_every_screen(self) -> None:
+        browser = self.browser
+        self.until("#content .blocks")
+        for width, height, scheme, name in ((1440, 1000, "dark", "dark"), (400, 850, "light", "phone"), (3840, 2160, "light", "4k")):
+            browser.set_window_size(width, height)
+            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+            browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            for key, shown in (("1", "#content .blocks canvas"), ("2", "#diagnose"), ("3", ".effect"), ("4", "#content h1")):
+                browser.find_element(By.TAG_NAME, "body").send_keys(key)
+                self.until(shown)
+                time.sleep(0.3)
+                self.keep(f"{name}-{key}")
+        self.assertEqual(len(browser.find_elements(By.CSS_SELECTOR, ".effect")), 0)
+        browser.get(self.url.split("?")[0] + "#gallery/backlash")
+        self.until("#effect-backlash[open]")
+        self.quiet()
+
+    def test_file_names_are_text(self) -> None:
+        name = "<img src=x onerror=alert(1)>.csv"
+        shutil.copy(CASE / "train-jog.csv", self.folder / name)
+        self.browser.refresh()
+        self.until("[aria-label='Role of " + name + "']")
+        WebDriverWait(self.browser, PATIENCE_S).until(lambda _: "onerror" in " ".join(self.texts(".command code")))
+        self.assertEqual(self.browser.find_elements(By.TAG_NAME, "img"), [])
+        self.quiet()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,121 @@
+// What the page does is what the commands do: the same documents, whatever becomes of the page meanwhile.
+#include "host/workbench/jobs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host/exit_codes.hpp"
+#include "host/read_file.hpp"
+#include "tests/host/axistool/run_axistool.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
+#include "tests/host/workbench/served_folder.hpp"
+
+namespace {
+
+using host::workbench::Folder;
+using host::workbench::Jobs;
+using nlohmann::json;
+
+/// Runs the command line that the page shows; its JSON goes to standard output instead of the file of the job.
+json document_of(const std::string& command) {
+  const std::size_t outputs = command.find(" --json ");
+  const ProgramRun run = run_axistool(
+      command.substr(9, outputs == std::string::npos ? outputs : outputs - 9) + " --json -", "2>/dev/null");
+  return json::parse(run.output, nullptr, false);
+}
+
+const json kAdd = {{"do", "add"},
+                   {"model", "model.toml"},
+                   {"kind", "cogging"},
+                   {"train", {"train-jog.csv"}},
+                   {"validate", {"validate.csv"}}};
+const json kDiagnose = {
+    {"do", "diagnose"}, {"model", "model.toml"}, {"train", {"train-jog.csv"}}, {"validate", {"validate.csv"}}};
+
+TEST(Jobs, AComparisonIsThatOfTheCommand) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  std::filesystem::copy("model.toml", "other.toml");
+  for (const json& models : {json{"model.toml"}, json{"model.toml", "other.toml"}}) {
+    const auto [status, told] = served.post(
+        "/api/compare", json{{"do", "compare"}, {"models", models}, {"records", {"train-jog.csv", "validate.csv"}}});
+    ASSERT_EQ(status, 200) << told;
+    EXPECT_EQ(told["document"]["format"], "axis-comparison/1");
+    EXPECT_EQ(told["document"], document_of(told["command"]));
+    EXPECT_THAT(told["report"].get<std::string>(), testing::HasSubstr("After a reversal"));
+  }
+}
+
+TEST(Jobs, AnAdditionIsThatOfTheCommandAndNeitherReloadNorCrashLosesIt) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  json first;
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  const auto [status, told] = served.post("/api/jobs", kAdd);
+  ASSERT_EQ(status, 200) << told;
+  first = served.ended(told["id"]);
+  ASSERT_EQ(first["state"], "done") << first;
+  EXPECT_EQ(first["model"], "model+cogging.toml");
+  const json& error = first["document"]["error"];
+  EXPECT_LT(error["after"]["validate"]["combined"].get<double>(),
+            0.5 * error["given"]["validate"]["combined"].get<double>())
+      << "this machine cogs";
+  EXPECT_EQ(json::parse(host::read_file("workbench/0001-add.json")), first["document"]);
+  const std::string written = host::read_file("model+cogging.toml");
+  json again = document_of(first["command"]);
+  EXPECT_EQ(again, first["document"]);
+  EXPECT_EQ(host::read_file("model+cogging.toml"), written) << "the same file by the command";
+
+  // Another session on the folder; one of whose jobs was under way when the last one crashed.
+  json crashed = json::parse(host::read_file("workbench/0001.job.json"));
+  crashed["id"] = 2;
+  crashed["state"] = "running";
+  served.folder.write("workbench/0002.job.json", crashed.dump());
+  served.folder.write("workbench/0003.job.json", "{ \"format\": \"axis-job/1\", \"id\": [] }");
+  served.folder.write("workbench/0004.job.json", "damaged");
+  const Folder folder;
+  Jobs jobs(folder);
+  EXPECT_EQ(jobs.state(1)->at("document"), first["document"]);
+  EXPECT_EQ(jobs.state(2)->at("state"), "interrupted");
+  EXPECT_FALSE(jobs.state(3));
+  EXPECT_EQ(jobs.list()["jobs"].size(), 2U);
+}
+
+TEST(Jobs, ACancelledJobEndsAtOnceAndTheNextOneBegins) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  const int running = served.post("/api/jobs", kDiagnose).second["id"];
+  const int waiting = served.post("/api/jobs", kDiagnose).second["id"];
+  const int last = served
+                       .post("/api/jobs",
+                             [] {
+                               json request = kDiagnose;
+                               request["train"] = {"none.csv"};
+                               return request;
+                             }())
+                       .second["id"];
+  EXPECT_EQ(served.post("/api/jobs/" + std::to_string(waiting) + "/cancel", json::object()).first, 200);
+  EXPECT_EQ(served.ended(waiting)["state"], "cancelled");
+  EXPECT_EQ(served.get("/api/jobs/" + std::to_string(running)).second["state"], "running");
+  const auto begun = std::chrono::steady_clock::now();
+  EXPECT_EQ(served.post("/api/jobs/" + std::to_string(running) + "/cancel", json::object()).first, 200);
+  EXPECT_EQ(served.ended(running)["state"], "cancelled");
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(kInstrumented ? 60 : 10));
+  EXPECT_FALSE(std::filesystem::exists("workbench/0001-diagnose.json"));
+  const json failed = served.ended(last);
+  EXPECT_EQ(failed["state"], "failed");
+  EXPECT_THAT(failed["message"].get<std::string>(), testing::HasSubstr("none.csv"));
+  EXPECT_EQ(served.post("/api/jobs/99/cancel", json::object()).first, 404);
+}
+
+TEST(Jobs, TheServerEndsInTheMiddleOfOne) {
+  const auto begun = std::chrono::steady_clock::now();
+  {
+    const ServedFolder served;
+    served.copy_case("single/case-00");
+    ASSERT_EQ(served.post("/api/jobs", kDiagnose).first, 200);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(kInstrumented ? 60 : 15));
+}
+
+}  // namespace
