@@ -27,6 +27,16 @@ struct CompareArguments {
   std::string json, report, predictions;
   double window_s = host::kWindow_s;
   double fail_above = 0.0;
+  std::string traces;
+  std::vector<double> stretch;
+  double period_mm = 0.0;
+
+  host::Focus focus() const {
+    host::Focus chosen{.record = traces};
+    if (!stretch.empty()) chosen.stretch = host::TimeSpan{stretch[0], stretch[1]};
+    if (period_mm > 0.0) chosen.period_mm = period_mm;
+    return chosen;
+  }
 };
 
 /// One record keeps the name that was given; of several each gets its number and name: pred.csv -> pred-2-jog.csv.
@@ -89,7 +99,7 @@ void run(CompareArguments& arguments) {
       host::write_file_atomically(predictions_path(arguments, r),
                                   host::predictions_csv(models[0].model, models[0].set.records[r].prepared));
   }
-  if (!arguments.report.empty()) host::comparison_report(models).write(arguments.report);
+  if (!arguments.report.empty()) host::comparison_report(models, arguments.focus()).write(arguments.report);
   if (!arguments.json.empty()) write_json(host::comparison_document(models), arguments.json);
   if (arguments.json != "-") {
     fmt::print("{}", host::comparison_text(models, host::terminal_of(stdout)));
@@ -118,6 +128,11 @@ void add_compare(CLI::App& app) {
       ->add_option("--window", arguments->window_s,
                    "length of a prediction, s; it restarts from the smoothed measured state")
       ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--traces", arguments->traces, "record whose traces the page draws; default: the largest error");
+  command->add_option("--stretch", arguments->stretch, "from and to, s, of that record: lit in all plots of the page")
+      ->expected(2);
+  command->add_option("--period", arguments->period_mm, "draw what is missing within a period of the travel, mm")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--fail-above", arguments->fail_above,

@@ -54,7 +54,54 @@ SeriesRole role_of_model(std::size_t index) {
 
 std::string ComparedModel::name() const { return std::filesystem::path(path).filename().string(); }
 
-TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record_index) {
+std::size_t record_in(const Focus& focus, const ModelComparison& comparison) {
+  const auto& records = comparison.records;
+  const auto found = focus.record.empty() ? std::ranges::max_element(
+                                                records, {}, [](const RecordError& one) { return one.error.combined; })
+                                          : std::ranges::find(records, focus.record, &RecordError::path);
+  if (found == records.end())
+    throw Failure(ExitCode::usage, focus.record + ": is none of the records that are compared");
+  return static_cast<std::size_t>(found - records.begin());
+}
+
+namespace {
+
+/// The samples of a stretch of one record.
+ResidualEffort part_in(const ResidualEffort& all, std::size_t record, const TimeSpan& since_start) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < all.w.size(); ++k)
+    if (all.record[k] == record && all.t_s[k] >= since_start.from_s && all.t_s[k] <= since_start.to_s)
+      kept.push_back(k);
+  ResidualEffort part = all;
+  const auto keep = [&](auto& values) {
+    if (values.size() != all.w.size()) return;
+    for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
+    values.resize(kept.size());
+  };
+  for (const auto indices : {&ResidualEffort::record, &ResidualEffort::slot, &ResidualEffort::window})
+    keep(part.*indices);
+  for (const auto values : {&ResidualEffort::missing, &ResidualEffort::t_s, &ResidualEffort::x,
+                            &ResidualEffort::acceleration, &ResidualEffort::command_V, &ResidualEffort::since_reversal,
+                            &ResidualEffort::rest_s, &ResidualEffort::temp_C, &ResidualEffort::w})
+    keep(part.*values);
+  return part;
+}
+
+/// The first model's residual in the stretch of the focus, where that has samples.
+void add_stretch(std::vector<ResidualView>& views, const ComparedModel& model, const Focus& focus) {
+  if (!focus.stretch) return;
+  const std::size_t index = record_in(focus, model.comparison);
+  const double start_s = model.set.records[index].prepared.record->t_s.front();
+  const TimeSpan since_start{focus.stretch->from_s - start_s, focus.stretch->to_s - start_s};
+  ResidualView lit{fmt::format("{:.3g} to {:.3g} s", focus.stretch->from_s, focus.stretch->to_s), SeriesRole::residual,
+                   part_in(views.front().force, index, since_start), part_in(views.front().speed, index, since_start)};
+  if (!lit.force.w.empty()) views.push_back(std::move(lit));
+}
+
+}  // namespace
+
+TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record_index,
+                           const std::optional<TimeSpan>& stretch) {
   const ComparedRecord& compared = models.front().set.records[record_index];
   const PreparedRecord& prepared = compared.prepared;
   const Record& record = *prepared.record;
@@ -67,6 +114,7 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
   plot.caption =
       "The prediction restarts from the measurement at every window; error that grows within a window is model error.";
   plot.t_s = record.t_s;
+  if (stretch) plot.shaded.push_back(*stretch);
   const auto floor_of = [&](const std::vector<double>& floors, double sign) {
     std::vector<double> rows(record.size(), std::nan(""));
     for (std::size_t w = 0; w < std::min(floors.size(), prepared.windows.size()); ++w)
@@ -99,7 +147,7 @@ TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t re
   return plot;
 }
 
-void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
+void add_missing_effort(std::span<const ComparedModel> models, Report& report, const Focus& focus) {
   const sim::DriveDescription& first = models.front().model;
   std::vector<const sim::DriveDescription*> descriptions;
   for (const ComparedModel& one : models) descriptions.push_back(&one.model);
@@ -109,14 +157,15 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
     views.push_back({models[m].name(), role_of_model(m), std::move(residuals[m]),
                      residual_of_speed_channel(models[m].model, models[m].set)});
   if (views.front().force.w.empty()) return;
+  add_stretch(views, models.front(), focus);
   const std::string effort = first.data.kind == sim::DriveKind::rotary ? "torque" : "force";
-  const double period = ripple_period(first);
+  const double period = focus.period_mm ? *focus.period_mm / travel_in_mm(first.data.kind) : ripple_period(first);
   report.section(
       "What is missing, as " + effort,
       fmt::format("The {} that the motion needed beyond the model's: mean in bins{}, forward and backward apart. A "
                   "missing effect shows as a curve against the coordinate that it depends on. Where there are no "
                   "samples the line breaks; the strip at the foot shows how many there are.",
-                  effort, models.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
+                  effort, views.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
   add_residual_plots(report, views, first, period, Layout::overlaid);
   const DriveUnits units = units_of(first.data.kind);
   for (const auto& [name, title] :
@@ -127,7 +176,7 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report) {
     add_residual_plot(report, over, title, {"missing " + effort, units.effort}, views, &ResidualView::force,
                       Layout::overlaid);
   }
-  if (models.size() == 1) add_residual_maps(report, views, first, period);
+  if (models.size() == 1) add_residual_maps(report, std::span(views).first(1), first, period);
 }
 
 }  // namespace host

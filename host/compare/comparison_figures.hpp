@@ -2,9 +2,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "host/compare/focus.hpp"
 #include "host/compare/model_comparison.hpp"
 #include "host/report/report.hpp"
 
@@ -32,10 +34,14 @@ nlohmann::json comparison_document(std::span<const ComparedModel> models);
 /// Roles that differ in colour, one a model; further models take their turn again.
 SeriesRole role_of_model(std::size_t index);
 
+/// The record that the focus names. Throws Failure(usage) where there is no such record.
+std::size_t record_in(const Focus& focus, const ModelComparison& comparison);
+
 /// Measured and predicted rows of one record, and the errors.
-TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record);
+TimePlot prediction_traces(std::span<const ComparedModel> models, std::size_t record,
+                           const std::optional<TimeSpan>& stretch = {});
 
 /// The torque or force that each model lacks, as add_residual_plots() draws it; of one model as a map, too.
-void add_missing_effort(std::span<const ComparedModel> models, Report& report);
+void add_missing_effort(std::span<const ComparedModel> models, Report& report, const Focus& focus = {});
 
 }  // namespace host

@@ -287,7 +287,7 @@ std::string comparison_text(std::span<const ComparedModel> models, const Termina
   return text;
 }
 
-Report comparison_report(std::span<const ComparedModel> models) {
+Report comparison_report(std::span<const ComparedModel> models, const Focus& focus) {
   const ComparedModel& first = models.front();
   const ModelComparison& comparison = first.comparison;
   std::string names, titles;
@@ -311,10 +311,8 @@ Report comparison_report(std::span<const ComparedModel> models) {
   }
   report.add(error_table(models));
 
-  const auto worst =
-      std::ranges::max_element(comparison.records, {}, [](const RecordError& record) { return record.error.combined; });
-  report.add(prediction_traces(models, static_cast<std::size_t>(worst - comparison.records.begin())));
-  add_missing_effort(models, report);
+  report.add(prediction_traces(models, record_in(focus, comparison), focus.stretch));
+  add_missing_effort(models, report, focus);
   add_where_it_fails(models, report);
   return report;
 }

@@ -13,8 +13,9 @@ namespace host {
 /// Verdict, log faults, errors by record and channel, and the regions that stand out. At least one model.
 std::string comparison_text(std::span<const ComparedModel> models, const Terminal& terminal);
 
-/// Verdict, facts, traces of the record with the largest error, error by regime and the other partitions, and the
-/// missing effort against speed, position, time and acceleration; of several models on top of each other.
-Report comparison_report(std::span<const ComparedModel> models);
+/// Verdict, facts, traces of one record, the missing effort against speed, position, acceleration, time and what came
+/// before, and the error by regime and the other partitions; of several models on top of each other. Throws as
+/// record_in() does.
+Report comparison_report(std::span<const ComparedModel> models, const Focus& focus = {});
 
 }  // namespace host

@@ -10,6 +10,7 @@
   const HIDDEN_STRETCHES = 200;
   const VALUE_AXIS_WIDTH = 62; // pixels; the same in all panels of a stack, so that their time axes line up
   const charts = [];
+  let zoomed = null; // told of every zoom by hand: of which plot in which frame, and from where to where
   const recolour = []; // called when the page turns from light to dark, or is printed
 
   // "var(--name)" as the colour that the page's scheme gives it now.
@@ -98,7 +99,8 @@
       const content = document.createDocumentFragment();
       addElement(content, "b", "", panel.label);
       data.series.forEach(function (series, index) {
-        const item = addElement(content, "span");
+        const item = addElement(content, "span", series.isVisible ? "" : "off");
+        item.title = "Click: without it, or with it again";
         const swatch = addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : ""));
         const colour = panel.series[index].colour;
         swatch.style.background = panel.series[index].dashed
@@ -124,8 +126,12 @@
     };
   }
 
-  function keep(chart, panel) {
+  function keep(chart, panel, legend) {
     charts.push(chart);
+    legend.addEventListener("click", function (event) {
+      const item = [...legend.querySelectorAll(":scope > span:not(.at)")].indexOf(event.target.closest(".legend > span"));
+      if (item >= 0) chart.setVisibility(item, !chart.visibility()[item]);
+    });
     recolour.push(() => chart.updateOptions(coloursOf(panel)));
     return chart;
   }
@@ -141,7 +147,9 @@
   }
 
   function commonOptions(plot, panel, elements, isLowest, xUnit) {
+    const tell = zoomed;
     return {
+      zoomCallback: tell && ((from, to) => tell(plot, elements.canvas, from, to)),
       labels: [plot.xLabel, ...panel.series.map((series) => series.name)],
       ...coloursOf(panel),
       labelsDiv: elements.legend,
@@ -222,7 +230,7 @@
         chart.updateOptions({ file: drawnRows(x, columns, window) });
       }, 30);
     };
-    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null), options), panel);
+    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null), options), panel, elements.legend);
   }
 
   function drawTimePlot(frame, plot) {
@@ -316,7 +324,7 @@
     options.xRangePad = plot.logarithmicX ? 0 : 12;
     options.yRangePad = plot.logarithmic || plot.equal ? null : 12;
     if (plot.yRange) options.valueRange = plot.yRange;
-    const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot);
+    const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot, elements.legend);
     if (plot.equal) equaliseScales(chart, plot);
   }
 
@@ -346,8 +354,9 @@
     new ResizeObserver(resized).observe(chart.graphDiv.parentElement);
   }
 
-  // Draws each plot into its frame; what it returns takes them away again.
-  function draw(plots, frames) {
+  // Draws each plot into its frame; what it returns takes them away again. `onZoom` may be absent.
+  function draw(plots, frames, onZoom) {
+    zoomed = onZoom || null;
     const drawn = charts.length;
     const coloured = recolour.length;
     plots.forEach(function (plot, index) {
@@ -375,7 +384,7 @@
     root.setProperty("--print-zoom", Math.min(1, 960 / width));
   }
   window.axisCharts = charts;
-  window.axisPlots = { draw: draw };
+  window.axisPlots = { draw: draw, unpack: unpack };
   const carried = document.getElementById("plots");
   if (!carried) return;
   const plots = JSON.parse(carried.textContent);

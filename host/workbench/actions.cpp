@@ -1,5 +1,10 @@
 #include "host/workbench/actions.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <vector>
 
 #include "host/cancellation.hpp"
@@ -10,10 +15,14 @@
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/improvement_report.hpp"
 #include "host/evidence/measurement_gate.hpp"
+#include "host/exit_codes.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
+#include "host/read_file.hpp"
+#include "host/record/edit_record.hpp"
 #include "host/record/read_record.hpp"
+#include "host/report/text_format.hpp"
 
 namespace host::workbench {
 
@@ -59,7 +68,7 @@ Comparison compare(const Folder& folder, const Request& request) {
   if (const std::vector<Record> tracks = tracking_records(request.train, first.data); !tracks.empty()) {
     std::vector<TrackingError> errors;
     for (const Record& record : tracks) errors.push_back(tracking_error(record));
-    return {tracking_json(errors), "", tracking_text(errors)};
+    return {tracking_json(errors), "", tracking_text(errors), ""};
   }
   std::vector<ComparedModel> models;
   for (const std::string& path : request.models) {
@@ -68,7 +77,8 @@ Comparison compare(const Folder& folder, const Request& request) {
     models.push_back(compare_with(path, read_model(path), std::move(records), kWindow_s, request.accepted));
     throw_if_cancelled();
   }
-  return {comparison_document(models), comparison_report(models).html(), ""};
+  const std::size_t traces = record_in(request.focus, models.front().comparison);
+  return {comparison_document(models), comparison_report(models, request.focus).html(), "", request.train[traces]};
 }
 
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
@@ -82,6 +92,27 @@ nlohmann::json carry_out(const Folder& folder, const Request& request, const Out
   if (request.task == Task::add) return added(request, model, measured, outputs);
   if (request.task == Task::improve) return improved(request, model, measured, outputs, progress);
   return diagnosed(request, model, measured, outputs, progress);
+}
+
+nlohmann::json cut_out(const Folder& folder, const CutRequest& request) {
+  const std::string text = read_file(folder.existing(request.record), kRecordSize);
+  const Record whole = parse_record(text, request.record);
+  const std::string stem = std::filesystem::path(request.record).replace_extension().string();
+  nlohmann::json pieces = nlohmann::json::array(), commands = nlohmann::json::array();
+  const auto keep = [&](const char* option, const char* word, double at_s, double from_s, double to_s) {
+    const auto rows = std::ranges::count_if(whole.t_s, [&](double t) { return t >= from_s && t <= to_s; });
+    if (rows < static_cast<std::ptrdiff_t>(kFewestRows)) return;
+    const Record piece = cut_record(text, request.record, from_s, to_s);
+    const std::string name = folder.free_name(fmt::format("{}-{}-{:.4g}s", stem, word, at_s), ".csv");
+    write_record(piece, name);
+    pieces.push_back(name);
+    commands.push_back(
+        fmt::format("axistool cut {} {} {} -o {}", shell_word(request.record), option, at_s, shell_word(name)));
+  };
+  keep("--to", "to", request.stretch.from_s, -HUGE_VAL, request.stretch.from_s);
+  keep("--from", "from", request.stretch.to_s, request.stretch.to_s, HUGE_VAL);
+  if (pieces.empty()) throw Failure(ExitCode::refused, request.record + ": nothing of it would be left");
+  return {{"pieces", pieces}, {"commands", commands}};
 }
 
 }  // namespace host::workbench

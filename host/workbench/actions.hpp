@@ -14,6 +14,7 @@ struct Comparison {
   nlohmann::json document;  ///< of `axistool compare --json`
   std::string report;       ///< its page; empty where no effort was recorded
   std::string text;         ///< in place of the page
+  std::string traces;       ///< record whose traces the page draws
 };
 
 /// Throws as the command does.
@@ -23,5 +24,9 @@ Comparison compare(const Folder& folder, const Request& request);
 /// command does, and Cancelled.
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
                          const std::function<void(double)>& progress);
+
+/// Leaves a stretch out: what is before and after it as records of their own, by `axistool cut`; their names and the
+/// commands. Pieces without enough rows are not written. Throws Failure(refused) where nothing is left.
+nlohmann::json cut_out(const Folder& folder, const CutRequest& request);
 
 }  // namespace host::workbench

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <utility>
 
 #include "host/exit_codes.hpp"
@@ -57,6 +59,29 @@ std::string file_of(const std::string& name, const std::string& field) {
   return name;
 }
 
+double number_of(const nlohmann::json& value, const std::string& field) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(field, "a number belongs here");
+  return value.get<double>();
+}
+
+std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
+  const auto found = object.find("stretch");
+  if (found == object.end()) return std::nullopt;
+  if (!found->is_array() || found->size() != 2) refuse("stretch", "[FROM, TO] in seconds belongs here");
+  const TimeSpan stretch{number_of((*found)[0], "stretch"), number_of((*found)[1], "stretch")};
+  if (!(stretch.from_s < stretch.to_s)) refuse("stretch", "it ends after it begins");
+  return stretch;
+}
+
+Focus focus_of(const nlohmann::json& object) {
+  Focus focus;
+  if (object.contains("traces")) focus.record = file_of(text_of(object, "traces"), "traces");
+  focus.stretch = stretch_of(object);
+  if (object.contains("period_mm")) focus.period_mm = number_of(object["period_mm"], "period_mm");
+  if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "a length above 0 belongs here");
+  return focus;
+}
+
 template <typename Check>
 std::vector<std::string> list_of(const nlohmann::json& object, const std::string& field, Check check) {
   std::vector<std::string> texts;
@@ -95,9 +120,10 @@ Request parse_request(std::string_view text) {
   Request request;
   request.task = task->second;
   if (request.task == Task::compare) {
-    require_known(document, {"do", "models", "records", "accept"});
+    require_known(document, {"do", "models", "records", "accept", "traces", "stretch", "period_mm"});
     request.models = list_of(document, "models", file_of);
     request.train = list_of(document, "records", file_of);
+    request.focus = focus_of(document);
   } else {
     require_known(document, {"do", "model", "train", "validate", "accept", "absent", "kind", "over"});
     request.models = {file_of(text_of(document, "model"), "model")};
@@ -115,6 +141,14 @@ Request parse_request(std::string_view text) {
   if (request.task != Task::add && !request.over.empty()) refuse("over", "belongs to add");
   if (request.task == Task::add && !request.absent.empty()) refuse("absent", "belongs to diagnose and improve");
   return request;
+}
+
+CutRequest parse_cut(std::string_view text) {
+  const nlohmann::json document = object_of(text);
+  require_known(document, {"record", "stretch"});
+  const std::optional<TimeSpan> stretch = stretch_of(document);
+  if (!stretch) refuse("stretch", "[FROM, TO] in seconds belongs here");
+  return {file_of(text_of(document, "record"), "record"), *stretch};
 }
 
 nlohmann::json parse_choice(std::string_view text) {
@@ -139,6 +173,9 @@ nlohmann::json to_json(const Request& request) {
   if (request.task == Task::compare) {
     document["models"] = request.models;
     document["records"] = request.train;
+    if (!request.focus.record.empty()) document["traces"] = request.focus.record;
+    if (const auto& stretch = request.focus.stretch) document["stretch"] = {stretch->from_s, stretch->to_s};
+    if (request.focus.period_mm) document["period_mm"] = *request.focus.period_mm;
     return document;
   }
   document["model"] = request.models.front();
@@ -158,6 +195,10 @@ std::string command_line(const Request& request, const Outputs& outputs) {
   for (const std::string& record : request.train) line += fmt::format(" {}", shell_word(record));
   line += options_of("--validate", request.validate) + options_of("--absent", request.absent);
   line += options_of("--accept", request.accepted, true);
+  line += output_option("--traces", request.focus.record);
+  if (const auto& stretch = request.focus.stretch)
+    line += fmt::format(" --stretch {} {}", stretch->from_s, stretch->to_s);
+  if (request.focus.period_mm) line += fmt::format(" --period {}", *request.focus.period_mm);
   line += output_option("--over", request.over) + output_option("-o", outputs.model);
   return line + output_option("--json", outputs.json) + output_option("--report", outputs.report);
 }

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "host/compare/focus.hpp"
+
 namespace host::workbench {
 
 enum class Task { compare, diagnose, add, improve };
@@ -20,6 +22,7 @@ struct Request {
   std::vector<std::string> train;   ///< all records of a comparison
   std::vector<std::string> validate, accepted, absent;
   std::string kind, over;  ///< of add
+  Focus focus;             ///< of compare: "traces", "stretch": [FROM, TO], "period_mm"
 };
 
 inline constexpr std::size_t kLongestRequest = 64 * 1024;
@@ -27,6 +30,13 @@ inline constexpr std::size_t kLongestRequest = 64 * 1024;
 /// Throws Failure(usage) naming the field and what belongs there; names are plain (is_plain_name), the files may be
 /// missing.
 Request parse_request(std::string_view text);
+
+/// { "record": NAME, "stretch": [FROM, TO] }: what is left out of a record.
+struct CutRequest {
+  std::string record;
+  TimeSpan stretch;
+};
+CutRequest parse_cut(std::string_view text);
 
 /// What is chosen on the page: { "model": NAME, "beside": [NAME...], "roles": { NAME: "train"|"judge"|"off" } }. The
 /// same again, checked.

@@ -171,6 +171,7 @@ struct Server::Parts {
     send(response, {{"command", command_line(request, {})},
                     {"document", std::move(comparison.document)},
                     {"report", std::move(comparison.report)},
+                    {"traces", std::move(comparison.traces)},
                     {"text", std::move(comparison.text)}});
   }
 
@@ -218,6 +219,9 @@ struct Server::Parts {
          [this](const Query&, Response& response, const std::string& body) { submit(parse_request(body), response); });
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
+    });
+    post("/api/cut", [this](const Query&, Response& response, const std::string& body) {
+      send(response, cut_out(folder, parse_cut(body)));
     });
     post("/api/choice", [this](const Query&, Response& response, const std::string& body) {
       write_file_atomically(folder.own_file("choice.json"), parse_choice(body).dump(2) + "\n");

@@ -21,6 +21,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const host::Failure&) {
   }
   try {
+    if (!is_plain_name(parse_cut(text).record)) std::abort();
+  } catch (const host::Failure&) {
+  }
+  try {
     const nlohmann::json choice = parse_choice(text);
     if (parse_choice(choice.dump()) != choice) std::abort();
   } catch (const host::Failure&) {

@@ -47,7 +47,7 @@ export async function loadFolder() {
 async function changed() {
   render();
   listeners.forEach((listener) => listener());
-  await post("/api/choice", { model: choice.model || "", beside: choice.beside, roles: choice.roles }).catch((error) => notice(error.message));
+  await post("/api/choice", chosen()).catch((error) => notice(error.message));
 }
 
 /** @param {string} name */
@@ -56,6 +56,18 @@ export async function workOn(name) {
   choice.beside = choice.beside.filter((other) => other !== name);
   await changed();
 }
+
+/** Pieces of a record take its role. @param {string} name @param {string[]} pieces */
+export async function replaceRecord(name, pieces) {
+  const role = choice.roles[name];
+  choice.roles[name] = "off";
+  for (const piece of pieces) choice.roles[piece] = role;
+  await post("/api/choice", chosen());
+  await loadFolder();
+  await changed();
+}
+
+const chosen = () => ({ model: choice.model || "", beside: choice.beside, roles: choice.roles });
 
 async function take(files) {
   for (const file of files) {

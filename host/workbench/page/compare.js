@@ -1,13 +1,16 @@
 // How well the chosen models predict the chosen records, and where they fail.
-import { choice, recordsAs } from "./choice.js";
-import { commandLine, el, errorBox } from "./elements.js";
+import { choice, recordsAs, replaceRecord } from "./choice.js";
+import { commandLine, el, errorBox, notice, short } from "./elements.js";
 import { post } from "./exchange.js";
+import { save } from "./plot_files.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
 
 const kSets = [["all", "all records"], ["judge", "held back"], ["train", "training"]];
 let set = "all";
 let accepted = [];
 let asked = 0;
+/** What is looked at: { traces, stretch, period_mm }, as the command's options. */
+let focus = {};
 
 function recordsOf(name) {
   return name === "all" ? [...recordsAs("train"), ...recordsAs("judge")] : recordsAs(name);
@@ -18,17 +21,68 @@ function setButtons(again) {
     el("button", { type: "button", "aria-pressed": String(name === set), disabled: !recordsOf(name).length, onclick: () => ((set = name), again()) }, text)));
 }
 
-/** Models on records as blocks of their report. @param {Element} place @param {string[]} models @param {string[]} records */
-export async function showComparison(place, models, records, wanted = () => true) {
-  const told = await post("/api/compare", { do: "compare", models, records, accept: accepted });
+/**
+ * Models on records as blocks of their report.
+ * @param {Element} place @param {string[]} models @param {string[]} records
+ * @param {{focus?: any, onZoom?: (...words: any[]) => void}} [options]
+ */
+export async function showComparison(place, models, records, options = {}) {
+  const told = await post("/api/compare", { do: "compare", models, records, accept: accepted, ...options.focus });
   return { told, show: () => {
     if (told.text) return place.append(el("pre", {}, told.text), commandLine(told.command));
     const parts = partsOf(told.report);
+    const page = () => save("comparison.html", new Blob([told.report], { type: "text/html" }));
     place.append(parts.verdict ? document.importNode(parts.verdict, true) : "", commandLine(told.command));
     const links = el("div");
     place.append(links);
-    links.replaceWith(sectionLinks([showBlocks(place, parts, wanted)]));
+    const sections = sectionLinks([showBlocks(place, parts, () => true, options.onZoom)]);
+    sections.append(el("button", { type: "button", className: "apart", onclick: page }, "Save as a page"));
+    links.replaceWith(sections);
   } };
+}
+
+/** What to draw: whose traces, which period, which stretch. */
+function focusTools(records, traces, again) {
+  const look = (change) => ((focus = { ...focus, ...change }), again());
+  const choose = el("select", { "aria-label": "Traces of", onchange: (event) => look({ traces: event.target.value, stretch: undefined }) }, ...records.map((name) => el("option", { value: name, selected: name === traces }, name)));
+  const period = el("input", {
+    type: "number", min: "0", step: "any", value: focus.period_mm ?? "", placeholder: "model's ripple", "aria-label": "Period in mm",
+    onchange: (event) => look({ period_mm: Number(event.target.value) > 0 ? Number(event.target.value) : undefined }),
+  });
+  const lit = focus.stretch ? el("button", { type: "button", id: "unlight", onclick: () => look({ stretch: undefined }) }, "Lit: " + focus.stretch.map(short).join(" to ") + " s ✕") : null;
+  return el("div", { className: "row focus" }, el("label", {}, "Traces of ", choose), el("label", {}, "Fold by ", period, " mm"), lit);
+}
+
+async function leaveOut(record, stretch) {
+  try {
+    const told = await post("/api/cut", { record, stretch });
+    notice("In its place: " + told.pieces.join(", "));
+    focus = { ...focus, traces: undefined, stretch: undefined };
+    await replaceRecord(record, told.pieces);
+  } catch (error) {
+    notice(error.message);
+  }
+}
+
+/** After a drag: what the zoomed range may be used for. */
+function zoomTools(traces, again) {
+  return (plot, canvas, from, to) => {
+    const figure = canvas.closest("figure");
+    figure.querySelector(".zoomed")?.remove();
+    const whole = plot.kind === "time" ? null : plot.series.flatMap((one) => one.x);
+    const isReset = whole && from <= Math.min(...whole) && to >= Math.max(...whole);
+    const actions = [];
+    if (plot.kind === "time") {
+      const first = window.axisPlots.unpack(plot.panels[0].x);
+      if (from <= first[0] && to >= first.at(-1)) return;
+      const stretch = [from, to].map((value) => Number(value.toPrecision(6)));
+      actions.push([short(from) + " to " + short(to) + " s of " + traces], ["Light it in all plots", () => ((focus = { ...focus, traces, stretch }), again())], ["Leave it out", () => leaveOut(traces, stretch)]);
+    } else if (plot.xLabel === "position [mm]" && !isReset) {
+      const period = Number((to - from).toPrecision(4));
+      actions.push(["A period of " + period + " mm?"], ["Fold by it", () => ((focus = { ...focus, period_mm: period }), again())]);
+    }
+    if (actions.length) figure.append(el("div", { className: "row zoomed" }, ...actions.map(([text, onclick]) => (onclick ? el("button", { type: "button", onclick }, text) : el("span", {}, text)))));
+  };
 }
 
 /** @param {Element} place */
@@ -37,6 +91,7 @@ export async function showCompare(place) {
   const mine = ++asked;
   if (!recordsOf(set).length) set = "all";
   const records = recordsOf(set);
+  if (!records.includes(focus.traces)) focus = { period_mm: focus.period_mm };
   const head = el("div", { className: "row head" }, el("h1", {}, "Compare"), setButtons(again));
   if (!choice.model || !records.length) {
     forgetPlots();
@@ -45,13 +100,17 @@ export async function showCompare(place) {
   }
   place.classList.add("waiting");
   if (!place.querySelector(".blocks")) place.replaceChildren(head, el("p", { className: "soft" }, "Predicting…"));
-  const body = el("div");
+  const body = el("div"), options = { focus };
   try {
-    const { show } = await showComparison(body, [choice.model, ...choice.beside], records);
+    const { told, show } = await showComparison(body, [choice.model, ...choice.beside], records, options);
     if (mine !== asked || !place.isConnected) return;
+    const scrolled = window.scrollY;
     forgetPlots();
-    place.replaceChildren(head, body);
+    options.onZoom = zoomTools(told.traces, again);
+    place.replaceChildren(head, told.traces ? focusTools(records, told.traces, again) : "", body);
+    head.append(el("a", { className: "button primary", href: "#effects/find" }, "Find what is missing"));
     show();
+    window.scrollTo(0, scrolled);
   } catch (error) {
     if (mine !== asked) return;
     forgetPlots();

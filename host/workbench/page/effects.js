@@ -45,6 +45,11 @@ function request(task) {
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const sameRecords = (job) => isSame([job.request.train, job.request.validate], Object.values(chosenRecords()));
 
+/** The latest search with this model and these records. */
+function searched() {
+  return jobs.find((job) => job.request.do === "diagnose" && job.request.model === choice.model && sameRecords(job));
+}
+
 /** @param {string} kind */
 export function add(kind) {
   return begin({ ...request("add"), kind });
@@ -149,9 +154,13 @@ function head() {
     : "Choose a model and at least one training record.")];
 }
 
-/** @param {Element} place */
-export async function showEffects(place) {
+/** @param {Element} place @param {string} [wish] "find": the search begins, unless it was made */
+export async function showEffects(place, wish) {
   const mine = ++shown;
+  if (wish === "find") {
+    history.replaceState(null, "", "#effects");
+    if (!searched() && choice.model && chosenRecords().train.length) begin(request("diagnose"));
+  }
   await effects();
   const body = el("div"), steps = stepsTo(choice.model), draw = [];
   try {
@@ -163,7 +172,7 @@ export async function showEffects(place) {
       body.append(el("h2", {}, "Before and after, on " + (records.validate.length ? "held-back" : "training") + " records"), overlay);
       draw.push(show);
     }
-    const asked = jobs.find((job) => job.request.do === "diagnose" && job.request.model === choice.model && sameRecords(job));
+    const asked = searched();
     if (asked?.state === "done") {
       const found = el("div", { id: "diagnosis" });
       body.prepend(found);

@@ -1,4 +1,5 @@
 // The reports of the commands as parts of this page: the same blocks and the same plots, drawn by the same script.
+import { fileTools } from "./plot_files.js";
 
 /**
  * @typedef {{verdict: Element|null, blocks: Element[], plots: any[]}} ReportParts
@@ -25,8 +26,9 @@ export function forgetPlots() {
 /**
  * Puts the blocks into the page and draws their plots. Frames lose their ids: several reports may stand in one view.
  * @param {Element} place @param {ReportParts} parts @param {(block: Element) => boolean} [wanted]
+ * @param {(plot: any, canvas: Element, from: number, to: number) => void} [onZoom]
  */
-export function showBlocks(place, parts, wanted = () => true) {
+export function showBlocks(place, parts, wanted = () => true, onZoom) {
   const frames = [], plots = [];
   const box = document.createElement("div");
   box.className = "blocks";
@@ -39,8 +41,9 @@ export function showBlocks(place, parts, wanted = () => true) {
     frames.push(frame);
     plots.push(parts.plots[Number(frame.id.slice(5))]);
     frame.removeAttribute("id");
+    frame.closest("figure").prepend(fileTools(frame.closest("figure"), plots.at(-1)));
   }
-  drawn.push(window.axisPlots.draw(plots, frames));
+  drawn.push(window.axisPlots.draw(plots, frames, onZoom));
   return box;
 }
 

@@ -16,6 +16,7 @@ from pathlib import Path
 
 try:
     from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.support.ui import WebDriverWait
@@ -92,6 +93,7 @@ class Workbench(unittest.TestCase):
         if not (folder := os.environ.get("AXIS_SCREENSHOTS")):
             return
         size = self.browser.get_window_size()
+        self.browser.execute_script("window.scrollTo(0, 0)")
         height = self.browser.execute_script("return document.documentElement.scrollHeight")
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": size["width"], "height": min(height, 6000), "deviceScaleFactor": 1, "mobile": False})
         time.sleep(0.5)
@@ -120,8 +122,7 @@ class Workbench(unittest.TestCase):
         self.quiet()
 
         # Two clicks: find, add.
-        self.click("a[href='#effects']")
-        self.click("#diagnose")
+        self.click("a[href='#effects/find']")
         self.until(".progress progress")
         browser.refresh()  # in the middle of the job
         self.until(".progress progress", 20)
@@ -149,6 +150,38 @@ class Workbench(unittest.TestCase):
         self.click("#undo")
         self.until("#cards .card.found")
         self.assertFalse(browser.find_elements(By.ID, "undo"))
+        self.quiet()
+
+    def test_a_stretch_is_lit_left_out_and_saved(self) -> None:
+        browser = self.browser
+        downloads = self.folder / "downloads"
+        browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(downloads)})
+        browser.find_element(By.CSS_SELECTOR, "[aria-label='Role of train-jog.csv'] option[value=off]").click()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "train-jog" not in " ".join(self.texts("#content > div > .command code")))
+        canvas = self.until("#content .plot .canvas canvas:last-of-type")
+        browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", canvas)
+        ActionChains(browser).move_to_element_with_offset(canvas, -100, 0).click_and_hold().move_by_offset(60, 0).move_by_offset(60, 0).release().perform()
+        self.click(".zoomed button")
+        self.until("#unlight")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "s, forward" in " ".join(self.texts(".legend")) or "s, backward" in " ".join(self.texts(".legend")))
+        self.assertIn("--stretch", " ".join(self.texts(".command code")))
+        self.keep("lit")
+        self.click(".tools button")
+        self.click(".tools button + button")
+        WebDriverWait(browser, 20).until(lambda _: len(list(downloads.glob("*.csv")) + list(downloads.glob("*.png"))) == 2)
+        rows = next(downloads.glob("*.csv")).read_text().splitlines()
+        self.assertEqual(rows[0], "panel,series,time [s],value")
+        self.assertGreater(len(rows), 5000)
+        if folder := os.environ.get("AXIS_SCREENSHOTS"):
+            shutil.copy(next(downloads.glob("*.png")), f"{folder}/figure.png")
+
+        canvas = self.until("#content .plot .canvas canvas:last-of-type")
+        browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", canvas)
+        ActionChains(browser).move_to_element_with_offset(canvas, -50, 0).click_and_hold().move_by_offset(60, 0).move_by_offset(60, 0).release().perform()
+        self.click(".zoomed button + button")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: len(list(self.folder.glob("validate-*.csv"))) == 2)
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "validate-from" in " ".join(self.texts("#content > div > .command code")))
+        self.assertNotIn(" validate.csv", " ".join(self.texts("#content > div > .command code")))
         self.quiet()
 
     def test_every_view_by_keys_on_every_screen(self) -> None:

@@ -46,6 +46,40 @@ TEST(Jobs, AComparisonIsThatOfTheCommand) {
   }
 }
 
+TEST(Jobs, WhatIsLookedAtChangesPicturesAndNoFigure) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  json request = {{"do", "compare"}, {"models", {"model.toml"}}, {"records", {"train-jog.csv", "validate.csv"}}};
+  const json plain = served.post("/api/compare", request).second;
+  EXPECT_EQ(plain["traces"], "validate.csv") << "the larger error";
+  request.update({{"traces", "train-jog.csv"}, {"stretch", {1.0, 2.0}}, {"period_mm", 1.25}});
+  const auto [status, told] = served.post("/api/compare", request);
+  ASSERT_EQ(status, 200) << told;
+  EXPECT_EQ(told["document"], plain["document"]);
+  EXPECT_EQ(told["document"], document_of(told["command"]));
+  for (const char* shown :
+       {"Measured and predicted: train-jog.csv", "Within one period of 1.25 mm", "1 to 2 s, forward"})
+    EXPECT_THAT(told["report"].get<std::string>(), testing::HasSubstr(shown));
+  request["traces"] = "train-sweep.csv";
+  EXPECT_EQ(served.post("/api/compare", request).first, 400) << "not among them";
+}
+
+TEST(Jobs, AStretchIsLeftOutByCut) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  const auto [status, told] = served.post("/api/cut", json{{"record", "validate.csv"}, {"stretch", {1.0, 2.0}}});
+  ASSERT_EQ(status, 200) << told;
+  ASSERT_EQ(told["pieces"], (json{"validate-to-1s.csv", "validate-from-2s.csv"}));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string piece = told["pieces"][k], written = host::read_file(piece);
+    std::filesystem::remove(piece);
+    EXPECT_EQ(run_axistool(told["commands"][k].get<std::string>().substr(9)).exit_code, 0);
+    EXPECT_EQ(host::read_file(piece), written);
+  }
+  EXPECT_EQ(served.post("/api/cut", json{{"record", "validate.csv"}, {"stretch", {-1.0, 9.0}}}).first, 422);
+  EXPECT_EQ(served.post("/api/cut", json{{"record", "validate.csv"}, {"stretch", {2.0, 1.0}}}).first, 400);
+}
+
 TEST(Jobs, AnAdditionIsThatOfTheCommandAndNeitherReloadNorCrashLosesIt) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   json first;

@@ -1,0 +1,75 @@
+// A figure as files: its numbers as CSV, what is seen as PNG.
+import { el } from "./elements.js";
+
+const word = (text) => (/[",\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text);
+
+/** One row a point. @param {any} plot as report.js draws it @returns {string} */
+export function csvOf(plot) {
+  const rows = [];
+  if (plot.kind === "map") {
+    rows.push([plot.x.label, plot.y.label, plot.label].map(word).join(","));
+    plot.values.forEach((value, k) => {
+      const column = k % plot.x.count, row = Math.floor(k / plot.x.count);
+      if (value !== null) rows.push([plot.x.first + (column + 0.5) * plot.x.step, plot.y.first + (row + 0.5) * plot.y.step, value].join(","));
+    });
+  } else if (plot.kind === "time") {
+    rows.push(["panel", "series", plot.xLabel, "value"].join(","));
+    for (const panel of plot.panels) {
+      const x = window.axisPlots.unpack(panel.x);
+      for (const series of panel.series) window.axisPlots.unpack(series.y).forEach((y, k) => rows.push([word(panel.label), word(series.name), x[k], isNaN(y) ? "" : y].join(",")));
+    }
+  } else {
+    rows.push(["series", word(plot.xLabel), word(plot.label), "lower", "upper", "samples"].join(","));
+    for (const one of plot.series) one.x.forEach((x, k) => rows.push([word(one.name), x, one.y[k], one.lower?.[k], one.upper?.[k], one.samples?.[k]].map((value) => value ?? "").join(",")));
+  }
+  return rows.join("\n") + "\n";
+}
+
+/** Canvases, swatches and texts of a figure where they stand. @param {HTMLElement} figure @returns {HTMLCanvasElement} */
+export function pictureOf(figure) {
+  const scale = 2, outer = figure.getBoundingClientRect();
+  const picture = el("canvas", { width: scale * outer.width, height: scale * outer.height });
+  const context = picture.getContext("2d");
+  context.scale(scale, scale);
+  context.translate(-outer.left, -outer.top);
+  context.fillStyle = getComputedStyle(figure).backgroundColor;
+  context.fillRect(outer.left, outer.top, outer.width, outer.height);
+  for (const part of figure.querySelectorAll("canvas, .swatch")) {
+    const box = part.getBoundingClientRect();
+    context.fillStyle = getComputedStyle(part).backgroundColor;
+    if (part.tagName === "CANVAS") context.drawImage(part, box.left, box.top, box.width, box.height);
+    else context.fillRect(box.left, box.top, box.width, box.height);
+  }
+  context.textBaseline = "middle";
+  const texts = document.createTreeWalker(figure, NodeFilter.SHOW_TEXT), range = document.createRange();
+  while (texts.nextNode()) {
+    const node = texts.currentNode;
+    if (node.parentElement.closest("button, .tools")) continue;
+    const style = getComputedStyle(node.parentElement);
+    context.font = style.font;
+    context.fillStyle = style.color;
+    for (const match of node.data.matchAll(/\S+/g)) {
+      range.setStart(node, match.index);
+      range.setEnd(node, match.index + match[0].length);
+      const box = range.getBoundingClientRect();
+      context.fillText(match[0], box.left, box.top + box.height / 2);
+    }
+  }
+  return picture;
+}
+
+/** @param {string} name @param {Blob} content */
+export function save(name, content) {
+  const link = el("a", { href: URL.createObjectURL(content), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** Buttons for both. @param {HTMLElement} figure @param {any} plot */
+export function fileTools(figure, plot) {
+  const title = figure.querySelector("figcaption strong")?.textContent || "plot";
+  const name = title.replace(/[^\w.-]+/g, "-").toLowerCase();
+  return el("div", { className: "tools" },
+    el("button", { type: "button", "aria-label": "Numbers of “" + title + "” as CSV", onclick: () => save(name + ".csv", new Blob([csvOf(plot)], { type: "text/csv" })) }, "CSV"),
+    el("button", { type: "button", "aria-label": "“" + title + "” as PNG", onclick: () => pictureOf(figure).toBlob((blob) => save(name + ".png", blob)) }, "PNG"));
+}
