@@ -1,4 +1,4 @@
-// The flash sectors reserved for parameters.
+// The flash sectors reserved for parameters (the first two) and the fault log (the next two).
 #pragma once
 
 #include <concepts>

@@ -10,6 +10,7 @@
 
 #include "firmware/app/capture_stream.hpp"
 #include "firmware/app/excitation_service.hpp"
+#include "firmware/app/fault_log_service.hpp"
 #include "firmware/app/limit_reply.hpp"
 #include "firmware/app/motion_owner.hpp"
 #include "firmware/app/parameters/parameter_change.hpp"
@@ -31,12 +32,14 @@ class BoardApplication {
  public:
   using Number = Scalar;
   using Axes = AxisGroup<Scalar, typename Board::AxisType, Board::kAxes>;
-  using Store = ParameterStore<std::remove_reference_t<decltype(std::declval<Board&>().parameter_flash())>>;
+  using Flash = std::remove_reference_t<decltype(std::declval<Board&>().parameter_flash())>;
+  using Store = ParameterStore<Flash>;
   static constexpr std::size_t kAxes = Board::kAxes;
 
   explicit BoardApplication(Board& board)
       : board_(board),
         store_(board.parameter_flash()),
+        fault_log_(board.parameter_flash()),
         axes_([&board](std::size_t index) -> typename Board::AxisType& { return board.axis(index); }) {
     if constexpr (kBoardKeepsCapture)
       trigger_.adopt(board.capture_state(), board.capture_rows());
@@ -47,6 +50,7 @@ class BoardApplication {
   /// Before the control interrupt runs: takes the parameters out of the store and hands them to the axes.
   void start() {
     store_.load(active_);
+    fault_log_.start();
     saved_crc_ = active_crc_ = set_crc(active_);
     if (store_is_usable() && check<Scalar>(active_).kind != ValueRefusal::none) set_fits_ = false;
     configure_all();
@@ -111,10 +115,7 @@ class BoardApplication {
     if (any_enabled()) return Status::drive_enabled;
     const bool was_usable = store_is_usable();
     const typename Board::ControlShutOut guard;
-    board_.begin_stall();
-    const SaveResult result = store_.save(active_);
-    board_.end_stall();
-    axes_.board().excuse_pause();
+    const SaveResult result = while_stalled([this] { return store_.save(active_); });
     if (result == SaveResult::saved) saved_crc_ = active_crc_;
     if (!was_usable) configure_all();
     return result == SaveResult::saved          ? Status::ok
@@ -272,9 +273,20 @@ class BoardApplication {
   }
 
   void clear_faults() {
+    look_for_faults();
+    fault_log_.forget();
     const typename Board::ControlShutOut guard;
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].clear_fault();
   }
+
+  /// A round of the background. Like save() it writes flash while the control interrupt stands still.
+  void keep_fault_log() {
+    look_for_faults();
+    if (!fault_log_.wants_flash() || any_enabled()) return;
+    const typename Board::ControlShutOut guard;
+    while_stalled([this] { return fault_log_.write(); });
+  }
+  bool logged_fault(std::size_t age, FaultLogPayload& payload) { return fault_log_.read(age, payload); }
 
   bool is_in_motion() {
     const typename Board::ControlShutOut guard;
@@ -357,20 +369,7 @@ class BoardApplication {
 
   /// A row of what the axis kept when a fault stopped it; false beyond the last.
   bool fault_row(std::size_t axis, std::size_t row, FaultRowPayload& payload) {
-    const auto& kept = axes_[axis].capture();
-    if (!kept.is_frozen() || row >= kept.size()) return false;
-    const auto& sample = kept.row(row);
-    payload.rows = static_cast<std::uint16_t>(kept.size());
-    payload.every = static_cast<std::uint16_t>(kept.stride());
-    payload.dac_code = static_cast<std::uint32_t>(sample.dac_code);
-    payload.counts = static_cast<std::uint32_t>(sample.estimate.anchor_counts);
-    payload.tachometer_velocity = word_of(sample.tachometer_velocity);
-    payload.reference_velocity = word_of(sample.reference_velocity);
-    payload.position_error = word_of(sample.position_error);
-    payload.velocity_estimate = word_of(sample.estimate.velocity);
-    payload.disturbance = word_of(sample.estimate.disturbance);
-    payload.index_way = static_cast<std::uint32_t>(axes_[axis].index_way());
-    return true;
+    return firmware::fault_row(axes_[axis], row, payload);
   }
 
   /// Or about to be.
@@ -414,6 +413,20 @@ class BoardApplication {
     return limits;
   }
 
+  void look_for_faults() {
+    fault_log_.look(axes_, control_periods_, static_cast<std::uint32_t>(rate_Hz()),
+                    [this](std::size_t axis, Scalar velocity) { return velocity_of_drive(axis, velocity); });
+  }
+
+  template <typename Write>
+  auto while_stalled(Write write) {
+    board_.begin_stall();
+    const auto result = write();
+    board_.end_stall();
+    axes_.board().excuse_pause();
+    return result;
+  }
+
   void configure_all() {
     const typename Board::ControlShutOut guard;
     board_.set_control_rate(static_cast<std::uint32_t>(active_.template get<"control.rate">()));
@@ -447,13 +460,6 @@ class BoardApplication {
       return static_cast<float>(velocity.raw()) / static_cast<float>(Scalar(1).raw()) * units(axis).velocity;
   }
 
-  static std::uint32_t word_of(Scalar value) {
-    if constexpr (kIsFloat)
-      return std::bit_cast<std::uint32_t>(value);
-    else
-      return static_cast<std::uint32_t>(value.raw());
-  }
-
   void note_timing(std::uint32_t began_us) {
     if (timing_.periods > 0) {
       const std::uint32_t interval = began_us - last_period_us_;
@@ -468,6 +474,7 @@ class BoardApplication {
 
   Board& board_;
   Store store_;
+  FaultLogService<Axes, Flash, typename Board::ControlShutOut> fault_log_;
   Axes axes_;
   CaptureStream capture_;
   TriggeredCapture trigger_;

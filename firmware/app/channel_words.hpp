@@ -56,6 +56,26 @@ std::uint32_t channel_word(const Axis& axis, Channel channel) {
          (seen.saturated ? 1u << 16 : 0u);
 }
 
+/// A row of what a SupervisedAxis kept when a fault stopped it; false beyond the last.
+template <typename Axis>
+bool fault_row(const Axis& axis, std::size_t row, FaultRowPayload& payload) {
+  using channel_words::bits_of;
+  const auto& kept = axis.capture();
+  if (!kept.is_frozen() || row >= kept.size()) return false;
+  const auto& sample = kept.row(row);
+  payload.rows = static_cast<std::uint16_t>(kept.size());
+  payload.every = static_cast<std::uint16_t>(kept.stride());
+  payload.dac_code = static_cast<std::uint32_t>(sample.dac_code);
+  payload.counts = static_cast<std::uint32_t>(sample.estimate.anchor_counts);
+  payload.tachometer_velocity = bits_of(sample.tachometer_velocity);
+  payload.reference_velocity = bits_of(sample.reference_velocity);
+  payload.position_error = bits_of(sample.position_error);
+  payload.velocity_estimate = bits_of(sample.estimate.velocity);
+  payload.disturbance = bits_of(sample.estimate.disturbance);
+  payload.index_way = static_cast<std::uint32_t>(axis.index_way());
+  return true;
+}
+
 /// Whole numbers, which a difference compares; the others are scalars.
 constexpr bool is_whole(Channel channel) {
   return channel == Channel::dac_code || channel == Channel::counts || channel == Channel::reference ||

@@ -26,7 +26,7 @@ class SimulatedBoardOf {
     ControlShutOut() {}  // NOLINT(modernize-use-equals-default): a guard that does nothing would be an unused variable
   };
 
-  /// As many reports as TinyUSB's port queues, and the F405's two sectors; of these only as much as a set can need.
+  /// As many reports as TinyUSB's port queues, and the F405's four sectors; of these only as much as a set can need.
   /// Axis n has the noise of seed + n.
   SimulatedBoardOf(const Drives& drives, std::uint64_t seed, const Wiring& wiring = {})
       : plants_(make_plants(drives, seed, std::make_index_sequence<axes>())),
@@ -74,7 +74,7 @@ class SimulatedBoardOf {
   SimulatedSupply supply_;
   SimulatedClock clock_;
   SimulatedUsb usb_{16};
-  SimulatedFlash flash_{2, 4096, 4};
+  SimulatedFlash flash_{4, 4096, 4};
   std::uint32_t control_period_us_ = 1000;
   bool wants_restart_ = false;
 };

@@ -1,4 +1,4 @@
-// The flash sectors that hold parameters. RM0090, sections 3.6 and 3.9.
+// The flash sectors that hold parameters and the fault log. RM0090, sections 3.6 and 3.9.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace hal::stm32f4 {
 
-/// Sectors 10 and 11 of the STM32F405RG, 128 KB each (table 5). Programs words; erasing a sector takes 1 to 2 s and
+/// Sectors 8 to 11 of the STM32F405RG, 128 KB each (table 5). Programs words; erasing a sector takes 1 to 2 s and
 /// stalls every access to flash, interrupts included: the watchdog must allow for it, the drives must be off.
 class ParameterFlash {
  public:
   ParameterFlash(FlashInterface& registers, std::byte* first_sector) : registers_(registers), memory_(first_sector) {}
 
-  static constexpr std::uintptr_t kFirstAddress = 0x080C0000;  ///< of sector 10, table 5
+  static constexpr std::uintptr_t kFirstAddress = 0x08080000;  ///< of sector 8, table 5
 
-  std::size_t sector_count() const { return 2; }
+  std::size_t sector_count() const { return 4; }
   std::size_t sector_size() const { return 128 * 1024; }
   std::size_t program_size() const { return sizeof(std::uint32_t); }
 
@@ -55,7 +55,7 @@ class ParameterFlash {
   }
 
  private:
-  static constexpr std::uint32_t kFirstSector = 10;
+  static constexpr std::uint32_t kFirstSector = 8;
 
   bool contains(std::size_t sector, std::size_t offset, std::size_t size) const {
     return sector < sector_count() && offset <= sector_size() && size <= sector_size() - offset;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "firmware/core/supervision/fault_table.hpp"
 #include "firmware/core/supervision/supervisor_state.hpp"
@@ -10,6 +11,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/device/board_report.hpp"
+#include "host/device/fault_log.hpp"
 #include "host/device/fault_record.hpp"
 
 namespace axistool {
@@ -63,10 +65,26 @@ void tell(const FaultArguments& arguments, const host::BoardState& status) {
   if (talks(arguments)) print_faults(status);
 }
 
+void tell_all(const FaultArguments& arguments, host::BoardClient& board, const host::BoardState& status) {
+  if (has_fault(status)) end_with(host::ExitCode::device_fault);
+  const host::FaultLog log = board.fault_log();
+  std::optional<firmware::ParameterValues> values;
+  if (board.identify().schema_hash == firmware::kSchemaHash) values = board.read_values();
+  const firmware::ParameterValues* known = values ? &*values : nullptr;
+  if (!arguments.json.empty()) {
+    nlohmann::json document = faults_json(status);
+    document.update({{"run_h", log.run_h}, {"log", host::fault_log_json(log, known)}});
+    write_json(document, arguments.json);
+  }
+  if (!talks(arguments)) return;
+  fmt::print("{}the board has run for {:.2f} h\n", host::fault_log_text(log, known), log.run_h);
+  print_faults(status);
+}
+
 void faults(const FaultArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   const host::BoardState status = board.status();
-  tell(arguments, status);
+  tell_all(arguments, board, status);
   if (arguments.record.empty()) return;
   board.require_same_table();
   const sim::DriveKind kind = arguments.linear ? sim::DriveKind::linear : sim::DriveKind::rotary;
@@ -93,12 +111,16 @@ void clear_faults(const FaultArguments& arguments) {
 
 void add_faults(CLI::App& app) {
   auto arguments = std::make_shared<FaultArguments>();
-  CLI::App* command = app.add_subcommand("faults", "Faults of a board: cause, remedy, and what happened just before");
+  CLI::App* command =
+      app.add_subcommand("faults", "Faults of a board: the last 64, and of those that hold it now cause and remedy");
   add_output(*command, "--record", arguments->record,
              "write what the axis kept of the time before its fault to this file");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   add_device_options(*command, *arguments);
-  command->footer("Examples:\n  axistool faults\n  axistool faults --record last.csv\nExit code 6: there is a fault.");
+  command->footer(
+      "Examples:\n  axistool faults\n  axistool faults --record last.csv\nThe log outlasts power-off: its "
+      "lines tell how long the board had run, what the axis did, and where. --json has all of it.\n"
+      "Exit code 6: there is a fault now.");
   command->callback([arguments] { faults(*arguments); });
 }
 

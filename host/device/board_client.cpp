@@ -444,6 +444,25 @@ std::optional<firmware::FaultRowPayload> BoardClient::fault_row(std::uint8_t axi
   return payload_of<firmware::FaultRowPayload>(reply);
 }
 
+FaultLog BoardClient::fault_log() {
+  FaultLog log;
+  for (firmware::FaultLogRequest wanted; wanted.age < firmware::kLoggedFaults; ++wanted.age) {
+    Message message;
+    message.type = MessageType::read_fault_log;
+    message.put(wanted);
+    const Message reply = reply_to(message, kSavePatience);  // a sector of the log may just be erased
+    if (reply.status == Status::unknown_request) break;
+    if (reply.status != Status::no_such_row) require_ok(reply);
+    const auto told = payload_of<firmware::FaultLogPayload>(reply);
+    log.run_h = told.run_s / 3600.0;
+    if (reply.status == Status::no_such_row) break;
+    if (told.entry.axis >= hal::kMostAxes)
+      fail(ExitCode::protocol, fmt::format("the board logged a fault of axis number {}", told.entry.axis));
+    log.faults.push_back(told.entry);
+  }
+  return log;
+}
+
 std::optional<BoardClient::Samples> BoardClient::next_samples(milliseconds patience) {
   const auto deadline = link_->now() + patience;
   while (samples_.empty()) {

@@ -12,6 +12,7 @@
 
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "firmware/app/protocol/excitation_messages.hpp"
+#include "firmware/app/protocol/fault_log_messages.hpp"
 #include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
@@ -23,6 +24,12 @@ namespace host {
 /// What a board says of itself and of each of its axes.
 struct BoardState : firmware::BoardStatus {
   std::vector<firmware::AxisStatus> axis;
+};
+
+/// Newest first.
+struct FaultLog {
+  double run_h = 0;  ///< that the board has run in all
+  std::vector<firmware::LoggedFault> faults;
 };
 
 /// Functions throw Failure: no_such_device (board gone), time_out (no answer), protocol (damaged or senseless answer),
@@ -87,6 +94,8 @@ class BoardClient {
   firmware::CaptureReply stop_capture();
   /// Empty beyond the last row.
   std::optional<firmware::FaultRowPayload> fault_row(std::uint8_t axis, std::uint16_t row);
+  /// Empty on a board whose firmware has none.
+  FaultLog fault_log();
 
   struct Samples {
     std::uint32_t first_row = 0;

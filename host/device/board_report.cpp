@@ -24,25 +24,19 @@ std::string nth(const Names& names, std::size_t n) {
   return n < names.size() ? std::string(names[n]) : fmt::format("number {}", n);
 }
 
+}  // namespace
+
 const char* fault_name(std::uint8_t fault) {
   return firmware::fault_info(static_cast<firmware::AxisFault>(fault)).name;
 }
 
-struct Place {
-  double value;
-  const char* unit;
-};
-
-/// Nothing of an axis whose counts mean nothing yet.
-std::optional<Place> place_of(const BoardState& status, std::size_t axis, const firmware::ParameterValues* values) {
-  if (values == nullptr || (status.axis[axis].flags & firmware::kAxisFitted) == 0) return {};
+std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,
+                                         const firmware::ParameterValues* values) {
+  if (values == nullptr || axis >= values->axes() || !values->axis(axis).get<"drive.fitted">()) return {};
   const auto drive = values->axis(axis);
   const double resolution = static_cast<double>(drive.get<"drive.encoder_resolution">());
-  return Place{static_cast<double>(status.axis[axis].counts()) * resolution,
-               drive.get<"drive.lead">() == 1.0F ? "m" : "mm"};
+  return AxisPlace{static_cast<double>(counts) * resolution, drive.get<"drive.lead">() == 1.0F ? "m" : "mm"};
 }
-
-}  // namespace
 
 std::string state_text(const firmware::AxisStatus& axis) {
   return (axis.flags & firmware::kAxisFitted) != 0 ? nth(firmware::kStateNames, axis.state) : "not fitted";
@@ -77,10 +71,10 @@ std::optional<std::string> store_problem(const BoardState& status) {
   return std::nullopt;
 }
 
-std::string fault_text(const firmware::AxisStatus& axis) {
-  if (axis.fault == 0) return "";
-  std::string text = fmt::format("fault {} {}", axis.fault, fault_name(axis.fault));
-  if (axis.second_fault != 0) text += fmt::format(", then {} {}", axis.second_fault, fault_name(axis.second_fault));
+std::string fault_text(std::uint8_t fault, std::uint8_t second_fault) {
+  if (fault == 0) return "";
+  std::string text = fmt::format("fault {} {}", fault, fault_name(fault));
+  if (second_fault != 0) text += fmt::format(", then {} {}", second_fault, fault_name(second_fault));
   return text;
 }
 
@@ -99,7 +93,7 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
                     {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
                     {"at_rest", (now.flags & firmware::kAxisAtRest) != 0},
                     {"homed", (now.flags & firmware::kAxisHomed) != 0}});
-    if (const auto place = place_of(status, axis, values))
+    if (const auto place = place_of_counts(now.counts(), axis, values))
       axes.back().update({{"position", place->value}, {"position_unit", place->unit}});
   }
   return {{"format", "axis-board/1"},
@@ -143,7 +137,7 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
     text += "the axes were disabled after host.standing_timeout without a program\n";
   for (std::size_t axis = 0; axis < status.axis.size(); ++axis) {
     const firmware::AxisStatus& now = status.axis[axis];
-    const auto place = place_of(status, axis, values);
+    const auto place = place_of_counts(now.counts(), axis, values);
     text += fmt::format(
         "axis {}       {}, {}{}{}\n", firmware::kAxisNames[axis], state_text(now),
         place ? fmt::format("{:.4f} {}", place->value, place->unit) : fmt::format("{} counts", now.counts()),

@@ -13,18 +13,28 @@ std::string state_text(const firmware::AxisStatus& axis);
 std::string store_text(std::uint8_t store_state);
 std::string reset_text(std::uint8_t reset_cause);
 
+struct AxisPlace {
+  double value;
+  const char* unit;  ///< mm, or m of a linear drive: its lead is 1
+};
+/// Nothing where the board's table of parameters is not known, or the axis is not fitted.
+std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,
+                                         const firmware::ParameterValues* values);
+
 /// Why the store keeps the drives disabled, with the remedy; empty while it does not.
 std::optional<std::string> store_problem(const BoardState& status);
 
 /// Name, version, table, store, axes: format "axis-board/1". `values`: where the board has this axistool's table; then
-/// fitted axes tell their positions in mm, or m (a linear drive: its lead is 1).
+/// fitted axes tell their positions in mm, or m.
 nlohmann::json board_json(const std::string& device, const firmware::IdentityPayload& identity,
                           const BoardState& status, const firmware::TimingPayload& timing,
                           const firmware::ParameterValues* values = nullptr);
 /// The same for people.
 std::string board_text(const std::string& device, const firmware::IdentityPayload& identity, const BoardState& status,
                        const firmware::TimingPayload& timing, const firmware::ParameterValues* values = nullptr);
-/// The axis's fault and what went wrong besides, or empty.
-std::string fault_text(const firmware::AxisStatus& axis);
+const char* fault_name(std::uint8_t fault);
+/// A fault and what went wrong besides, or empty.
+std::string fault_text(std::uint8_t fault, std::uint8_t second_fault);
+inline std::string fault_text(const firmware::AxisStatus& axis) { return fault_text(axis.fault, axis.second_fault); }
 
 }  // namespace host

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/device/board_client.hpp"
+#include "host/device/fault_log.hpp"
 #include "host/exit_codes.hpp"
 
 namespace {
@@ -54,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   host::BoardClient board(std::make_unique<FuzzedLink>(data + 1, size - 1));
   try {
-    switch (data[0] % 8) {
+    switch (data[0] % 9) {
       case 0:
         board.require_same_table();
         break;
@@ -75,6 +76,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 6:
         board.fault_row(0, 0);
+        break;
+      case 8:
+        host::fault_log_text(board.fault_log(), nullptr);
         break;
       default:
         board.start_capture({});

@@ -35,6 +35,7 @@ enum class MessageType : std::uint8_t {
   start_capture = 0x30,
   stop_capture = 0x31,
   read_fault_capture = 0x32,
+  read_fault_log = 0x33,
   restart = 0x3E,
   load_excitation = 0x40,
   start_excitation = 0x41,

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "firmware/app/protocol/excitation_messages.hpp"
+#include "firmware/app/protocol/fault_log_messages.hpp"
 #include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
 
@@ -59,6 +60,7 @@ inline constexpr std::array kRules = std::to_array<RequestRule>({
     {MessageType::start_capture,      capture_client, true,  false, kSize<CaptureRequest>, kSize<CaptureRequest>},
     {MessageType::stop_capture,       capture_client, true,  false, 0, 0},
     {MessageType::read_fault_capture, anyone,         true,  false, kSize<FaultRowRequest>, kSize<FaultRowRequest>},
+    {MessageType::read_fault_log,     anyone,         true,  false, kSize<FaultLogRequest>, kSize<FaultLogRequest>},
     {MessageType::restart,            commander,      false, false, 0, 0},
     {MessageType::load_excitation,    commander,      true,  false, kSize<ExcitationEntriesRequest>,
                                                                     kSize<ExcitationEntriesRequest>},

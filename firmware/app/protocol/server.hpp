@@ -25,6 +25,7 @@ class ProtocolServer {
   void poll(Usb& usb, const ProgramUse& use = {}) {
     use_ = use;
     app_.path().poll();
+    app_.keep_fault_log();
     if (!usb.is_configured()) {
       reply_waits_ = false;
       app_.capture().stop();
@@ -264,6 +265,13 @@ class ProtocolServer {
         return Status::ok;
       case MessageType::read_fault_capture:
         return with<FaultRowRequest>(request, [&](const FaultRowRequest& r) { return fault_row(r, reply); });
+      case MessageType::read_fault_log:
+        return with<FaultLogRequest>(request, [&](const FaultLogRequest& r) {
+          FaultLogPayload payload;
+          const bool is_there = app_.logged_fault(r.age, payload);
+          reply.put(payload);
+          return is_there ? Status::ok : Status::no_such_row;
+        });
       default:
         return Status::unknown_request;
     }

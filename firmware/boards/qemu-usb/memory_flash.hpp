@@ -1,4 +1,4 @@
-// Parameter flash in RAM that start-up leaves alone: it outlives a reset, as flash does, but not the emulator.
+// Flash in RAM that start-up leaves alone: it outlives a reset, as flash does, but not the emulator.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace firmware::boards {
 
 class MemoryFlash {
  public:
-  static constexpr std::size_t kSectors = 2, kSectorSize = 4096, kProgramSize = 4;
+  static constexpr std::size_t kSectors = 4, kSectorSize = 4096, kProgramSize = 4;
 
   /// What lies in the memory; an object of static storage in .noinit.
   struct Cells {

@@ -10,7 +10,7 @@
 #include "firmware/core/supervision/capture_ring.hpp"
 #include "firmware/core/supervision/drive_sequence.hpp"
 #include "firmware/core/supervision/drop_watch.hpp"
-#include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/fault_latch.hpp"
 #include "firmware/core/supervision/increment_limits.hpp"
 #include "firmware/core/supervision/sensor_stop.hpp"
 #include "firmware/core/supervision/standstill.hpp"
@@ -59,8 +59,8 @@ class SupervisedAxis {
   /// Forgets fault and capture; the self-test decides what comes next.
   constexpr bool clear_fault() {
     if (state_ != SupervisorState::fault) return false;
-    fault_ = second_fault_ = AxisFault::none;
-    is_fault_new_ = must_cut_power_ = false;
+    latched_.clear();
+    must_cut_power_ = false;
     axis_.clear_fault();
     capture_.restart();
     begin_self_test();
@@ -176,15 +176,12 @@ class SupervisedAxis {
     return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
   }
   /// The first fault since the last clear_fault().
-  constexpr AxisFault fault() const { return fault_; }
+  constexpr AxisFault fault() const { return latched_.first(); }
   /// Whether it came since this was asked last.
-  constexpr bool take_new_fault() {
-    if (!is_fault_new_) return false;
-    is_fault_new_ = false;
-    return true;
-  }
+  constexpr bool take_new_fault() { return latched_.take_new(); }
   /// What went wrong besides while the first fault brought the axis to a stop; the worst of it. none: nothing.
-  constexpr AxisFault second_fault() const { return second_fault_; }
+  constexpr AxisFault second_fault() const { return latched_.second(); }
+  constexpr const FaultLatch& latched() const { return latched_; }
   /// The amplifier drives on although its enable has dropped. Until clear_fault().
   constexpr bool must_cut_power() const { return must_cut_power_; }
   constexpr LimitingReasons limiting() const {
@@ -235,7 +232,7 @@ class SupervisedAxis {
   }
 
   constexpr void advance_by(SupervisorEvent event) {
-    enter(next_state(state_, event | event, fault_ != AxisFault::none));
+    enter(next_state(state_, event | event, latched_.first() != AxisFault::none));
   }
 
   /// The command is the stop's own. Faults of amplifier, converter and board drop the enable, as does a drive that does
@@ -383,20 +380,17 @@ class SupervisedAxis {
     if (state_ == SupervisorState::starting && events == 0) events = start_drive();
     if (state_ == SupervisorState::stopping && has_stopped() && brake_holds())
       events = events | SupervisorEvent::standing;
-    if (events != 0) enter(next_state(state_, events, fault_ != AxisFault::none));
+    if (events != 0) enter(next_state(state_, events, latched_.first() != AxisFault::none));
   }
 
-  /// The first fault is the one that is reported; of those that follow before the outputs are off, the first of the
-  /// worst kind is reported beside it.
+  /// Once it is latched it acts.
   constexpr SupervisorEvent latch(AxisFault found) {
-    const bool is_worse = reaction_to(found) != FaultReaction::ramp_stop;
-    const bool drops = is_worse && !begin_sensor_stop(found);
-    if (loses_position(found)) axis_.forget_home();
-    if (fault_ == AxisFault::none)
+    const bool drops = reaction_to(found) != FaultReaction::ramp_stop && !begin_sensor_stop(found);
+    if (latched_.first() == AxisFault::none)
       latch_first(found);
-    else if (found != fault_ && outputs_are_on(state_) &&
-             (second_fault_ == AxisFault::none || (is_worse && reaction_to(second_fault_) == FaultReaction::ramp_stop)))
-      second_fault_ = found;
+    else if (outputs_are_on(state_))
+      latched_.add(found);
+    if (loses_position(found)) axis_.forget_home();
     return drops ? SupervisorEvent::drop_fault : SupervisorEvent::ramp_fault;
   }
 
@@ -412,9 +406,18 @@ class SupervisedAxis {
   }
 
   constexpr void latch_first(AxisFault found) {
-    fault_ = found;
-    is_fault_new_ = true;
+    latched_.begin(found, activity(), is_homed());
     capture_.freeze(axis_.telemetry());
+  }
+
+  constexpr AxisActivity activity() const {
+    if (!outputs_are_on(state_)) return AxisActivity::disabled;
+    if (state_ == SupervisorState::starting) return AxisActivity::starting;
+    if (state_ == SupervisorState::stopping) return AxisActivity::stopping;
+    if (homing_.is_active()) return AxisActivity::homing;
+    if (axis_.is_open_loop()) return AxisActivity::open_loop;
+    if (axis_.is_at_rest()) return AxisActivity::standing;
+    return is_interpolated_ ? AxisActivity::following : AxisActivity::moving;
   }
 
   constexpr bool brake_holds() {
@@ -435,7 +438,7 @@ class SupervisedAxis {
     const bool was_on = outputs_are_on(state_);
     if (next == SupervisorState::starting && sequence_.starts_at_once()) next = SupervisorState::enabled;
     if (next == SupervisorState::stopping && !axis_.telemetry().enabled)  // no loop that could slow it down
-      next = fault_ == AxisFault::none ? SupervisorState::ready : SupervisorState::fault;
+      next = latched_.first() == AxisFault::none ? SupervisorState::ready : SupervisorState::fault;
     state_ = next;
     homing_.abandon();
     is_braking_ = false;
@@ -476,9 +479,7 @@ class SupervisedAxis {
   InputFilter drive_fault_, drive_unready_, home_switch_;
   SupervisorState state_ = SupervisorState::off;
   SupervisorEvents requests_ = 0;
-  AxisFault fault_ = AxisFault::none;
-  AxisFault second_fault_ = AxisFault::none;
-  bool is_fault_new_ = false;
+  FaultLatch latched_;
   LimitingReasons limiting_{};
   bool is_interpolated_ = false;
   IncrementLimits increments_;

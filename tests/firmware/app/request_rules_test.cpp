@@ -48,6 +48,7 @@ const std::map<int, Expected> kMessages{
     {0x30, {12, Status::others_capture}},
     {0x31, {0, Status::others_capture}},
     {0x32, {4}},
+    {0x33, {1}},
     {0x3E, {0, Status::others_motion}},
     {0x40, {52, Status::others_motion}},
     {0x41, {52, Status::others_motion}},

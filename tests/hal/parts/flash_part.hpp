@@ -1,4 +1,4 @@
-// The flash interface and two sectors of flash behind it. RM0090, chapter 3.
+// The flash interface and some sectors of flash behind it. RM0090, chapter 3.
 #pragma once
 
 #include <cstddef>

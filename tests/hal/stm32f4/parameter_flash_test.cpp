@@ -54,10 +54,10 @@ TEST_F(Flash, KeepsToTheRulesOfFlash) {
   constexpr std::array<std::byte, 4> kMore{std::byte{0xFF}, std::byte{2}, std::byte{3}, std::byte{4}};
   EXPECT_EQ(flash.program(0, 0, kMore), FlashResult::not_erased);
   EXPECT_EQ(cell(0, 0), std::byte{1});
-  EXPECT_EQ(flash.program(2, 0, kWords), FlashResult::out_of_range);
+  EXPECT_EQ(flash.program(4, 0, kWords), FlashResult::out_of_range);
   EXPECT_EQ(flash.program(0, kSector - 4, kWords), FlashResult::out_of_range);
   EXPECT_EQ(flash.program(0, 2, kWords), FlashResult::misaligned);
-  EXPECT_EQ(flash.erase(2), FlashResult::out_of_range);
+  EXPECT_EQ(flash.erase(4), FlashResult::out_of_range);
 }
 
 TEST_F(Flash, ProtectedSectorsAreAHardwareError) {

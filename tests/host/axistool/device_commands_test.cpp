@@ -132,6 +132,36 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_EQ(json("faults")["axes"][0]["fault"], "none");
 }
 
+/// The log outlasts what the fault itself does not: its clearing, saves, and a pulled plug.
+TEST_F(DeviceCommands, FaultsAreLogged) {
+  ASSERT_EQ(run("set-params " + design() + " host.timeout=0.2 --save").exit_code, 0);
+  EXPECT_TRUE(json("faults")["log"].empty());
+  ASSERT_EQ(run("enable x --yes").exit_code, 0);
+  run_program("timeout -s KILL 1.5 \"" AXISTOOL_PROGRAM "\" jog" + board_.device() + "x 10 --for 60", "2>&1");
+  nlohmann::json faults;
+  for (int tries = 0; tries < 50 && (!faults.contains("log") || faults["log"].empty()); ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    faults = nlohmann::json::parse(run_axistool("faults" + board_.device() + "--json -", "2>/dev/null").output);
+  }
+  ASSERT_FALSE(faults["log"].empty());
+  const nlohmann::json entry = faults["log"].back();  // x; the other axis, not fitted, has none
+  EXPECT_EQ(entry["fault"], "host_heartbeat_lost");
+  EXPECT_EQ(entry["axis"], "x");
+  EXPECT_EQ(entry["activity"], "moving");
+  EXPECT_EQ(entry["position_unit"], "mm");
+  EXPECT_GT(entry["position"].get<double>(), 1.0);
+  EXPECT_FALSE(entry["homed"].get<bool>());
+  ASSERT_EQ(run("clear-faults").exit_code, 0);
+  ASSERT_EQ(run("save").exit_code, 0);
+  board_.end(SIGKILL);
+  std::filesystem::remove(folder_.path("board.socket"));
+  const SimulatedBoardProcess again(folder_.path(""), {"--x", kCase + "/model.toml"});
+  const ProgramRun told = again.run("faults");
+  EXPECT_EQ(told.exit_code, 0) << "there is none now";
+  EXPECT_THAT(told.output, AllOf(HasSubstr("#1 "), HasSubstr("fault 19 host_heartbeat_lost, moving, at "),
+                                 HasSubstr(" mm (not homed)"), HasSubstr(", no fault")));
+}
+
 TEST_F(DeviceCommands, CaptureEnablesTheAxisThatItJogs) {
   fit();
   const std::string capture = "capture -o " + file("jogs.csv") + " --jog 20:0.2,-20:0.2";

@@ -1,0 +1,43 @@
+// The fault log on the wire, as its entries lie in flash.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace firmware {
+
+inline constexpr std::size_t kLoggedFaults = 64;  ///< the newest ones
+
+struct LoggedFault {
+  std::uint32_t number = 0;  ///< of the faults since the log began, the first is 1
+  std::uint32_t run_s = 0;   ///< that the board had run in all
+  std::uint32_t counts_low = 0;
+  std::int32_t counts_high = 0;
+  float velocity = 0;  ///< estimated, rad/s (m/s)
+  std::int16_t dac_code = 0;
+  std::uint8_t axis = 0;
+  std::uint8_t fault = 0;
+  std::uint8_t second_fault = 0;
+  std::uint8_t activity = 0;  ///< AxisActivity
+  std::uint8_t homed = 0;     ///< 1: the counts are from home
+  std::uint8_t reserved = 0;
+
+  constexpr std::int64_t counts() const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
+                                     counts_low);
+  }
+  bool operator==(const LoggedFault&) const = default;
+};
+static_assert(sizeof(LoggedFault) == 28 && std::is_trivially_copyable_v<LoggedFault>);
+
+struct FaultLogRequest {
+  std::uint8_t age = 0;  ///< 0 is the newest
+};
+
+struct FaultLogPayload {
+  std::uint32_t run_s = 0;  ///< that the board has run in all, until now
+  LoggedFault entry{};
+};
+
+}  // namespace firmware
