@@ -87,6 +87,13 @@ ResidualEffort part_in(const ResidualEffort& all, std::size_t record, const Time
   return part;
 }
 
+/// Whether there is anything to draw a curve over: one rest is none.
+bool spreads(const std::vector<double>& coordinate) {
+  if (coordinate.empty()) return false;
+  const auto [least, most] = std::ranges::minmax(coordinate);
+  return most - least > 0.1 * std::max(std::abs(least), std::abs(most));
+}
+
 /// The first model's residual in the stretch of the focus, where that has samples.
 void add_stretch(std::vector<ResidualView>& views, const ComparedModel& model, const Focus& focus) {
   if (!focus.stretch) return;
@@ -172,7 +179,7 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report, c
        {std::pair("travel_since_reversal", "After a reversal"), std::pair("rest", "After a rest"),
         std::pair("current", "Against the command"), std::pair("temperature", "Against temperature")}) {
     const ResidualCoordinate over = coordinate_of(name, first.data.kind);
-    if ((views.front().force.*over.along).empty()) continue;
+    if (!spreads(views.front().force.*over.along)) continue;
     add_residual_plot(report, over, title, {"missing " + effort, units.effort}, views, &ResidualView::force,
                       Layout::overlaid);
   }

@@ -62,6 +62,18 @@ nlohmann::json improved(const Request& request, const sim::DriveDescription& mod
 
 }  // namespace
 
+std::vector<ComparedModel> compared_models(const Folder& folder, const Request& request) {
+  require_files(folder, request);
+  std::vector<ComparedModel> models;
+  for (const std::string& path : request.models) {
+    std::vector<Record> records;
+    for (const std::string& record : request.train) records.push_back(read_record(record));
+    models.push_back(compare_with(path, read_model(path), std::move(records), kWindow_s, request.accepted));
+    throw_if_cancelled();
+  }
+  return models;
+}
+
 Comparison compare(const Folder& folder, const Request& request) {
   require_files(folder, request);
   const sim::DriveDescription first = read_model(request.models.front());
@@ -70,13 +82,7 @@ Comparison compare(const Folder& folder, const Request& request) {
     for (const Record& record : tracks) errors.push_back(tracking_error(record));
     return {tracking_json(errors), "", tracking_text(errors), ""};
   }
-  std::vector<ComparedModel> models;
-  for (const std::string& path : request.models) {
-    std::vector<Record> records;
-    for (const std::string& record : request.train) records.push_back(read_record(record));
-    models.push_back(compare_with(path, read_model(path), std::move(records), kWindow_s, request.accepted));
-    throw_if_cancelled();
-  }
+  const std::vector<ComparedModel> models = compared_models(folder, request);
   const std::size_t traces = record_in(request.focus, models.front().comparison);
   return {comparison_document(models), comparison_report(models, request.focus).html(), "", request.train[traces]};
 }

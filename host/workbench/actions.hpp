@@ -4,9 +4,14 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "host/workbench/folder.hpp"
 #include "host/workbench/request.hpp"
+
+namespace host {
+struct ComparedModel;
+}
 
 namespace host::workbench {
 
@@ -16,6 +21,9 @@ struct Comparison {
   std::string text;         ///< in place of the page
   std::string traces;       ///< record whose traces the page draws
 };
+
+/// The models that the request names, against its records. Throws as the command does.
+std::vector<ComparedModel> compared_models(const Folder& folder, const Request& request);
 
 /// Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);

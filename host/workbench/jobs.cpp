@@ -189,6 +189,23 @@ std::optional<nlohmann::json> Jobs::state(int id) const {
   return state;
 }
 
+std::vector<nlohmann::json> Jobs::steps_to(std::string model) const {
+  std::vector<int> ids;
+  {
+    const std::lock_guard lock(mutex_);
+    // A step was asked for before the one that went on from it.
+    for (auto item = jobs_.rbegin(); item != jobs_.rend(); ++item) {
+      const Job& job = *item->second;
+      if (job.state["state"] != "done" || job.state["model"] != model) continue;
+      ids.push_back(item->first);
+      model = job.request.models.front();
+    }
+  }
+  std::vector<nlohmann::json> steps;
+  for (auto id = ids.rbegin(); id != ids.rend(); ++id) steps.push_back(*state(*id));
+  return steps;
+}
+
 bool Jobs::cancel(int id) {
   const std::lock_guard lock(mutex_);
   const auto found = jobs_.find(id);

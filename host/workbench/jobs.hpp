@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "host/workbench/folder.hpp"
 #include "host/workbench/request.hpp"
@@ -36,6 +37,9 @@ class Jobs {
   /// "axis-job/1": { "id", "request", "command", "state": "queued"|"running"|"done"|"failed"|"cancelled"|"interrupted",
   /// "share", "message", "model", "report", "document": the command's --json }; empty where there is no such job.
   std::optional<nlohmann::json> state(int id) const;
+
+  /// States, with documents, of the jobs that led to a model, first one first.
+  std::vector<nlohmann::json> steps_to(std::string model) const;
 
   /// Whether there is such a job; one that has ended stays as it is.
   bool cancel(int id);

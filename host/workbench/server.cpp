@@ -24,6 +24,7 @@
 #include "host/workbench/jobs.hpp"
 #include "host/workbench/page_files.hpp"
 #include "host/workbench/request.hpp"
+#include "host/workbench/story.hpp"
 
 namespace host::workbench {
 
@@ -175,6 +176,17 @@ struct Server::Parts {
                     {"text", std::move(comparison.text)}});
   }
 
+  /// From the model that the steps began with to the one that is asked for.
+  void send_story(Request request, Response& response) {
+    if (request.task != Task::compare || request.models.size() != 1)
+      throw Failure(ExitCode::usage, "request, \"do\": compare of one model belongs here");
+    const std::vector<nlohmann::json> steps = jobs.steps_to(request.models.front());
+    if (!steps.empty()) request.models.insert(request.models.begin(), steps.front()["request"]["model"]);
+    const std::lock_guard one_at_a_time(comparing);
+    const CancelledBy scope(&is_ending);
+    send(response, {{"report", story_page(folder, request, steps)}});
+  }
+
   void submit(const Request& request, Response& response) {
     if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is no job");
     send(response, {{"id", jobs.submit(request)}});
@@ -219,6 +231,9 @@ struct Server::Parts {
          [this](const Query&, Response& response, const std::string& body) { submit(parse_request(body), response); });
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
+    });
+    post("/api/story", [this](const Query&, Response& response, const std::string& body) {
+      send_story(parse_request(body), response);
     });
     post("/api/cut", [this](const Query&, Response& response, const std::string& body) {
       send(response, cut_out(folder, parse_cut(body)));

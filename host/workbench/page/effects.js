@@ -2,9 +2,10 @@
 import { choice, chosenRecords, workOn } from "./choice.js";
 import { showComparison } from "./compare.js";
 import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
-import { fileAddress, get, report } from "./exchange.js";
+import { fileAddress, get, post, report } from "./exchange.js";
 import { errorBars, errorTable, parameterTable, probabilityBar } from "./figures.js";
 import { begin, jobs, whole } from "./jobs.js";
+import { save } from "./plot_files.js";
 import { forgetPlots, partsOf, showBlocks } from "./report_parts.js";
 
 const kLeastGain = 0.05; // of the error; less changes nothing
@@ -50,9 +51,9 @@ function searched() {
   return jobs.find((job) => job.request.do === "diagnose" && job.request.model === choice.model && sameRecords(job));
 }
 
-/** @param {string} kind */
-export function add(kind) {
-  return begin({ ...request("add"), kind });
+/** @param {string} kind @param {string} [over] coordinate of a free curve */
+export function add(kind, over) {
+  return begin({ ...request("add"), kind, ...(over ? { over } : {}) });
 }
 
 /** When a job has ended: the new model is worked on, and the rest of a set follows. @param {any[]} ended */
@@ -77,6 +78,13 @@ function undo() {
   workOn(made.request.model);
 }
 
+/** One page of what was done, on held-back records where there are some. */
+async function saveStory() {
+  const records = chosenRecords();
+  const told = await post("/api/story", { do: "compare", models: [choice.model], records: records.validate.length ? records.validate : records.train, accept: accepted }).catch((error) => notice(error.message));
+  if (told) save("story.html", new Blob([told.report], { type: "text/html" }));
+}
+
 async function ladder(place, steps) {
   const rows = [];
   for (const job of steps) {
@@ -88,10 +96,11 @@ async function ladder(place, steps) {
   }
   const last = steps.at(-1), told = await documentOf(last);
   place.append(el("div", { className: "row" }, el("h2", {}, "The ladder so far"),
-    el("button", { type: "button", id: "undo", title: "Key U", onclick: undo }, "Undo: back to " + last.request.model)));
+    el("button", { type: "button", id: "undo", title: "Key U", onclick: undo }, "Undo: back to " + last.request.model),
+    el("button", { type: "button", id: "story", onclick: saveStory }, "Save the story")));
   if (told.kept === "given") place.append(el("p", { className: "lead" }, "The last step predicts held-back records worse: " + last.model + " holds the model as it was."));
-  place.append(el("div", { className: "pair" }, errorBars(rows), errorTable(told.error.given, told.error.after)));
-  if (told.parameters) place.append(parameterTable(told.parameters));
+  const rotary = "x_mm" in told.error.after.train.channels || "w_rad_s" in told.error.after.train.channels;
+  place.append(el("div", { className: "pair" }, el("div", {}, errorBars(rows), errorTable(told.error.given, told.error.after)), ...(told.parameters ? [parameterTable(told.parameters, catalogue, rotary)] : [])));
   place.append(commandLine(last.command));
 }
 
@@ -110,8 +119,8 @@ function card(candidate, told) {
     el("div", { className: "row" }, el("button", { type: "button", className: "primary", onclick: click }, "Add it"), el("a", { href: "#gallery/" + candidate.kinds.at(-1) }, "About it")));
 }
 
-function plainCard(title, share, text) {
-  return el("li", { className: "card plain" }, el("h3", {}, title), probabilityBar(share), el("p", {}, text));
+function plainCard(title, share, text, action = null) {
+  return el("li", { className: "card plain" }, el("h3", {}, title), probabilityBar(share), el("p", {}, text), action);
 }
 
 function cards(told) {
@@ -120,7 +129,8 @@ function cards(told) {
   const useful = told.candidates.filter((one) => gains(one) || one.probability >= 0.01), rest = told.candidates.filter((one) => !useful.includes(one));
   const list = useful.map((one) => card(one, told));
   if (verdict.probability_other > 0) list.push(plainCard("Something else", verdict.probability_other,
-    (verdict.coordinate ? "Most of what is left goes with " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment));
+    (verdict.coordinate ? "Most of what is left goes with " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment,
+    el("div", { className: "row" }, el("button", { type: "button", onclick: () => add("free_curve") }, "Add a free curve"))));
   if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "What is left would be noise."));
   const places = [el("h2", {}, "What it could be"), el("ol", { className: "cards", id: "cards" }, ...list)];
   for (const group of verdict.alternatives) places.push(el("p", { className: "lead" }, "These records cannot tell apart: " + group.map((kind) => titleOf([kind])).join(", ") + "."));

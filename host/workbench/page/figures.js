@@ -45,10 +45,19 @@ export function errorTable(given, after) {
     el("div", { className: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), el("tbody", {}, ...rows))));
 }
 
-/** What was fitted. @param {any[]} parameters of axis-addition/1 */
-export function parameterTable(parameters) {
+/** "cogging.cosine" as the model file has it, with its unit. @param {string} name @param {any[]} catalogue @param {boolean} rotary */
+function keyOf(name, catalogue, rotary) {
+  const [kind, id] = name.split(".");
+  const number = /_\d+$/.exec(id)?.[0] || "";
+  const parameters = catalogue.find((one) => one.kind === kind)?.parameters || [];
+  const known = parameters.find((one) => one.id === id) || parameters.find((one) => one.id + number === id);
+  return kind.replaceAll("_", " ") + ": " + (known ? (rotary ? known.rotary_key : known.linear_key) + (known.id === id ? "" : number) : id);
+}
+
+/** What was fitted. @param {any[]} parameters of axis-addition/1 @param {any[]} catalogue @param {boolean} rotary */
+export function parameterTable(parameters, catalogue, rotary) {
   const k95 = 1.96;
-  const rows = parameters.map((one) => el("tr", {}, el("td", {}, one.name), el("td", { className: "number" }, String(Number(one.value.toPrecision(5)))),
+  const rows = parameters.map((one) => el("tr", {}, el("td", {}, keyOf(one.name, catalogue, rotary)), el("td", { className: "number" }, String(Number(one.value.toPrecision(5)))),
     el("td", { className: "number" }, one.determined ? "± " + short(k95 * one.deviation) : "not determined")));
   const heads = ["parameter", "value", "95 %"].map((text) => el("th", { scope: "col" }, text));
   return el("figure", { className: "table" }, el("figcaption", {}, el("strong", {}, "Parameters, all fitted again")),

@@ -40,7 +40,8 @@ function goTo() {
 function pressed(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("input:not([type=radio]):not([type=checkbox]), select, textarea")) return;
   const view = kViews[Number(event.key) - 1];
-  if (view) location.hash = view[0];
+  if (view && !isShown(view[0])) location.hash = view[0];
+  else if (view) return;
   else if (isShown("effects")) keys[event.key]?.();
 }
 

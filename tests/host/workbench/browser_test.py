@@ -142,6 +142,18 @@ class Workbench(unittest.TestCase):
         self.assertEqual(browser.execute_script("return document.querySelector('input[name=model]:checked').parentElement.textContent"), "model+cogging.toml")
         self.quiet()
 
+        browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(self.folder / "downloads")})
+        self.click("#story")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: (self.folder / "downloads/story.html").exists())
+        browser.switch_to.new_window("tab")
+        browser.get((self.folder / "downloads/story.html").as_uri())
+        self.until(".dygraph-legend, .canvas canvas")
+        self.assertIn("axistool add model.toml cogging", browser.find_element(By.TAG_NAME, "body").text)
+        self.keep("story")
+        self.quiet()
+        browser.close()
+        browser.switch_to.window(browser.window_handles[0])
+
         # The same figures as the command's, and what was done can be undone.
         command = next(text for text in self.texts(".command code") if text.startswith("axistool add"))
         told = json.loads((self.folder / "workbench/0002-add.json").read_text())
@@ -191,7 +203,7 @@ class Workbench(unittest.TestCase):
             browser.set_window_size(width, height)
             browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
             browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
-            for key, shown in (("1", "#content .blocks canvas"), ("2", "#diagnose"), ("3", ".effect"), ("4", "#content h1")):
+            for key, shown in (("1", "#content .focus ~ div .blocks canvas"), ("2", "#diagnose"), ("3", ".effect"), ("4", "#content h1")):
                 browser.find_element(By.TAG_NAME, "body").send_keys(key)
                 self.until(shown)
                 time.sleep(0.3)

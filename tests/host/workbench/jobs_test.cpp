@@ -100,6 +100,12 @@ TEST(Jobs, AnAdditionIsThatOfTheCommandAndNeitherReloadNorCrashLosesIt) {
   EXPECT_EQ(again, first["document"]);
   EXPECT_EQ(host::read_file("model+cogging.toml"), written) << "the same file by the command";
 
+  const json look = {{"do", "compare"}, {"models", {"model+cogging.toml"}}, {"records", {"validate.csv"}}};
+  const std::string story = served.post("/api/story", look).second.value("report", "");
+  for (const char* told_there :
+       {"+ cogging", "model+cogging.toml predicts best", "cogging.period", "-o model+cogging.toml"})
+    EXPECT_THAT(story, testing::HasSubstr(told_there));
+
   // Another session on the folder; one of whose jobs was under way when the last one crashed.
   json crashed = json::parse(host::read_file("workbench/0001.job.json"));
   crashed["id"] = 2;
