@@ -35,6 +35,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/device/"] = "host/device/ host/path/ host/link/ host/parameters/ host/record/ sim/ hal/ firmware/core/ firmware/app/"
     may["host/external_plant/"] = "host/external_plant/ host/record/ sim/"
     may["host/response/"] = "host/response/ host/model/ host/report/ " may["host/device/"] " " may["host/identify/"]
+    may["host/axes/"] = "host/axes/ host/infer/ " may["host/response/"]
     may["host/plan/"] = "host/plan/ host/device/ host/parameters/ hal/ firmware/core/ firmware/app/ " may["host/diagnose/"]
     may["host/axistool/"] = "host/ host/axistool/ sim/ hal/ firmware/core/ firmware/app/"
     may["tests/"] = "tests/ host/ host/axistool/ sim/ hal/ firmware/"

@@ -1,11 +1,14 @@
-// axistool design: Kalman gain and state feedback from a model, as board parameters.
+// axistool design: Kalman gain and state feedback from models, as board parameters.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cctype>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 #include "host/atomic_file.hpp"
+#include "host/axes/machine_design.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/identify/design_json.hpp"
@@ -15,6 +18,7 @@
 #include "host/parameters/compensation_parameters.hpp"
 #include "host/parameters/design_file.hpp"
 #include "host/record/read_record.hpp"
+#include "host/report/terminal.hpp"
 #include "host/response/loop_design.hpp"
 #include "host/response/response_report.hpp"
 
@@ -23,12 +27,13 @@ namespace axistool {
 namespace {
 
 struct DesignArguments {
-  std::string model, output, json;
-  std::vector<std::string> accepted;
+  std::vector<std::string> models, accepted;
+  std::string output, json;
   host::DesignOptions options;
   std::vector<std::string> response;
-  std::string report, notch, low_pass;
+  std::string report, notch, low_pass, feedforward = "zero-phase";
   std::optional<double> margin, crossover_Hz;
+  bool own = false;
 };
 
 /// "110", "110,0.5", "110,0.5,0.1": up to three numbers above 0.
@@ -62,7 +67,8 @@ host::LoopAim aim_of(const DesignArguments& arguments) {
     aim.filters.low_pass = host::LowPass{n[0]};
     if (n.size() > 1) aim.filters.low_pass->damping = n[1];
   }
-  if (arguments.response.empty() && (aim.modulus || aim.crossover_Hz || aim.seek_notch))
+  const bool is_machine = arguments.models.size() > 1;
+  if (arguments.response.empty() && !is_machine && (aim.modulus || aim.crossover_Hz || aim.seek_notch))
     throw host::Failure(host::ExitCode::usage,
                         "--margin, --bandwidth and --notch auto look at a measured response: give --response with what "
                         "`axistool bode --json` wrote, or with records");
@@ -117,10 +123,104 @@ void print_compensation(const sim::DriveDescription& model) {
   if (!rest.empty()) fmt::print("it does not compensate    {}\n", fmt::join(rest, ", "));
 }
 
-void run(const DesignArguments& arguments) {
-  const sim::DriveDescription model = host::read_model(arguments.model, host::Bounds::examined_later);
+sim::DriveDescription model_of(const std::string& path, const DesignArguments& arguments) {
+  sim::DriveDescription model = host::read_model(path, host::Bounds::examined_later);
   host::require_volts(model.data, model.name, "a controller");
   host::require_plausible(model, arguments.accepted);
+  return model;
+}
+
+/// A file of each axis, named after it.
+std::string parameter_file(const std::string& folder, const std::string& axis) {
+  for (const char c : axis)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_')
+      throw host::Failure(
+          host::ExitCode::usage,
+          fmt::format("a file cannot be named after the axis \"{}\": letters, digits, - and _ only", axis));
+  return (std::filesystem::path(folder) / (axis + "-params.toml")).string();
+}
+
+void write_machine(const host::LoopSet& loops, const std::string& folder) {
+  std::vector<std::string> files;
+  for (const host::AxisLoop& loop : loops.axes) files.push_back(parameter_file(folder, loop.model.name));
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault)
+    throw host::Failure(host::ExitCode::bad_input,
+                        fmt::format("{}: cannot make this folder: {}", folder, fault.message()));
+  for (std::size_t i = 0; i < files.size(); ++i)
+    host::write_file_atomically(files[i],
+                                host::design_toml(loops.axes[i].model, loops.axes[i].design, loops.axes[i].filters));
+}
+
+void print_loops(const char* title, const host::LoopSet& loops) {
+  fmt::print("{}\n", title);
+  for (const host::AxisLoop& loop : loops.axes) {
+    const std::string filters = filter_text(loop.filters);
+    fmt::print("  axis {:<4} poles at {:6.2f} Hz, zeta {:g}; observer {:6.1f} Hz; modulus margin {}{}\n",
+               loop.model.name, loop.design.used.bandwidth_Hz, loop.design.used.damping,
+               loop.design.observer_fn_Hz.front(), loop.modulus ? fmt::format("{:.2f}", *loop.modulus) : "-",
+               filters.empty() ? "" : "; " + filters);
+  }
+}
+
+void print_machine(const host::MachineDesign& machine, const DesignArguments& arguments) {
+  print_loops("one loop for all axes", machine.matched);
+  fmt::print("  limited by {}\n", machine.limited_by);
+  print_loops("\nthe best of each axis", machine.own);
+  fmt::print(
+      "\nError by the difference of the axes (a line at 45 degrees; half axes of a circle of {:g} mm)\n"
+      "{:>12}{:>16}{:>12}{:>16}{:>12}\n{:>12}{:>16}{:>12}{:>16}{:>12}\n",
+      host::kForecastRadius_mm, "feed", "line, matched", "ellipse", "line, own", "ellipse", "mm/s", "um", "um", "um",
+      "um");
+  for (std::size_t i = 0; i < machine.matched.contour.size(); ++i) {
+    const host::FeedContour &matched = machine.matched.contour[i], &own = machine.own.contour[i];
+    fmt::print("{:12g}{:16.2f}{:12.2f}{:16.2f}{:12.2f}\n", matched.feed_mm_s, matched.line_45_um, matched.ellipse_um,
+               own.line_45_um, own.ellipse_um);
+  }
+  if (!machine.matched.remaining.empty())
+    fmt::print("What is left of the matched loop's error comes from the drives' {}.\n", machine.matched.remaining);
+  if (arguments.response.empty())
+    fmt::print(
+        "The margins are the models' own: resonances and dead time that they lack are not seen. `axistool bode` "
+        "measures them; give --response.\n");
+  if (!arguments.output.empty())
+    fmt::print("\n{} parameters written to {}\n", arguments.own ? "each axis's own" : "matched", arguments.output);
+}
+
+void run_machine(const DesignArguments& arguments) {
+  if (!arguments.report.empty())
+    throw host::Failure(host::ExitCode::usage, "--report shows one axis: give it one model");
+  if (!arguments.response.empty() && arguments.response.size() != arguments.models.size())
+    throw host::Failure(host::ExitCode::usage,
+                        fmt::format("--response: {} files for {} axes; give what `bode --json` wrote of each, in the "
+                                    "order of the models",
+                                    arguments.response.size(), arguments.models.size()));
+  std::vector<host::AxisTask> tasks;
+  for (std::size_t i = 0; i < arguments.models.size(); ++i) {
+    tasks.push_back({model_of(arguments.models[i], arguments), {}});
+    if (arguments.response.empty()) continue;
+    tasks.back().measured = measured_response({arguments.response[i]});
+    if (!tasks.back().measured->fit)
+      throw host::Failure(host::ExitCode::refused,
+                          arguments.response[i] + ": too few frequencies were measured to design on them");
+  }
+  const host::LoopAim aim = aim_of(arguments);
+  host::core_filters(aim.filters, tasks.front().model.data.sample_period_s);  // in their ranges
+  const host::MachineDesign machine = host::design_machine(tasks, arguments.options, aim);
+  if (!arguments.output.empty()) write_machine(arguments.own ? machine.own : machine.matched, arguments.output);
+  if (!arguments.json.empty()) {
+    nlohmann::json document = host::machine_json(machine);
+    document["written"] = arguments.own ? "own" : "matched";
+    write_json(document, arguments.json);
+  }
+  if (arguments.json != "-") print_machine(machine, arguments);
+}
+
+void run(const DesignArguments& arguments) {
+  if (arguments.own)
+    throw host::Failure(host::ExitCode::usage, "--own chooses between loops of several axes: give a model of each");
+  const sim::DriveDescription model = model_of(arguments.models.front(), arguments);
   const host::LoopAim aim = aim_of(arguments);
   std::optional<host::LoopDesign> loop;
   if (!arguments.response.empty())
@@ -162,8 +262,21 @@ void run(const DesignArguments& arguments) {
 void add_design(CLI::App& app) {
   auto arguments = std::make_shared<DesignArguments>();
   CLI::App* command = app.add_subcommand("design", "Kalman gain and state feedback from a model -> board parameters");
-  add_input(*command, "MODEL", arguments->model, "model file (axis-model/1)")->required();
-  add_output(*command, "-o,--output", arguments->output, "file for the board parameters (axis-params/1)");
+  add_input(*command, "MODEL", arguments->models,
+            "model file (axis-model/1); several: the axes of one machine, which get one closed loop")
+      ->required();
+  const CLI::Option* const output =
+      add_output(*command, "-o,--output", arguments->output,
+                 "file for the board parameters (axis-params/1); of several models the folder for AXIS-params.toml");
+  command->parse_complete_callback([arguments, output] {
+    if (arguments->models.size() > 1) note_role(*output, FileRole::output_folder);
+  });
+  command->add_flag("--own", arguments->own, "of several models: write the best loop of each axis, not the common one");
+  command
+      ->add_option("--feedforward", arguments->feedforward,
+                   "zero-phase (ZPETC), or velocity: of the reference velocity alone")
+      ->check(CLI::IsMember({"zero-phase", "velocity"}))
+      ->capture_default_str();
   command->add_option("--rw", arguments->options.tach_variance,
                       "tachometer variance, rad^2/s^2 (default 0.05) or m^2/s^2 (default: the model's own)");
   command->add_option("--rwd", arguments->options.disturbance_variance, "disturbance variance, V^2")
@@ -178,7 +291,7 @@ void add_design(CLI::App& app) {
                       "has or that its records determine");
   add_input(*command, "--response", arguments->response,
             "what `bode --json` wrote of this axis, or records of it: the design is shown on it, and --margin, "
-            "--bandwidth and --notch auto are sought on it");
+            "--bandwidth and --notch auto are sought on it; of several models one such file each, in their order");
   command->add_option("--margin", arguments->margin, "raise --fc as far as this modulus margin allows (0.5 is usual)")
       ->check(CLI::Range(0.05, 0.95));
   command->add_option("--bandwidth", arguments->crossover_Hz, "but the open loop's crossover no higher than this, Hz")
@@ -193,12 +306,20 @@ void add_design(CLI::App& app) {
       "  axistool design x.toml -o x-params.toml\n"
       "  axistool design x.toml --fc 40 --zeta 0.8 --json -\n"
       "  axistool design x.toml --response bode.json --margin 0.5 --notch auto -o x-params.toml\n"
+      "  axistool design x.toml y.toml --response bode-x.json bode-y.json --margin 0.5 -o machine\n"
       "Larger --rwd: the disturbance estimate follows faster and is noisier. Larger --fc: stiffer, until noise or a\n"
       "resonance limits it; keep it well below the observer's fn. The file also switches on what the board can\n"
       "compensate of the model's effects (cogging, presliding, friction along the travel, backlash, tachometer): "
       "after\n"
-      "`improve`, design again and set-params once. Exit code 8: the model's values are none that a drive can have.");
-  command->callback([arguments] { run(*arguments); });
+      "`improve`, design again and set-params once.\n"
+      "Several models are the axes of one machine: they get one closed loop (poles of loop and estimator, filters,\n"
+      "feed-forward), as fast as the slowest axis allows at --margin, because axes that lag differently turn straight\n"
+      "lines and make circles ellipses. What remains is told by feed in um, beside what the best loop of each axis\n"
+      "(--own) would cost. Exit code 8: the model's values are none that a drive can have.");
+  command->callback([arguments] {
+    arguments->options.zero_phase = arguments->feedforward == "zero-phase";
+    arguments->models.size() > 1 ? run_machine(*arguments) : run(*arguments);
+  });
 }
 
 }  // namespace axistool

@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 
 double distance(const PlanePoint& a, const PlanePoint& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-PathSegment line(const PlanePoint& begin, const PlanePoint& end) { return {begin, end, {}, 0.0}; }
+PathSegment line_between(const PlanePoint& begin, const PlanePoint& end) { return {begin, end, {}, 0.0}; }
 PathSegment arc(const PlanePoint& begin, const PlanePoint& centre, double angle) { return {begin, {}, centre, angle}; }
 
 }  // namespace
@@ -54,6 +54,12 @@ double PathSegment::distance_to(const PlanePoint& point) const {
   return std::min(distance(point, begin), distance(point, at(whole)));
 }
 
+Path Path::line(const PlanePoint& end) {
+  Path path;
+  path.segments_.push_back(line_between({}, end));
+  return path;
+}
+
 Path Path::circle(double radius_mm, int turns) {
   Path path;
   path.segments_.push_back(arc({0.0, 0.0}, {radius_mm, 0.0}, 2.0 * kPi * turns));
@@ -75,15 +81,15 @@ Path Path::rounded_square(double side_mm, double corner_radius_mm) {
   }
   Path path;
   auto& pieces = path.segments_;
-  pieces.push_back(line({0.0, 0.0}, {straight, 0.0}));
+  pieces.push_back(line_between({0.0, 0.0}, {straight, 0.0}));
   pieces.push_back(arc({straight, 0.0}, {straight, r}, kPi / 2));
-  pieces.push_back(line({half, r}, {half, side_mm - r}));
+  pieces.push_back(line_between({half, r}, {half, side_mm - r}));
   pieces.push_back(arc({half, side_mm - r}, {straight, side_mm - r}, kPi / 2));
-  pieces.push_back(line({straight, side_mm}, {-straight, side_mm}));
+  pieces.push_back(line_between({straight, side_mm}, {-straight, side_mm}));
   pieces.push_back(arc({-straight, side_mm}, {-straight, side_mm - r}, kPi / 2));
-  pieces.push_back(line({-half, side_mm - r}, {-half, r}));
+  pieces.push_back(line_between({-half, side_mm - r}, {-half, r}));
   pieces.push_back(arc({-half, r}, {-straight, r}, kPi / 2));
-  pieces.push_back(line({-straight, 0.0}, {0.0, 0.0}));
+  pieces.push_back(line_between({-straight, 0.0}, {0.0, 0.0}));
   return path;
 }
 

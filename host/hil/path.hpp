@@ -30,7 +30,10 @@ struct PathSegment {
 
 class Path {
  public:
-  /// Starts and ends at the origin; the centre lies at (radius, 0). `turns` full turns, counter-clockwise.
+  /// From the origin to `end`, which is another point.
+  static Path line(const PlanePoint& end);
+  /// Starts and ends at the origin; the centre lies at (radius, 0). `turns` full turns, counter-clockwise; negative
+  /// ones clockwise.
   static Path circle(double radius_mm, int turns = 1);
   /// Starts and ends at the origin, the middle of the lower side; corners are quarter circles.
   /// Throws Failure(bad_input) where the corners do not fit the side.

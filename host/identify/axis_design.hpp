@@ -17,6 +17,7 @@ struct DesignOptions {
   std::optional<double> position_variance;  ///< Rx, mm^2 or m^2, > 0; default dx^2/12
   double bandwidth_Hz = 30.0;               ///< of the closed loop's poles, > 0 and below half the sampling rate
   double damping = 0.7;                     ///< of the closed loop's poles, > 0
+  bool zero_phase = true;                   ///< feed-forward; otherwise of the reference velocity alone, eq. (50)
 };
 
 /// The steady-state estimator (43) and feedback (50) of one axis.

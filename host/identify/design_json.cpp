@@ -23,7 +23,8 @@ nlohmann::json design_json(const AxisDesign& design) {
                          {"ru", *design.used.command_variance},
                          {"rx", *design.used.position_variance},
                          {"fc_Hz", design.used.bandwidth_Hz},
-                         {"zeta", design.used.damping}};
+                         {"zeta", design.used.damping},
+                         {"zero_phase", design.used.zero_phase}};
   if (design.used.tach_variance) used["rw"] = *design.used.tach_variance;
   return {{"format", "axis-design/1"},
           {"A", rows_of(design.model.A)},

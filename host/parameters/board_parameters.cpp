@@ -64,6 +64,8 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
   const Eigen::Vector3d& B = design.model.B;
   const auto gain = [&](int row, int column) { return column < design.Kobs.cols() ? design.Kobs(row, column) : 0.0; };
   const FrictionLaw friction = friction_law(model);
+  const double viscous =
+      rigid_axis(model).viscous - design.axis.viscous;  // mostly none: the design's own is the model's
   // Smoothed through zero over a hundredth of a turn a second; a hundredth of 1 mm/s for a linear drive's metres.
   const double blend = rotary ? 0.06 : 1e-4;
 
@@ -87,7 +89,7 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
   list.push_back({"feedback.k1", design.Kc(0)});
   list.push_back({"feedback.k2", design.Kc(1)});
   list.push_back({"feedback.cancel_disturbance", 1.0});
-  list.push_back({"feedforward.zero_phase", 1.0});
+  list.push_back({"feedforward.zero_phase", design.used.zero_phase ? 1.0 : 0.0});
   list.push_back({"feedforward.friction", 1.0});
   for (const bool forward : {true, false}) {
     const FrictionSideLaw& side = forward ? friction.positive : friction.negative;
@@ -95,7 +97,7 @@ std::vector<BoardParameter> board_parameters(const sim::DriveDescription& model,
     const auto named = [&](const char* name) { return fmt::format("friction.{}_{}", name, sign); };
     list.push_back({named("static"), side.static_level});
     list.push_back({named("coulomb"), side.coulomb});
-    list.push_back({named("viscous"), 0.0});  // the design's own B is the model's
+    list.push_back({named("viscous"), viscous});
     list.push_back({named("omega1"), side.omega1});
     list.push_back({named("omega2"), side.omega2});
   }

@@ -6,7 +6,13 @@
 namespace host {
 
 AxisController::AxisController(const firmware::AxisParameters<float>& p)
-    : period_s_(static_cast<double>(p.sample_period_s)), uses_speed_(p.tachometer_fitted), filters_(p.filters) {
+    : period_s_(static_cast<double>(p.sample_period_s)),
+      uses_speed_(p.tachometer_fitted),
+      filters_(p.filters),
+      feedforward_(p.zero_phase_feedforward_on
+                       ? firmware::zero_phase_feedforward(p.drive, p.Kc, p.lead * p.sample_period_s)
+                       : firmware::backward_difference_feedforward(p.Kc)),
+      lead_(static_cast<double>(p.lead)) {
   const auto real = [](float value) { return static_cast<double>(value); };
   A_ << 1.0, real(p.drive.Ad12), -real(p.drive.Bd1), 0.0, real(p.drive.Ad22), -real(p.drive.Bd2), 0.0, 0.0, 1.0;
   B_ << real(p.drive.Bd1), real(p.drive.Bd2), 0.0;
@@ -17,6 +23,8 @@ AxisController::AxisController(const firmware::AxisParameters<float>& p)
                                : real(p.Kobs[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
   rest_.setIdentity();
   rest_.leftCols<2>() -= Kobs_;
+  if (p.friction_feedforward_on)
+    viscous_ = 0.5 * (real(p.friction.positive.viscous_V_s_per_rad) + real(p.friction.negative.viscous_V_s_per_rad));
   gain_ << real(p.Kc[0]), real(p.Kc[1]), p.disturbance_cancellation_on ? -1.0 : 0.0;
 }
 
@@ -51,5 +59,17 @@ Eigen::RowVector2cd AxisController::at(double f_Hz) const {
 }
 
 std::complex<double> AxisController::own_response(double f_Hz) const { return 1.0 / (1.0 + parts(f_Hz).of_command); }
+
+std::complex<double> AxisController::of_reference(double f_Hz) const {
+  const std::complex<double> z = std::polar(1.0, 2.0 * std::numbers::pi * f_Hz * period_s_);
+  std::complex<double> weight = static_cast<double>(feedforward_.velocity), ahead = 1.0;
+  for (const float change : feedforward_.change) {
+    weight += static_cast<double>(change) * ahead * (z - 1.0);
+    ahead *= z;
+  }
+  const std::complex<double> velocity = (1.0 - 1.0 / z) / (lead_ * period_s_);
+  // The estimator is not told of friction feed-forward, which takes the velocity that comes next.
+  return filter(f_Hz) * (gain_(0) + weight * velocity) * own_response(f_Hz) + viscous_ * z * velocity;
+}
 
 }  // namespace host

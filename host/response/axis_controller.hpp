@@ -20,6 +20,10 @@ class AxisController {
   /// What of a command added at its output reaches the drive, while the drive does not answer.
   std::complex<double> own_response(double f_Hz) const;
 
+  /// Command for a reference, V per mm (m), while the drive does not answer: feedback, feed-forward of the reference
+  /// and of viscous friction.
+  std::complex<double> of_reference(double f_Hz) const;
+
   double sample_period_s() const { return period_s_; }
   bool uses_speed() const { return uses_speed_; }
 
@@ -38,6 +42,8 @@ class AxisController {
   Eigen::Matrix<double, 3, 2> Kobs_;
   Eigen::RowVector3d gain_;  ///< of the estimated state
   firmware::FilterParameters<float> filters_;
+  firmware::ReferenceFeedforward<float> feedforward_;
+  double lead_, viscous_ = 0.0;  ///< viscous_: V per rad/s (m/s) of friction feed-forward
 };
 
 }  // namespace host

@@ -21,51 +21,51 @@ constexpr std::array kPlaces = {0.9, 1.0, 1.12};
 constexpr std::array kDampings = {0.15, 0.3, 0.6};
 constexpr std::array kDepths = {0.05, 0.2, 0.45};
 
-class Search {
- public:
-  Search(const sim::DriveDescription& model, const DesignOptions& options, const LoopAim& aim,
-         const AxisResponse& measured)
-      : model_(model), options_(options), aim_(aim), drive_(fine_plant(measured.response, *measured.fit)) {}
+AxisDesign design_at(const LoopTask& drive, double bandwidth_Hz) {
+  DesignOptions options = drive.options;
+  options.bandwidth_Hz = bandwidth_Hz;
+  return design_axis(drive.model, options);
+}
 
-  firmware::AxisParameters<float> parameters(double bandwidth_Hz, const ControlFilterChoice& filters) const {
-    return designed_parameters(model_, design(bandwidth_Hz), filters);
+/// `best_modulus` falls to this drive's, where the loop is stable.
+bool keeps(const LoopTask& drive, const LoopAim& aim, const ControlFilterChoice& filters, double bandwidth_Hz,
+           double& best_modulus) {
+  const auto parameters = designed_parameters(drive.model, design_at(drive, bandwidth_Hz), filters);
+  LoopMargins margins;
+  margins.is_stable = firmware::check_poles(parameters) == firmware::Refusal::none;
+  if (margins.is_stable) margins = quick_margins(drive.drive, AxisController(parameters));
+  if (!margins.is_stable || !margins.modulus) {
+    best_modulus = 0.0;
+    return false;
   }
+  best_modulus = std::min(best_modulus, margins.modulus->value);
+  if (aim.crossover_Hz && margins.crossover_Hz && margins.crossover_Hz->value > *aim.crossover_Hz) return false;
+  return !aim.modulus || margins.modulus->value >= *aim.modulus;
+}
 
-  AxisDesign design(double bandwidth_Hz) const {
-    DesignOptions options = options_;
-    options.bandwidth_Hz = bandwidth_Hz;
-    return design_axis(model_, options);
+}  // namespace
+
+HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim& aim,
+                              const ControlFilterChoice& filters) {
+  HighestLoop found;
+  const double period_s = drives.front().model.data.sample_period_s;
+  for (double f = kLowest_Hz; f < kHighestShare / period_s; f *= kStep) {
+    double modulus = HUGE_VAL;
+    std::optional<std::size_t> stopped_by;
+    for (std::size_t i = 0; i < drives.size(); ++i)
+      if (!keeps(drives[i], aim, filters, f, modulus) && !stopped_by) stopped_by = i;
+    found.best_modulus = std::max(found.best_modulus, modulus);
+    if (stopped_by) {
+      if (!found.stopped_by) found.stopped_by = stopped_by;
+      continue;
+    }
+    found.bandwidth_Hz = f;
+    found.stopped_by.reset();
   }
+  return found;
+}
 
-  /// The highest bandwidth that keeps the aim; 0 where none does.
-  double highest(const ControlFilterChoice& filters) {
-    double best = 0.0;
-    for (double f = kLowest_Hz; f < kHighestShare / model_.data.sample_period_s; f *= kStep)
-      if (keeps(parameters(f, filters))) best = f;
-    return best;
-  }
-
-  double best_modulus() const { return best_modulus_; }
-
- private:
-  bool keeps(const firmware::AxisParameters<float>& parameters) {
-    if (firmware::check_poles(parameters) != firmware::Refusal::none) return false;
-    const LoopMargins margins = quick_margins(drive_, AxisController(parameters));
-    if (!margins.is_stable || !margins.modulus) return false;
-    best_modulus_ = std::max(best_modulus_, margins.modulus->value);
-    if (aim_.crossover_Hz && margins.crossover_Hz && margins.crossover_Hz->value > *aim_.crossover_Hz) return false;
-    return !aim_.modulus || margins.modulus->value >= *aim_.modulus;
-  }
-
-  const sim::DriveDescription& model_;
-  const DesignOptions& options_;
-  const LoopAim& aim_;
-  FinePlant drive_;
-  double best_modulus_ = 0.0;
-};
-
-/// Every notch that is worth a try.
-std::vector<ControlFilterChoice> choices(const LoopAim& aim, const PlantFit& fit, double sample_period_s) {
+std::vector<ControlFilterChoice> filter_choices(const LoopAim& aim, const PlantFit& fit, double sample_period_s) {
   std::vector<ControlFilterChoice> list = {aim.filters};
   if (!aim.seek_notch) return list;
   for (const Resonance& mode : fit.resonances)
@@ -81,30 +81,32 @@ std::vector<ControlFilterChoice> choices(const LoopAim& aim, const PlantFit& fit
   return list;
 }
 
-}  // namespace
-
 LoopDesign design_loop(const sim::DriveDescription& model, const DesignOptions& options, const LoopAim& aim,
                        const AxisResponse& measured) {
   if (!measured.fit) throw Failure(ExitCode::refused, "too few frequencies were measured to design on them");
-  Search search(model, options, aim, measured);
+  const FinePlant fine = fine_plant(measured.response, *measured.fit);
+  const LoopTask drive{model, options, fine};
   double bandwidth_Hz = options.bandwidth_Hz;
   ControlFilterChoice filters = aim.filters;
   if (aim.modulus || aim.crossover_Hz) {
     bandwidth_Hz = 0.0;
-    for (const ControlFilterChoice& choice : choices(aim, *measured.fit, model.data.sample_period_s))
-      if (const double found = search.highest(choice); found > bandwidth_Hz) {
-        bandwidth_Hz = found;
-        filters = choice;
-      }
+    double best_modulus = 0.0;
+    for (const ControlFilterChoice& choice : filter_choices(aim, *measured.fit, model.data.sample_period_s)) {
+      const HighestLoop found = highest_bandwidth({drive}, aim, choice);
+      best_modulus = std::max(best_modulus, found.best_modulus);
+      if (found.bandwidth_Hz <= bandwidth_Hz) continue;
+      bandwidth_Hz = found.bandwidth_Hz;
+      filters = choice;
+    }
     if (bandwidth_Hz == 0.0)
       throw Failure(ExitCode::refused, fmt::format("no bandwidth keeps this on the measured response: the largest "
                                                    "modulus margin that there is is {:.3g}",
-                                                   search.best_modulus()));
+                                                   best_modulus));
   } else if (aim.seek_notch && !measured.fit->resonances.empty()) {
     filters.notch = Notch{measured.fit->resonances.front().f_Hz.value};
   }
   const AxisDesign plain = design_axis(model, options);
-  AxisDesign tuned = search.design(bandwidth_Hz);
+  AxisDesign tuned = design_at(drive, bandwidth_Hz);
   const AxisResponse after = with_controller(measured, designed_parameters(model, tuned, filters));
   return {std::move(tuned), filters, with_controller(measured, designed_parameters(model, plain)), after};
 }

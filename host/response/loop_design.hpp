@@ -25,6 +25,26 @@ struct LoopDesign {
   AxisResponse after;
 };
 
+/// A drive on which controllers are tried.
+struct LoopTask {
+  const sim::DriveDescription& model;
+  const DesignOptions& options;  ///< all but the bandwidth
+  const FinePlant& drive;
+};
+
+struct HighestLoop {
+  double bandwidth_Hz = 0.0;  ///< 0 where none keeps the aim
+  double best_modulus = 0.0;  ///< the largest of all bandwidths that were tried; of several drives, the least
+  std::optional<std::size_t> stopped_by{};  ///< which drive does not keep the aim at the next bandwidth
+};
+
+/// The highest bandwidth at which all drives keep the aim with these filters.
+HighestLoop highest_bandwidth(const std::vector<LoopTask>& drives, const LoopAim& aim,
+                              const ControlFilterChoice& filters);
+
+/// Every set of filters that is worth a try on a drive.
+std::vector<ControlFilterChoice> filter_choices(const LoopAim& aim, const PlantFit& fit, double sample_period_s);
+
 /// Raises the natural frequency of the closed loop's poles (DesignOptions::bandwidth_Hz) as far as the aim allows;
 /// `options` stand for all else. Throws Failure(refused)
 /// where no bandwidth keeps the margin, naming the best that there is, and what design_axis() throws.

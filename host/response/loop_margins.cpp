@@ -249,6 +249,13 @@ FinePlant fine_plant(const FrequencyResponse& response, const PlantFit& fit) {
   return fine;
 }
 
+FinePlant fine_plant(const PlantFit& fit) {
+  constexpr double kLowest_Hz = 0.2, kHighestShare = 0.48;
+  FinePlant fine{fine_frequencies({kLowest_Hz, kHighestShare / fit.sample_period_s}, fit), {}};
+  for (const double f : fine.f_Hz) fine.plant.push_back(fit.at(f));
+  return fine;
+}
+
 LoopMargins quick_margins(const FinePlant& drive, const AxisController& controller) {
   std::vector<Complex> L;
   for (std::size_t i = 0; i < drive.f_Hz.size(); ++i) L.push_back((controller.at(drive.f_Hz[i]) * drive.plant[i])(0));

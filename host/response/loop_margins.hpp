@@ -42,6 +42,8 @@ struct FinePlant {
   std::vector<Eigen::Vector2cd> plant;
 };
 FinePlant fine_plant(const FrequencyResponse& response, const PlantFit& fit);
+/// The fit alone, from 0.2 Hz to close below half the sampling rate.
+FinePlant fine_plant(const PlantFit& fit);
 
 /// Margins whose intervals have no width, for a search among controllers.
 LoopMargins quick_margins(const FinePlant& drive, const AxisController& controller);

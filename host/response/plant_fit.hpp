@@ -39,6 +39,10 @@ struct PlantFit {
   Eigen::Vector2cd at(double f_Hz) const;
 };
 
+/// What a model says of the same: inertia, viscous friction, input_delay, current_loop_lag, compliance. Other effects
+/// are left out. Throws as rigid_axis().
+PlantFit plant_of(const sim::DriveDescription& model);
+
 /// Modes are added while each explains more than chance would; what turns the phase is a lag where magnitudes fall as
 /// its do, otherwise a delay. Throws Failure(refused) for fewer than six lines.
 PlantFit fit_plant(const FrequencyResponse& response);

@@ -108,6 +108,8 @@ class Bench:
         """The files that examples name, as they were before any example wrote over them: a machine that cogs."""
         for name in ("x.toml", "x2.toml", "better.toml", "x-drive.toml", "data-sheet.toml"):
             shutil.copy(COGGING / "model.toml", self.folder / name)
+        y = re.sub(r'^name = .*', 'name = "y"', (COGGING / "model.toml").read_text(encoding="utf-8"), flags=re.M)
+        (self.folder / "y.toml").write_text(y, encoding="utf-8")
         for name in ("steps", "jog", "a", "log", "record", "slow", "fast"):
             shutil.copy(COGGING / "train-jog.csv", self.folder / f"{name}.csv")
         for name in ("validate", "b", "other"):

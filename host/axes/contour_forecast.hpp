@@ -1,0 +1,39 @@
+// What two axes that follow differently make of lines and circles: the linear part, from their frequency responses.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "host/parameters/board_parameters.hpp"
+#include "host/response/axis_controller.hpp"
+#include "host/response/plant_fit.hpp"
+
+namespace host {
+
+/// A drive with its controller.
+struct ServoAxis {
+  PlantFit plant;
+  AxisController controller;
+};
+
+/// Travel over reference, as sampled.
+std::complex<double> following(const ServoAxis& axis, double f_Hz);
+
+/// Errors at one feed that come from the difference of two axes; friction and noise are not in them.
+struct FeedContour {
+  double feed_mm_s = 0.0;
+  double line_45_um = 0.0;  ///< largest distance from a line at 45 degrees, with its acceleration and deceleration
+  double ellipse_um = 0.0;  ///< difference of the half axes of what becomes of a circle
+};
+
+inline constexpr double kForecastRadius_mm = 35.0;  // the paper's circle, p. 1508
+
+/// `limits` in mm: lines speed up and slow down within them.
+FeedContour contour_forecast(const ServoAxis& x, const ServoAxis& y, double feed_mm_s, const ReferenceLimits& limits);
+
+/// Of a line at 45 degrees: what, made equal in both drives, would take most of the error away; empty where the error
+/// is below 0.1 um or nothing takes half of it.
+std::string main_difference(const ServoAxis& x, const ServoAxis& y, double feed_mm_s, const ReferenceLimits& limits);
+
+}  // namespace host

@@ -1,0 +1,229 @@
+#include "host/axes/machine_design.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "host/exit_codes.hpp"
+#include "host/identify/design_json.hpp"
+#include "host/parameters/axis_parameters.hpp"
+#include "host/parameters/design_file.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr std::array kFeeds_mm_s = {25.0, 50.0, 100.0, 200.0};
+
+double unit_mm(const sim::DriveDescription& model) { return model.data.kind == sim::DriveKind::linear ? 1e3 : 1.0; }
+
+void check(const std::vector<AxisTask>& tasks) {
+  std::set<std::string> names;
+  const double period_s = tasks.front().model.data.sample_period_s;
+  for (const AxisTask& task : tasks) {
+    if (!names.insert(task.model.name).second || task.model.name.empty())
+      throw Failure(ExitCode::usage,
+                    fmt::format("two axes are called \"{}\": give each model the name of its axis (name = \"x\")",
+                                task.model.name));
+    if (task.model.data.sample_period_s != period_s)
+      throw Failure(ExitCode::usage,
+                    fmt::format("axis {} is sampled every {:g} s, axis {} every {:g} s: one board has one "
+                                "sample_period_s",
+                                tasks.front().model.name, period_s, task.model.name, task.model.data.sample_period_s));
+  }
+}
+
+FinePlant drive_of(const AxisTask& task) {
+  return task.measured ? fine_plant(task.measured->response, *task.measured->fit) : fine_plant(plant_of(task.model));
+}
+
+/// Without a tachometer where one axis has none: the estimators shall have equal sensors.
+std::vector<sim::DriveDescription> equal_sensors(const std::vector<AxisTask>& tasks) {
+  std::vector<sim::DriveDescription> models;
+  bool all = true;
+  for (const AxisTask& task : tasks) {
+    models.push_back(task.model);
+    all = all && task.model.data.tach_noise_variance.has_value();
+  }
+  if (!all)
+    for (sim::DriveDescription& model : models) model.data.tach_noise_variance.reset();
+  return models;
+}
+
+/// Variances that make every estimator the same one in travel, speed and acceleration of the table: sensors as good as
+/// the worst, disturbances (in volts) as lively as the axis that a volt accelerates least has them.
+std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescription>& models,
+                                            const DesignOptions& options) {
+  std::vector<AxisDesign> designs;
+  double least_gain = HUGE_VAL, position = 0.0, speed = 0.0, command = 0.0;
+  const auto gain = [&](std::size_t i) { return designs[i].axis.gain() * designs[i].axis.lead * unit_mm(models[i]); };
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    designs.push_back(design_axis(models[i], options));
+    const DesignOptions& used = designs[i].used;
+    const double length = unit_mm(models[i]), lead = designs[i].axis.lead * length;
+    position = std::max(position, *used.position_variance * length * length);
+    speed = std::max(speed, used.tach_variance.value_or(0.0) * lead * lead);
+    if (gain(i) < least_gain) {
+      least_gain = gain(i);
+      command = *used.command_variance;
+    }
+  }
+  std::vector<DesignOptions> list;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    DesignOptions one = options;
+    const double length = unit_mm(models[i]), lead = designs[i].axis.lead * length;
+    const double share = std::pow(least_gain / gain(i), 2);
+    one.disturbance_variance = options.disturbance_variance * share;
+    one.command_variance = command * share;
+    one.position_variance = position / (length * length);
+    if (designs[i].used.tach_variance) one.tach_variance = speed / (lead * lead);
+    list.push_back(one);
+  }
+  return list;
+}
+
+/// Feed-forward of the reference velocity alone leaves what viscous friction takes, and axes differ in it: it is fed
+/// forward as friction, and every loop is that of a double integrator.
+std::vector<sim::DriveDescription> equal_drives(std::vector<sim::DriveDescription> models,
+                                                const DesignOptions& options) {
+  if (!options.zero_phase)
+    for (sim::DriveDescription& model : models)
+      std::erase_if(model.effects, [](const sim::EffectEntry& effect) { return effect.kind == "viscous"; });
+  return models;
+}
+
+/// `controlled`: the drive as the controller takes it.
+AxisLoop loop_of(const sim::DriveDescription& model, const sim::DriveDescription& controlled, DesignOptions options,
+                 double bandwidth_Hz, const ControlFilterChoice& filters, const FinePlant& drive) {
+  options.bandwidth_Hz = bandwidth_Hz;
+  AxisLoop loop{model, design_axis(controlled, options), filters, {}};
+  const LoopMargins margins = quick_margins(drive, AxisController(designed_parameters(model, loop.design, filters)));
+  if (!margins.is_stable)
+    throw Failure(
+        ExitCode::refused,
+        fmt::format("axis {} would oscillate with poles at {:.4g} Hz; nothing was written. --margin 0.5 finds "
+                    "the bandwidth that all axes allow",
+                    model.name, bandwidth_Hz));
+  if (margins.modulus) loop.modulus = margins.modulus->value;
+  return loop;
+}
+
+std::vector<ControlFilterChoice> choices_for(const std::vector<AxisTask>& tasks, const LoopAim& aim) {
+  std::vector<ControlFilterChoice> all = {aim.filters};
+  if (!aim.seek_notch) return all;
+  for (const AxisTask& task : tasks) {
+    const PlantFit fit = task.measured ? *task.measured->fit : plant_of(task.model);
+    const auto more = filter_choices(aim, fit, task.model.data.sample_period_s);
+    all.insert(all.end(), more.begin() + 1, more.end());
+  }
+  return all;
+}
+
+struct Found {
+  HighestLoop loop;
+  ControlFilterChoice filters;
+};
+
+/// The highest bandwidth that all drives keep, with the filters that allow it; that of `options` where no aim is named.
+Found best_loop(const std::vector<LoopTask>& drives, const std::vector<AxisTask>& tasks, const LoopAim& aim,
+                const DesignOptions& options) {
+  if (!aim.modulus && !aim.crossover_Hz) return {{options.bandwidth_Hz, 0.0, {}}, aim.filters};
+  Found best{{}, aim.filters};
+  for (const ControlFilterChoice& filters : choices_for(tasks, aim)) {
+    const HighestLoop loop = highest_bandwidth(drives, aim, filters);
+    const double most = std::max(best.loop.best_modulus, loop.best_modulus);
+    if (loop.bandwidth_Hz > best.loop.bandwidth_Hz) best = {loop, filters};
+    best.loop.best_modulus = most;
+  }
+  if (best.loop.bandwidth_Hz == 0.0)
+    throw Failure(ExitCode::refused,
+                  fmt::format("no bandwidth keeps this on {}: the largest modulus margin is {:.3g}",
+                              drives.size() > 1 ? "all axes" : drives.front().model.name, best.loop.best_modulus));
+  return best;
+}
+
+void forecast(LoopSet& set, const std::vector<AxisTask>& tasks) {
+  std::vector<ServoAxis> axes;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const AxisLoop& loop = set.axes[i];
+    axes.push_back({tasks[i].measured ? *tasks[i].measured->fit : plant_of(tasks[i].model),
+                    AxisController(designed_parameters(loop.model, loop.design, loop.filters))});
+  }
+  const ReferenceLimits limits;
+  double most = -1.0;
+  for (const double feed : kFeeds_mm_s) {
+    FeedContour worst{feed, 0.0, 0.0};
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      for (std::size_t j = i + 1; j < axes.size(); ++j) {
+        const FeedContour pair = contour_forecast(axes[i], axes[j], feed, limits);
+        worst.line_45_um = std::max(worst.line_45_um, pair.line_45_um);
+        worst.ellipse_um = std::max(worst.ellipse_um, pair.ellipse_um);
+        if (feed != kFeeds_mm_s.back() || pair.line_45_um <= most) continue;
+        most = pair.line_45_um;
+        set.remaining = main_difference(axes[i], axes[j], feed, limits);
+      }
+    set.contour.push_back(worst);
+  }
+}
+
+std::string reason(const std::vector<AxisTask>& tasks, const Found& found, const LoopAim& aim) {
+  if (!aim.modulus && !aim.crossover_Hz) return fmt::format("--fc {:g} Hz, as asked", found.loop.bandwidth_Hz);
+  if (!found.loop.stopped_by) return "the control rate: pole placement on a rigid drive is good for 0.12 of it";
+  const std::string limit = aim.modulus ? fmt::format("a modulus margin of {:g}", *aim.modulus)
+                                        : fmt::format("a crossover of {:g} Hz", *aim.crossover_Hz);
+  return fmt::format("axis {}, which keeps {} no further", tasks[*found.loop.stopped_by].model.name, limit);
+}
+
+nlohmann::json set_json(const LoopSet& set) {
+  nlohmann::json axes = nlohmann::json::array(), contour = nlohmann::json::array();
+  for (const AxisLoop& loop : set.axes) {
+    nlohmann::json axis = design_json(loop.design);
+    axis["name"] = loop.model.name;
+    axis["filters"] = filter_json(loop.filters);
+    axis["modulus"] = loop.modulus ? nlohmann::json(*loop.modulus) : nlohmann::json(nullptr);
+    axes.push_back(axis);
+  }
+  for (const FeedContour& one : set.contour)
+    contour.push_back({{"feed_mm_s", one.feed_mm_s}, {"line_45_um", one.line_45_um}, {"ellipse_um", one.ellipse_um}});
+  return {{"axes", axes}, {"contour", contour}, {"remaining", set.remaining}};
+}
+
+}  // namespace
+
+MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim) {
+  check(tasks);
+  const std::vector<sim::DriveDescription> models = equal_sensors(tasks);
+  const std::vector<sim::DriveDescription> controlled = equal_drives(models, options);
+  const std::vector<DesignOptions> equal = equal_estimators(controlled, options);
+  std::vector<FinePlant> drives;
+  for (const AxisTask& task : tasks) drives.push_back(drive_of(task));
+
+  MachineDesign machine;
+  std::vector<LoopTask> all;
+  for (std::size_t i = 0; i < tasks.size(); ++i) all.push_back({controlled[i], equal[i], drives[i]});
+  const Found common = best_loop(all, tasks, aim, options);
+  machine.limited_by = reason(tasks, common, aim);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    machine.matched.axes.push_back(
+        loop_of(models[i], controlled[i], equal[i], common.loop.bandwidth_Hz, common.filters, drives[i]));
+    const Found best = best_loop({{tasks[i].model, options, drives[i]}}, {tasks[i]}, aim, options);
+    machine.own.axes.push_back(
+        loop_of(tasks[i].model, tasks[i].model, options, best.loop.bandwidth_Hz, best.filters, drives[i]));
+  }
+  forecast(machine.matched, tasks);
+  forecast(machine.own, tasks);
+  return machine;
+}
+
+nlohmann::json machine_json(const MachineDesign& machine) {
+  return {{"format", "axis-machine-design/1"},
+          {"matched", set_json(machine.matched)},
+          {"own", set_json(machine.own)},
+          {"limited_by", machine.limited_by},
+          {"circle_radius_mm", kForecastRadius_mm}};
+}
+
+}  // namespace host

@@ -1,0 +1,44 @@
+// One closed loop for all axes of a machine, so that straight lines stay straight (Erkorkmaz & Altintas 2001, p. 1487).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/axes/contour_forecast.hpp"
+#include "host/response/loop_design.hpp"
+
+namespace host {
+
+struct AxisTask {
+  sim::DriveDescription model;
+  std::optional<AxisResponse> measured;  ///< with a fit; without it the model stands for the drive
+};
+
+struct AxisLoop {
+  sim::DriveDescription model;  ///< as designed for: without its tachometer where another axis has none
+  AxisDesign design;
+  ControlFilterChoice filters;
+  std::optional<double> modulus;  ///< modulus margin on the measured drive, or on the model
+};
+
+struct LoopSet {
+  std::vector<AxisLoop> axes;
+  std::vector<FeedContour> contour;  ///< by feed; the worst of all pairs of axes
+  std::string remaining;             ///< what of the drives makes most of that; empty where nothing stands out
+};
+
+struct MachineDesign {
+  LoopSet matched;         ///< equal poles of loop and estimator, equal filters and feed-forward
+  LoopSet own;             ///< the best of each axis
+  std::string limited_by;  ///< why the matched loop is no faster
+};
+
+/// `options` and `aim` hold for every axis. Throws Failure: usage where names or sample periods do not go together,
+/// refused where no common bandwidth keeps the aim or a loop would be unstable, and what design_axis() throws.
+MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim);
+
+nlohmann::json machine_json(const MachineDesign& machine);
+
+}  // namespace host
