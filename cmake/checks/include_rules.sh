@@ -26,7 +26,7 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/effort/"] = "host/effort/ host/infer/ " may["host/compare/"]
     may["host/diagnose/"] = "host/diagnose/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
-    may["host/workbench/"] = "host/workbench/ host/model/ " may["host/diagnose/"]
+    may["host/workbench/"] = "host/workbench/ host/model/ host/opening/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"
     may["host/path/"] = "host/path/ firmware/core/"
     may["host/gcode/"] = "host/gcode/ host/path/"

@@ -21,7 +21,6 @@
 #include "host/model/model_file.hpp"
 #include "host/opening/next_run.hpp"
 #include "host/opening/opening.hpp"
-#include "host/record/read_record.hpp"
 
 namespace axistool {
 
@@ -71,19 +70,6 @@ bool is_accepted(const host::Opening& opening, bool yes) {
     if (!std::getline(std::cin, answer) || (answer != "y" && answer != "Y" && answer != "yes")) return false;
   }
   return true;
-}
-
-/// Writes the records and the mapping; the files' names.
-std::vector<std::string> write(const host::Opening& opening, const std::string& folder) {
-  std::vector<std::string> written;
-  std::filesystem::create_directories(folder);
-  for (const host::OpenedRecord* record : opening.records()) {
-    written.push_back((std::filesystem::path(folder) / record->name).string());
-    host::write_record(record->record, written.back());
-  }
-  const std::string mapping = host::format_mapping(opening);
-  if (!mapping.empty()) host::write_file_atomically((std::filesystem::path(folder) / "mapping.toml").string(), mapping);
-  return written;
 }
 
 bool wants_verdict(const OpenArguments& arguments) {
@@ -149,7 +135,8 @@ void run(const OpenArguments& arguments) {
     for (const host::OpenedFile& file : opening.files) print(file);
   const bool accepted = is_accepted(opening, arguments.yes);
   std::vector<std::string> written;
-  if (accepted && !arguments.folder.empty() && !opening.records().empty()) written = write(opening, arguments.folder);
+  if (accepted && !arguments.folder.empty() && !opening.records().empty())
+    written = host::write_opening(opening, arguments.folder);
   if (arguments.json != "-") {
     for (const std::string& ask : opening.asks()) fmt::print("not sure: {}\n", ask);
     if (!accepted) fmt::print("No record was written: --yes accepts what is not sure, --map says it otherwise.\n");

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "host/atomic_file.hpp"
 #include "host/exit_codes.hpp"
 #include "host/opening/hal_file.hpp"
 #include "host/opening/mapping_file.hpp"
@@ -328,6 +329,18 @@ std::string format_mapping(const Opening& opening) {
       axes.push_back(std::move(mapped));
     }
   return axes.empty() ? "" : format_mapping_file(axes);
+}
+
+std::vector<std::string> write_opening(const Opening& opening, const std::string& folder) {
+  std::vector<std::string> written;
+  std::filesystem::create_directories(folder);
+  for (const OpenedRecord* record : opening.records()) {
+    written.push_back((std::filesystem::path(folder) / record->name).string());
+    write_record(record->record, written.back());
+  }
+  const std::string mapping = format_mapping(opening);
+  if (!mapping.empty()) write_file_atomically((std::filesystem::path(folder) / "mapping.toml").string(), mapping);
+  return written;
 }
 
 }  // namespace host

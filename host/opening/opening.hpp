@@ -39,6 +39,10 @@ struct Opening {
 /// Reads and understands. Throws Failure(bad_input) where a file cannot be read at all.
 Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& options);
 
+/// Writes the records and the accepted mapping (mapping.toml) into a folder, which is made where it is missing; the
+/// records' files. Throws Failure as write_record() does.
+std::vector<std::string> write_opening(const Opening& opening, const std::string& folder);
+
 /// `axis-opening/1`. `records` are the files that were written.
 nlohmann::json to_json(const Opening& opening, const std::vector<std::string>& records);
 

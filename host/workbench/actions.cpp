@@ -14,11 +14,15 @@
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/improvement_report.hpp"
+#include "host/evidence/log_faults.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
+#include "host/identify/identification_json.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
+#include "host/opening/opening.hpp"
 #include "host/read_file.hpp"
 #include "host/record/edit_record.hpp"
 #include "host/record/read_record.hpp"
@@ -31,6 +35,18 @@ namespace {
 void require_files(const Folder& folder, const Request& request) {
   for (const auto* names : {&request.models, &request.train, &request.validate})
     for (const std::string& name : *names) folder.existing(name);
+}
+
+nlohmann::json identified(const Request& request, const Outputs& outputs) {
+  const sim::DriveDescription sheet = read_drive(request.models.front());
+  const Measurements measured = MeasurementGate(sheet, {request.accepted}).read(request.train);
+  const Identification found = identify_drive(measured, sheet, method_named("", measured.training()));
+  throw_if_cancelled();
+  write_model(found.model, outputs.model);
+  nlohmann::json document = identification_json(found);
+  document["effort_timing"] = effort_timing_json(measured.training_records());
+  document["log"] = log_faults_json(measured.log());
+  return document;
 }
 
 nlohmann::json diagnosed(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
@@ -90,6 +106,7 @@ Comparison compare(const Folder& folder, const Request& request) {
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
                          const std::function<void(double)>& progress) {
   require_files(folder, request);
+  if (request.task == Task::identify) return identified(request, outputs);
   for (const std::string& kind : request.absent) known_effect(kind);
   if (request.task == Task::add) known_effect(request.kind);
   const sim::DriveDescription model = read_model(request.models.front());
@@ -119,6 +136,21 @@ nlohmann::json cut_out(const Folder& folder, const CutRequest& request) {
   keep("--from", "from", request.stretch.to_s, request.stretch.to_s, HUGE_VAL);
   if (pieces.empty()) throw Failure(ExitCode::refused, request.record + ": nothing of it would be left");
   return {{"pieces", pieces}, {"commands", commands}};
+}
+
+nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request) {
+  std::string command = "axistool open";
+  for (const std::string& log : request.logs) command += fmt::format(" {}", shell_word(folder.existing(log)));
+  const Opening opening = open_logs(request.logs, {});
+  const std::filesystem::path first(request.logs.front());
+  const std::string target =
+      folder.free_name(request.logs.size() == 1 ? std::filesystem::path(first).replace_extension().string()
+                                                : (first.parent_path() / "records").string(),
+                       "");
+  std::vector<std::string> written;
+  if ((request.yes || opening.asks().empty()) && !opening.records().empty()) written = write_opening(opening, target);
+  return {{"document", to_json(opening, written)},
+          {"command", fmt::format("{}{} -o {}", command, request.yes ? " --yes" : "", shell_word(target))}};
 }
 
 }  // namespace host::workbench

@@ -28,13 +28,17 @@ std::vector<ComparedModel> compared_models(const Folder& folder, const Request& 
 /// Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);
 
-/// Diagnoses, adds or improves, writes the outputs, and returns the document of the command's --json. Throws as the
-/// command does, and Cancelled.
+/// Identifies, diagnoses, adds or improves, writes the outputs, and returns the document of the command's --json.
+/// Throws as the command does, and Cancelled.
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
                          const std::function<void(double)>& progress);
 
 /// Leaves a stretch out: what is before and after it as records of their own, by `axistool cut`; their names and the
 /// commands. Pieces without enough rows are not written. Throws Failure(refused) where nothing is left.
 nlohmann::json cut_out(const Folder& folder, const CutRequest& request);
+
+/// What `axistool open` understands of logs: { "document": of its --json, "command" }. Where nothing is left to ask,
+/// or what is not sure is accepted, the records lie in a folder of their own.
+nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request);
 
 }  // namespace host::workbench

@@ -23,9 +23,9 @@ bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-/// The first lines say what a file is.
+/// The first lines say what a file is; a model's effects come after its data sheet.
 std::string head_of(const fs::path& path) {
-  std::array<char, 2048> head{};
+  std::array<char, 8192> head{};
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), head.size());
   return {head.data(), static_cast<std::size_t>(file.gcount())};
@@ -39,7 +39,11 @@ bool is_log(const std::string& extension) {
 /// Empty: nothing that is read here.
 std::string kind_of(const fs::path& path) {
   const std::string extension = path.extension().string();
-  if (extension == ".toml") return head_of(path).find("axis-model/1") != std::string::npos ? "model" : "";
+  if (extension == ".toml") {
+    const std::string head = head_of(path);
+    if (head.find("axis-model/1") == std::string::npos) return "";
+    return head.find("[[effect]]") == std::string::npos ? "sheet" : "model";
+  }
   if (!is_log(extension)) return "";
   if (extension != ".csv") return "log";
   const std::string head = head_of(path);

@@ -25,7 +25,8 @@ std::string state_name(int id) { return fmt::format("{:04}.job.json", id); }
 /// Cogging on x.toml goes to x+cogging.toml.
 std::string model_stem(const Request& request) {
   const std::string stem = std::filesystem::path(request.models.front()).replace_extension().string();
-  return request.task == Task::add ? fmt::format("{}+{}", stem, request.kind) : stem + "-improved";
+  if (request.task == Task::add) return fmt::format("{}+{}", stem, request.kind);
+  return stem + (request.task == Task::identify ? "-identified" : "-improved");
 }
 
 std::int64_t now_s() {
@@ -91,7 +92,8 @@ int Jobs::submit(const Request& request) {
   job->request = request;
   const std::string stem = fmt::format("{:04}-{}", id, task_name(request.task));
   job->outputs.json = folder_.own_file(stem + ".json");
-  if (request.task != Task::add) job->outputs.report = folder_.own_file(stem + ".html");
+  if (request.task == Task::diagnose || request.task == Task::improve)
+    job->outputs.report = folder_.own_file(stem + ".html");
   if (request.task != Task::diagnose) job->outputs.model = folder_.free_name(model_stem(request), ".toml");
   for (const auto& item : jobs_)  // one that waits has no file yet
     if (!job->outputs.model.empty() && item.second->outputs.model == job->outputs.model)

@@ -14,6 +14,7 @@ AXIS_EMBED(axis_workbench_effects, AXIS_PAGE_DIR "/effects.js");
 AXIS_EMBED(axis_workbench_figures, AXIS_PAGE_DIR "/figures.js");
 AXIS_EMBED(axis_workbench_gallery, AXIS_PAGE_DIR "/gallery.js");
 AXIS_EMBED(axis_workbench_jobs, AXIS_PAGE_DIR "/jobs.js");
+AXIS_EMBED(axis_workbench_opening, AXIS_PAGE_DIR "/opening.js");
 AXIS_EMBED(axis_workbench_plot_files, AXIS_PAGE_DIR "/plot_files.js");
 AXIS_EMBED(axis_workbench_report_parts, AXIS_PAGE_DIR "/report_parts.js");
 
@@ -34,6 +35,7 @@ const std::vector<PageFile>& page_files() {
       {"figures.js", kScript, AXIS_PAGE_FILE(figures)},
       {"gallery.js", kScript, AXIS_PAGE_FILE(gallery)},
       {"jobs.js", kScript, AXIS_PAGE_FILE(jobs)},
+      {"opening.js", kScript, AXIS_PAGE_FILE(opening)},
       {"plot_files.js", kScript, AXIS_PAGE_FILE(plot_files)},
       {"report_parts.js", kScript, AXIS_PAGE_FILE(report_parts)},
       {"dygraphs.js", kScript, assets::dygraphs_script()},

@@ -18,8 +18,9 @@ namespace host::workbench {
 namespace {
 
 constexpr std::size_t kMostNames = 500;
-constexpr std::array kTasks{std::pair{"compare", Task::compare}, std::pair{"diagnose", Task::diagnose},
-                            std::pair{"add", Task::add}, std::pair{"improve", Task::improve}};
+constexpr std::array kTasks{std::pair{"compare", Task::compare}, std::pair{"identify", Task::identify},
+                            std::pair{"diagnose", Task::diagnose}, std::pair{"add", Task::add},
+                            std::pair{"improve", Task::improve}};
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
   throw Failure(ExitCode::usage, fmt::format("request, \"{}\": {}", field, what));
@@ -116,7 +117,7 @@ Request parse_request(std::string_view text) {
   const nlohmann::json document = object_of(text);
   const std::string name = text_of(document, "do");
   const auto* const task = std::ranges::find(kTasks, name, &std::pair<const char*, Task>::first);
-  if (task == kTasks.end()) refuse("do", "compare, diagnose, add or improve belongs here");
+  if (task == kTasks.end()) refuse("do", "compare, identify, diagnose, add or improve belongs here");
   Request request;
   request.task = task->second;
   if (request.task == Task::compare) {
@@ -139,7 +140,9 @@ Request parse_request(std::string_view text) {
     refuse(request.task == Task::compare ? "records" : "train", "at least one record belongs here");
   if ((request.task == Task::add) == request.kind.empty()) refuse("kind", "add needs an effect, and it alone");
   if (request.task != Task::add && !request.over.empty()) refuse("over", "belongs to add");
-  if (request.task == Task::add && !request.absent.empty()) refuse("absent", "belongs to diagnose and improve");
+  const bool searches = request.task == Task::diagnose || request.task == Task::improve;
+  if (!searches && !request.absent.empty()) refuse("absent", "belongs to diagnose and improve");
+  if (request.task == Task::identify && !request.validate.empty()) refuse("validate", "identify takes none");
   return request;
 }
 
@@ -149,6 +152,16 @@ CutRequest parse_cut(std::string_view text) {
   const std::optional<TimeSpan> stretch = stretch_of(document);
   if (!stretch) refuse("stretch", "[FROM, TO] in seconds belongs here");
   return {file_of(text_of(document, "record"), "record"), *stretch};
+}
+
+OpenRequest parse_open(std::string_view text) {
+  const nlohmann::json document = object_of(text);
+  require_known(document, {"logs", "yes"});
+  const bool yes = document.contains("yes");
+  if (yes && !document["yes"].is_boolean()) refuse("yes", "true or false belongs here");
+  OpenRequest request{list_of(document, "logs", file_of), yes && document["yes"].get<bool>()};
+  if (request.logs.empty()) refuse("logs", "at least one log belongs here");
+  return request;
 }
 
 nlohmann::json parse_choice(std::string_view text) {
@@ -189,10 +202,12 @@ nlohmann::json to_json(const Request& request) {
 
 std::string command_line(const Request& request, const Outputs& outputs) {
   std::string line = fmt::format("axistool {}", task_name(request.task));
-  for (const std::string& model : request.models) line += fmt::format(" {}", shell_word(model));
+  if (request.task != Task::identify)
+    for (const std::string& model : request.models) line += fmt::format(" {}", shell_word(model));
   if (!request.kind.empty()) line += fmt::format(" {}", shell_word(request.kind));
-  if (request.task != Task::compare) line += " --train";
+  if (request.task != Task::compare && request.task != Task::identify) line += " --train";
   for (const std::string& record : request.train) line += fmt::format(" {}", shell_word(record));
+  if (request.task == Task::identify) line += fmt::format(" --drive {}", shell_word(request.models.front()));
   line += options_of("--validate", request.validate) + options_of("--absent", request.absent);
   line += options_of("--accept", request.accepted, true);
   line += output_option("--traces", request.focus.record);

@@ -10,12 +10,12 @@
 
 namespace host::workbench {
 
-enum class Task { compare, diagnose, add, improve };
+enum class Task { compare, identify, diagnose, add, improve };
 
 std::string_view task_name(Task task);
 
 /// A task on files of the folder: { "do": "add", "model": "x.toml", "kind": "cogging", "train": [...], "validate":
-/// [...], "accept": [...] }; compare has "models" and "records".
+/// [...], "accept": [...] }; compare has "models" and "records", the model of identify is a data sheet.
 struct Request {
   Task task = Task::compare;
   std::vector<std::string> models;  ///< one, but for compare
@@ -37,6 +37,13 @@ struct CutRequest {
   TimeSpan stretch;
 };
 CutRequest parse_cut(std::string_view text);
+
+/// { "logs": [NAME...], "yes": whether to accept what is not sure }; logs of one controller help each other.
+struct OpenRequest {
+  std::vector<std::string> logs;
+  bool yes = false;
+};
+OpenRequest parse_open(std::string_view text);
 
 /// What is chosen on the page: { "model": NAME, "beside": [NAME...], "roles": { NAME: "train"|"judge"|"off" } }. The
 /// same again, checked.

@@ -235,6 +235,9 @@ struct Server::Parts {
     post("/api/story", [this](const Query&, Response& response, const std::string& body) {
       send_story(parse_request(body), response);
     });
+    post("/api/open", [this](const Query&, Response& response, const std::string& body) {
+      send(response, open_and_write(folder, parse_open(body)));
+    });
     post("/api/cut", [this](const Query&, Response& response, const std::string& body) {
       send(response, cut_out(folder, parse_cut(body)));
     });

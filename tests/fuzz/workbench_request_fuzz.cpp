@@ -25,6 +25,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const host::Failure&) {
   }
   try {
+    for (const std::string& name : parse_open(text).logs)
+      if (!is_plain_name(name)) std::abort();
+  } catch (const host::Failure&) {
+  }
+  try {
     const nlohmann::json choice = parse_choice(text);
     if (parse_choice(choice.dump()) != choice) std::abort();
   } catch (const host::Failure&) {

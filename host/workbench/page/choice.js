@@ -1,6 +1,7 @@
 // What is worked on: one model, models to draw beside it, and the role of each record. Kept in the folder.
 import { el, notice } from "./elements.js";
 import { get, post, upload } from "./exchange.js";
+import { begin } from "./jobs.js";
 
 /** @type {{folder: string, files: {name: string, kind: string, bytes: number}[], model: string|null, beside: string[], roles: Object<string, string>}} */
 export const choice = { folder: "", files: [], model: null, beside: [], roles: {} };
@@ -27,7 +28,7 @@ export function chosenRecords() {
 /** At first: what lies beside the model, and what is called so judges. */
 function usualRole(name) {
   if (choice.model && folderOf(name) !== folderOf(choice.model)) return "off";
-  return /valid|judge|held|test/i.test(name) ? "judge" : "train";
+  return isForJudging(name) ? "judge" : "train";
 }
 
 export async function loadFolder() {
@@ -57,22 +58,30 @@ export async function workOn(name) {
   await changed();
 }
 
-/** Pieces of a record take its role. @param {string} name @param {string[]} pieces */
-export async function replaceRecord(name, pieces) {
-  const role = choice.roles[name];
-  choice.roles[name] = "off";
-  for (const piece of pieces) choice.roles[piece] = role;
+/** New records take roles. @param {Object<string, string>} roles */
+export async function giveRoles(roles) {
+  Object.assign(choice.roles, roles);
   await post("/api/choice", chosen());
   await loadFolder();
   await changed();
 }
 
+/** Pieces of a record take its role. @param {string} name @param {string[]} pieces */
+export function replaceRecord(name, pieces) {
+  return giveRoles({ ...Object.fromEntries(pieces.map((piece) => [piece, choice.roles[name]])), [name]: "off" });
+}
+
+/** Whether its name says that it judges. @param {string} name */
+export const isForJudging = (name) => /valid|judge|held|test|check/i.test(name);
+
 const chosen = () => ({ model: choice.model || "", beside: choice.beside, roles: choice.roles });
 
 async function take(files) {
+  const taken = [];
   for (const file of files) {
     try {
       const { name } = await upload(file);
+      taken.push(name);
       notice(name + " is in the folder.");
     } catch (error) {
       notice(file.name + ": " + error.message);
@@ -80,6 +89,8 @@ async function take(files) {
   }
   await loadFolder();
   await changed();
+  const logs = namesOf("log").filter((name) => taken.includes(name));
+  if (logs.length) location.hash = openAddress(logs);
 }
 
 function modelRow(name) {
@@ -108,6 +119,18 @@ function recordRow(name) {
   return el("li", { className: "role-" + choice.roles[name] }, el("span", { className: "name" }, name), select);
 }
 
+function sheetRow(name) {
+  const identify = () => begin({ do: "identify", model: name, train: recordsAs("train") });
+  return el("li", {}, el("span", { className: "name" }, name), el("button", { type: "button", className: "small", disabled: !recordsAs("train").length, title: "Inertia and friction from the training records", onclick: identify }, "Identify"));
+}
+
+/** Logs of one controller are opened together: they help each other. @param {string[]} names */
+const openAddress = (names) => "#open/" + names.map(encodeURIComponent).join("/");
+
+function logRow(name) {
+  return el("li", {}, el("span", { className: "name" }, name), el("a", { href: openAddress([name]), className: "button small" }, "Open"));
+}
+
 function group(title, rows, empty) {
   return el("section", {}, el("h2", {}, title), rows.length ? el("ul", {}, ...rows) : el("p", { className: "soft" }, empty));
 }
@@ -118,12 +141,13 @@ function render() {
   const focused = document.activeElement && place.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
   const input = el("input", { type: "file", multiple: true, id: "add-files", className: "hidden", onchange: (event) => take(event.target.files) });
   const drop = el("div", { className: "drop" }, el("button", { type: "button", onclick: () => input.click() }, "Add files…"), el("span", { className: "soft" }, "or drop them anywhere"), input);
-  const logs = namesOf("log");
+  const logs = namesOf("log"), sheets = namesOf("sheet");
   place.replaceChildren(
     drop,
-    group("Models", namesOf("model").map(modelRow), "None yet: identify writes one, or drop a .toml."),
-    group("Records", namesOf("record").map(recordRow), "None yet: drop a .csv."),
-    ...(logs.length ? [group("Other logs", logs.map((name) => el("li", {}, el("span", { className: "name" }, name), el("code", {}, "axistool open " + name + " -o records"))), "")] : [])
+    group("Models", namesOf("model").map(modelRow), "None yet: drop one (.toml), or identify it from records and a data sheet."),
+    group("Records", namesOf("record").map(recordRow), "None yet: drop some, or logs of any controller."),
+    ...(sheets.length ? [group("Data sheets", sheets.map(sheetRow), "")] : []),
+    ...(logs.length ? [group("Other logs", [...logs.map(logRow), ...(logs.length > 1 ? [el("li", {}, el("span", { className: "name soft" }, "of one controller"), el("a", { href: openAddress(logs), className: "button small" }, "Open all"))] : [])], "")] : [])
   );
   if (focused) place.querySelector('[aria-label="' + CSS.escape(focused) + '"]')?.focus();
 }

@@ -95,7 +95,7 @@ export async function showCompare(place) {
   const head = el("div", { className: "row head" }, el("h1", {}, "Compare"), setButtons(again));
   if (!choice.model || !records.length) {
     forgetPlots();
-    place.replaceChildren(head, el("p", { className: "lead" }, choice.model ? "Choose records on the left, or drop them anywhere." : "A model is needed to compare with: choose or drop one (.toml)."));
+    place.replaceChildren(head, el("p", { className: "lead" }, choice.model ? "Choose records on the left, or drop them anywhere." : "A model is needed to compare with: drop one (.toml), or identify one from training records and a data sheet on the left."));
     return;
   }
   place.classList.add("waiting");

@@ -1,5 +1,5 @@
 // Which effect is missing, as cards in the order of their probability; a click adds one, and the error falls.
-import { choice, chosenRecords, workOn } from "./choice.js";
+import { choice, chosenRecords, loadFolder, workOn } from "./choice.js";
 import { showComparison } from "./compare.js";
 import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
 import { fileAddress, get, post, report } from "./exchange.js";
@@ -8,7 +8,7 @@ import { begin, jobs, whole } from "./jobs.js";
 import { save } from "./plot_files.js";
 import { forgetPlots, partsOf, showBlocks } from "./report_parts.js";
 
-const kLeastGain = 0.05; // of the error; less changes nothing
+const kShown = 0.01; // probability; less is folded away
 const documents = new Map(); // of jobs that are done: they do not change
 let catalogue = null;
 let next = []; // kinds of a set that are still to be added, one after the other
@@ -30,7 +30,7 @@ function titleOf(kinds) {
   return kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ");
 }
 
-const madeBy = (model) => jobs.find((job) => job.state === "done" && job.model === model);
+const madeBy = (model) => jobs.find((job) => job.state === "done" && job.model === model && job.request.do !== "identify");
 
 /** The jobs that led to a model, first one first. */
 function stepsTo(model) {
@@ -61,12 +61,13 @@ export async function follow(ended) {
   for (const job of ended) {
     if (job.state === "failed") notice(job.message);
     if (job.state !== "done") next = [];
-    if (job.state !== "done" || !job.model || job.request.model !== choice.model) continue;
+    if (job.state !== "done" || !job.model || (job.request.do !== "identify" && job.request.model !== choice.model)) continue;
     if ((await documentOf(job)).kept === "given") {
       next = [];
       notice("Held-back records would be predicted worse: the model stays as it was.");
       continue;
     }
+    await loadFolder();
     await workOn(job.model);
     if (next.length) await add(next.shift());
   }
@@ -124,9 +125,9 @@ function plainCard(title, share, text, action = null) {
 }
 
 function cards(told) {
-  const gains = (one) => one.after < (1 - kLeastGain) * one.before;
-  const verdict = told.verdict;
-  const useful = told.candidates.filter((one) => gains(one) || one.probability >= 0.01), rest = told.candidates.filter((one) => !useful.includes(one));
+  const verdict = told.verdict, tied = [verdict.effects, ...verdict.alternatives].flat();
+  const useful = told.candidates.filter((one) => one.probability >= kShown || one.kinds.every((kind) => tied.includes(kind)));
+  const rest = told.candidates.filter((one) => !useful.includes(one));
   const list = useful.map((one) => card(one, told));
   if (verdict.probability_other > 0) list.push(plainCard("Something else", verdict.probability_other,
     (verdict.coordinate ? "Most of what is left goes with " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment,
@@ -134,7 +135,7 @@ function cards(told) {
   if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "What is left would be noise."));
   const places = [el("h2", {}, "What it could be"), el("ol", { className: "cards", id: "cards" }, ...list)];
   for (const group of verdict.alternatives) places.push(el("p", { className: "lead" }, "These records cannot tell apart: " + group.map((kind) => titleOf([kind])).join(", ") + "."));
-  if (rest.length) places.push(el("details", {}, el("summary", {}, rest.length + " effects that were tried change nothing"), el("ol", { className: "cards" }, ...rest.map((one) => card(one, told)))));
+  if (rest.length) places.push(el("details", {}, el("summary", {}, rest.length + " others that were tried are improbable"), el("ol", { className: "cards" }, ...rest.map((one) => card(one, told)))));
   return places;
 }
 

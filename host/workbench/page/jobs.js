@@ -49,7 +49,7 @@ export function whole(job) {
   return get("/api/jobs/" + job.id);
 }
 
-const kVerbs = { diagnose: "Searching what is missing", add: "Fitting", improve: "Adding what is significant" };
+const kVerbs = { identify: "Identifying", diagnose: "Searching what is missing", add: "Fitting", improve: "Adding what is significant" };
 
 /** @param {any} job */
 export function titleOf(job) {

@@ -4,13 +4,14 @@ import { showCompare } from "./compare.js";
 import { el, errorBox } from "./elements.js";
 import { follow, keys, showEffects } from "./effects.js";
 import { showGallery } from "./gallery.js";
+import { showOpening } from "./opening.js";
 import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
 import { forgetPlots } from "./report_parts.js";
 
 const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs]];
 const content = el("div", { id: "content" }), progress = el("div", { id: "progress" });
 
-const address = () => location.hash.slice(1).split("/");
+const address = () => location.hash.slice(1).split("/").map(decodeURIComponent);
 const isShown = (name) => (address()[0] || "compare") === name;
 
 function links() {
@@ -19,11 +20,11 @@ function links() {
 }
 
 async function show() {
-  const [name, detail] = address();
+  const [name, ...details] = address();
   const view = kViews.find((one) => one[0] === name) || kViews[0];
   links();
   try {
-    await view[2](content, detail);
+    await (name === "open" ? showOpening(content, details) : view[2](content, details[0]));
   } catch (error) {
     forgetPlots();
     content.replaceChildren(errorBox(error));
@@ -49,7 +50,7 @@ async function start() {
   if (location.search) history.replaceState(null, "", "/" + location.hash); // the token is in the cookie now
   document.getElementById("view").replaceChildren(progress, content);
   acceptDrops();
-  onChoice(() => !isShown("jobs") && show());
+  onChoice(() => !isShown("jobs") && !isShown("open") && show());
   onJobs(async (ended) => {
     progress.replaceChildren(...progressBars());
     await follow(ended);

@@ -213,6 +213,26 @@ class Workbench(unittest.TestCase):
         self.until("#effect-backlash[open]")
         self.quiet()
 
+    def test_logs_of_another_controller_become_a_model(self) -> None:
+        sheet = (CASE / "model.toml").read_text().split("[[effect]]")[0]
+        (self.folder / "model.toml").unlink()
+        for name in ("train-jog.csv", "validate.csv"):
+            rows = (self.folder / name).read_text().splitlines()[4:]
+            (self.folder / name).write_text("Time [s];Command Voltage [V];ActPos [mm];ActVel [rad/s]\n" + "\n".join(rows).replace(",", ";"))
+        (self.folder / "sheet.toml").write_text(sheet)
+        self.browser.get(self.url)
+        self.click("#choice a[href='#open/train-jog.csv/validate.csv']")
+        WebDriverWait(self.browser, PATIENCE_S).until(
+            lambda browser: browser.find_elements(By.ID, "accept-opening") or browser.find_elements(By.CSS_SELECTOR, "[aria-label='Role of records/train-jog.csv']"))
+        for button in self.browser.find_elements(By.ID, "accept-opening"):
+            button.click()
+        self.until("[aria-label='Role of records/validate.csv'] option[value=judge]:checked")
+        self.click("#choice button.small:not(:disabled)")
+        self.until("#content .verdict")
+        self.assertTrue((self.folder / "sheet-identified.toml").exists())
+        self.keep("opened")
+        self.quiet()
+
     def test_file_names_are_text(self) -> None:
         name = "<img src=x onerror=alert(1)>.csv"
         shutil.copy(CASE / "train-jog.csv", self.folder / name)

@@ -29,6 +29,7 @@ TEST(Folder, ListsWhatIsReadHereAndNothingThatLiesElsewhere) {
   elsewhere.write("secret.csv", "t_s,u_V,x_mm\n");
   working.copy_case("single/case-00");
   working.folder.write("notes.toml", "a = 1\n");
+  working.folder.write("sheet.toml", "format = \"axis-model/1\"\n[drive]\n");
   working.folder.write("plc.csv", "Time;Pos\n1;2\n");
   fs::create_directories("runs/deep");
   fs::copy("validate.csv", "runs/deep/again.csv");
@@ -38,9 +39,9 @@ TEST(Folder, ListsWhatIsReadHereAndNothingThatLiesElsewhere) {
   const Folder folder;
   std::vector<std::string> found;
   for (const auto& file : folder.files()) found.push_back(file.name + ":" + file.kind);
-  EXPECT_THAT(found,
-              testing::ElementsAre("alias.csv:record", "model.toml:model", "plc.csv:log", "runs/deep/again.csv:record",
-                                   "train-jog.csv:record", "train-sweep.csv:record", "validate.csv:record"));
+  EXPECT_THAT(found, testing::ElementsAre("alias.csv:record", "model.toml:model", "plc.csv:log",
+                                          "runs/deep/again.csv:record", "sheet.toml:sheet", "train-jog.csv:record",
+                                          "train-sweep.csv:record", "validate.csv:record"));
   EXPECT_EQ(folder.existing("alias.csv"), "alias.csv");
   const auto code_of = [&](const std::string& name) {
     try {

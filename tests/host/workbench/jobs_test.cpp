@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "host/exit_codes.hpp"
 #include "host/read_file.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
@@ -78,6 +80,39 @@ TEST(Jobs, AStretchIsLeftOutByCut) {
   }
   EXPECT_EQ(served.post("/api/cut", json{{"record", "validate.csv"}, {"stretch", {-1.0, 9.0}}}).first, 422);
   EXPECT_EQ(served.post("/api/cut", json{{"record", "validate.csv"}, {"stretch", {2.0, 1.0}}}).first, 400);
+}
+
+TEST(Jobs, AModelIsIdentifiedFromADataSheetAsTheCommandDoes) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  const std::string model = host::read_file("model.toml");
+  served.folder.write("sheet.toml", model.substr(0, model.find("[[effect]]")));
+  const int id = served.post("/api/jobs", {{"do", "identify"}, {"model", "sheet.toml"}, {"train", {"train-jog.csv"}}})
+                     .second["id"];
+  const json state = served.ended(id);
+  ASSERT_EQ(state["state"], "done") << state;
+  EXPECT_EQ(state["model"], "sheet-identified.toml");
+  const std::string written = host::read_file("sheet-identified.toml");
+  EXPECT_EQ(document_of(state["command"]), state["document"]);
+  EXPECT_EQ(host::read_file("sheet-identified.toml"), written);
+}
+
+TEST(Jobs, ALogOfAnotherControllerBecomesRecordsOnceItIsUnderstood) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  std::string log = host::read_file("validate.csv");
+  log.replace(0, log.find("\n0.000,"), "Time [s];Command Voltage [V];ActPos [mm];ActVel [rad/s]");
+  std::ranges::replace(log, ',', ';');
+  served.folder.write("trace.csv", log);
+  for (const bool yes : {false, true}) {
+    const auto [status, told] = served.post("/api/open", {{"logs", {"trace.csv"}}, {"yes", yes}});
+    ASSERT_EQ(status, 200) << told;
+    const bool written = yes || told["document"]["asks"].empty();
+    EXPECT_EQ(told["document"]["records"].size(), written ? 1U : 0U) << told;
+    if (written) std::filesystem::remove_all("trace");
+    EXPECT_EQ(document_of(told["command"]), told["document"]);
+    std::filesystem::remove_all("trace");
+  }
 }
 
 TEST(Jobs, AnAdditionIsThatOfTheCommandAndNeitherReloadNorCrashLosesIt) {
