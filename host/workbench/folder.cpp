@@ -141,7 +141,7 @@ std::string Upload::finish() {
   file_.close();
   if (!file_) throw Failure(ExitCode::bad_input, name_ + ": could not be written into the folder");
   const fs::path path(name_);
-  const std::string name = folder_.free_name(path.stem().string(), path.extension().string());
+  std::string name = folder_.free_name(path.stem().string(), path.extension().string());
   fs::rename(partial_, name);
   partial_.clear();
   return name;

@@ -25,7 +25,7 @@ struct Request {
   Focus focus;             ///< of compare: "traces", "stretch": [FROM, TO], "period_mm"
 };
 
-inline constexpr std::size_t kLongestRequest = 64 * 1024;
+inline constexpr std::size_t kLongestRequest = 65'536;
 
 /// Throws Failure(usage) naming the field and what belongs there; names are plain (is_plain_name), the files may be
 /// missing.

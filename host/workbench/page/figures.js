@@ -29,6 +29,14 @@ export function errorBars(steps) {
     el("table", {}, ...rows));
 }
 
+/** A table that becomes blocks on a narrow screen. @param {string} title @param {string} caption @param {string[]} heads @param {string[][]} rows @param {number} numbers first column that is aligned right */
+function table(title, caption, heads, rows, numbers) {
+  const cell = (text, k) => el("td", { className: k >= numbers ? "number" : "", "data-heading": heads[k] }, text);
+  return el("figure", { className: "table stacks" }, el("figcaption", {}, el("strong", {}, title), el("span", {}, caption)),
+    el("div", { className: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads.map((text, k) => el("th", { scope: "col", className: k >= numbers ? "number" : "" }, text)))),
+      el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map(cell)))))));
+}
+
 /** Of every channel, before and after. @param {any} given @param {any} after each { train, validate } of figures */
 export function errorTable(given, after) {
   const rows = [];
@@ -37,12 +45,9 @@ export function errorTable(given, after) {
       const before = given[set]?.channels?.[name];
       const [quantity, factor, unit] = shown(name);
       const value = (figures) => short(factor * figures.rms) + " " + unit + (figures.share === null || figures.share === undefined ? "" : " (" + short(100 * figures.share) + " %)");
-      rows.push(el("tr", {}, el("td", {}, title), el("td", {}, quantity), el("td", { className: "number" }, before ? value(before) : "–"), el("td", { className: "number" }, value(channel)),
-        el("td", { className: "number" }, before ? change(before.rms, channel.rms) : ""), el("td", { className: "number" }, short(factor * channel.floor) + " " + unit)));
+      rows.push([title, quantity, before ? value(before) : "–", value(channel), before ? change(before.rms, channel.rms) : "", short(factor * channel.floor) + " " + unit]);
     }
-  const heads = ["records", "channel", "before", "after", "change", "noise floor"].map((text) => el("th", { scope: "col" }, text));
-  return el("figure", { className: "table" }, el("figcaption", {}, el("strong", {}, "Error in units of the machine"), el("span", {}, "RMS, and share of the signal.")),
-    el("div", { className: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), el("tbody", {}, ...rows))));
+  return table("Error in units of the machine", "RMS, and share of the signal.", ["records", "channel", "before", "after", "change", "noise floor"], rows, 2);
 }
 
 /** "cogging.cosine" as the model file has it, with its unit. @param {string} name @param {any[]} catalogue @param {boolean} rotary */
@@ -57,11 +62,8 @@ function keyOf(name, catalogue, rotary) {
 /** What was fitted. @param {any[]} parameters of axis-addition/1 @param {any[]} catalogue @param {boolean} rotary */
 export function parameterTable(parameters, catalogue, rotary) {
   const k95 = 1.96;
-  const rows = parameters.map((one) => el("tr", {}, el("td", {}, keyOf(one.name, catalogue, rotary)), el("td", { className: "number" }, String(Number(one.value.toPrecision(5)))),
-    el("td", { className: "number" }, one.determined ? "± " + short(k95 * one.deviation) : "not determined")));
-  const heads = ["parameter", "value", "95 %"].map((text) => el("th", { scope: "col" }, text));
-  return el("figure", { className: "table" }, el("figcaption", {}, el("strong", {}, "Parameters, all fitted again")),
-    el("div", { className: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), el("tbody", {}, ...rows))));
+  const rows = parameters.map((one) => [keyOf(one.name, catalogue, rotary), String(Number(one.value.toPrecision(5))), one.determined ? "± " + short(k95 * one.deviation) : "not determined"]);
+  return table("Parameters, all fitted again", "", ["parameter", "value", "95 %"], rows, 1);
 }
 
 /** @param {number} share 0 to 1 */

@@ -100,8 +100,20 @@ class Workbench(unittest.TestCase):
         self.browser.save_screenshot(f"{folder}/{name}.png")
         self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
+    def show_on(self, width: int, height: int) -> None:
+        self.browser.set_window_size(width, height)
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+        time.sleep(0.3)
+
+    def keep_on_phone(self, name: str) -> None:
+        self.show_on(400, 850)
+        self.keep(name)
+        self.show_on(1440, 1000)
+        self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
     def quiet(self) -> None:
-        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [], "no console message")
+        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [],
+                         f"no console message; the page says: {self.texts('[role=alert]')}, {self.texts('#notice')}")
 
     def test_from_a_dropped_record_to_an_effect_that_was_added(self) -> None:
         browser = self.browser
@@ -129,10 +141,12 @@ class Workbench(unittest.TestCase):
         first = self.until("#cards .card")
         self.assertIn("Cogging", first.text)
         self.keep("effects")
+        self.keep_on_phone("phone-effects")
         self.click("#cards .card button")
         self.until("#undo")
         self.until("#overlay .blocks .canvas canvas")
         self.keep("added")
+        self.keep_on_phone("phone-added")
         given, after = (json.loads((self.folder / "workbench/0002-add.json").read_text())["error"][which]["validate"]["combined"] for which in ("given", "after"))
         self.assertLess(after, 0.5 * given)
         bars = self.texts(".bars .value")
@@ -200,8 +214,7 @@ class Workbench(unittest.TestCase):
         browser = self.browser
         self.until("#content .blocks")
         for width, height, scheme, name in ((1440, 1000, "dark", "dark"), (400, 850, "light", "phone"), (3840, 2160, "light", "4k")):
-            browser.set_window_size(width, height)
-            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+            self.show_on(width, height)
             browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
             for key, shown in (("1", "#content .focus ~ div .blocks canvas"), ("2", "#diagnose"), ("3", ".effect"), ("4", "#content h1")):
                 browser.find_element(By.TAG_NAME, "body").send_keys(key)
@@ -214,6 +227,7 @@ class Workbench(unittest.TestCase):
         self.quiet()
 
     def test_logs_of_another_controller_become_a_model(self) -> None:
+        self.until("#content .verdict")  # the files are read
         sheet = (CASE / "model.toml").read_text().split("[[effect]]")[0]
         (self.folder / "model.toml").unlink()
         for name in ("train-jog.csv", "validate.csv"):

@@ -35,6 +35,7 @@ TEST(Request, WhatIsNoRequestIsRefusedWithTheFieldsName) {
       {"[]", "object"},
       {"{\"do\":", "object"},
       {std::string(20'000, '['), "object"},
+      {R"({"do":)" + std::string(20'000, '[') + std::string(20'000, ']') + "}", "do"},
       {"{}", "do"},
       {R"({"do":7})", "do"},
       {R"({"do":"format"})", "do"},

@@ -58,7 +58,7 @@ class ServedFolder : public WorkingFolder {
   /// The job's state once it has ended.
   nlohmann::json ended(int id) const {
     for (int tries = 0; tries < 4000; ++tries) {
-      const nlohmann::json state = get("/api/jobs/" + std::to_string(id)).second;
+      nlohmann::json state = get("/api/jobs/" + std::to_string(id)).second;
       if (state["state"] != "queued" && state["state"] != "running") return state;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
