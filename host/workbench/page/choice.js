@@ -3,8 +3,11 @@ import { el, notice } from "./elements.js";
 import { get, post, upload } from "./exchange.js";
 import { begin } from "./jobs.js";
 
-/** @type {{folder: string, files: {name: string, kind: string, bytes: number}[], model: string|null, beside: string[], roles: Object<string, string>}} */
-export const choice = { folder: "", files: [], model: null, beside: [], roles: {} };
+/**
+ * `accepted`: faults of the logs in spite of which this page goes on.
+ * @type {{folder: string, files: {name: string, kind: string, bytes: number}[], model: string|null, beside: string[], roles: Object<string, string>, accepted: string[]}}
+ */
+export const choice = { folder: "", files: [], model: null, beside: [], roles: {}, accepted: [] };
 
 const listeners = [];
 /** @param {() => void} listener */
@@ -120,7 +123,7 @@ function recordRow(name) {
 }
 
 function sheetRow(name) {
-  const identify = () => begin({ do: "identify", model: name, train: recordsAs("train") });
+  const identify = () => begin({ do: "identify", model: name, train: recordsAs("train"), accept: choice.accepted });
   return el("li", {}, el("span", { className: "name" }, name), el("button", { type: "button", className: "small", disabled: !recordsAs("train").length, title: "Inertia and friction from the training records", onclick: identify }, "Identify"));
 }
 

@@ -7,7 +7,6 @@ import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.j
 
 const kSets = [["all", "all records"], ["judge", "held back"], ["train", "training"]];
 let set = "all";
-let accepted = [];
 let asked = 0;
 /** What is looked at: { traces, stretch, period_mm }, as the command's options. */
 let focus = {};
@@ -27,7 +26,7 @@ function setButtons(again) {
  * @param {{focus?: any, onZoom?: (...words: any[]) => void}} [options]
  */
 export async function showComparison(place, models, records, options = {}) {
-  const told = await post("/api/compare", { do: "compare", models, records, accept: accepted, ...options.focus });
+  const told = await post("/api/compare", { do: "compare", models, records, accept: choice.accepted, ...options.focus });
   return { told, show: () => {
     if (told.text) return place.append(el("pre", {}, told.text), commandLine(told.command));
     const parts = partsOf(told.report);
@@ -114,7 +113,7 @@ export async function showCompare(place) {
   } catch (error) {
     if (mine !== asked) return;
     forgetPlots();
-    place.replaceChildren(head, errorBox(error, (words) => ((accepted = [...accepted, ...words]), again())));
+    place.replaceChildren(head, errorBox(error, (words) => (choice.accepted.push(...words), again())));
   } finally {
     if (mine === asked) place.classList.remove("waiting");
   }

@@ -12,7 +12,6 @@ const kShown = 0.01; // probability; less is folded away
 const documents = new Map(); // of jobs that are done: they do not change
 let catalogue = null;
 let next = []; // kinds of a set that are still to be added, one after the other
-let accepted = [];
 let shown = 0;
 
 async function documentOf(job) {
@@ -40,7 +39,7 @@ function stepsTo(model) {
 }
 
 function request(task) {
-  return { do: task, model: choice.model, ...chosenRecords(), accept: accepted };
+  return { do: task, model: choice.model, ...chosenRecords(), accept: choice.accepted };
 }
 
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -82,7 +81,7 @@ function undo() {
 /** One page of what was done, on held-back records where there are some. */
 async function saveStory() {
   const records = chosenRecords();
-  const told = await post("/api/story", { do: "compare", models: [choice.model], records: records.validate.length ? records.validate : records.train, accept: accepted }).catch((error) => notice(error.message));
+  const told = await post("/api/story", { do: "compare", models: [choice.model], records: records.validate.length ? records.validate : records.train, accept: choice.accepted }).catch((error) => notice(error.message));
   if (told) save("story.html", new Blob([told.report], { type: "text/html" }));
 }
 
@@ -190,7 +189,7 @@ export async function showEffects(place, wish) {
       if (steps.length) body.append(found);
       draw.push(await diagnosis(found, asked));
     } else if (asked?.state === "failed")
-      body.append(errorBox(Object.assign(new Error(asked.message), { log: asked.log }), (words) => ((accepted = [...accepted, ...words]), begin(request("diagnose")))));
+      body.append(errorBox(Object.assign(new Error(asked.message), { log: asked.log }), (words) => (choice.accepted.push(...words), begin(request("diagnose")))));
   } catch (error) {
     body.append(errorBox(error));
   }

@@ -36,7 +36,7 @@ TEST(Access, KnowsItsOwnNamesOriginsAndCookiesOnly) {
 
 TEST(Access, ARequestWithoutTokenUnderAnotherNameOrFromAnotherSiteIsRefused) {
   const ServedFolder served;
-  const auto status_of = [&](const std::string& path, httplib::Headers headers) {
+  const auto status_of = [&](const std::string& path, const httplib::Headers& headers) {
     const auto result = served.client().Get(path, headers);
     return result ? result->status : 0;
   };
