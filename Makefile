@@ -223,6 +223,7 @@ lint: ## Static analysis, include rules, formatting, file length; no finding is 
 	$(NEED) build python test lint
 	cmake/checks/file_length.sh .
 	cmake/checks/include_rules.sh .
+	cmake/checks/page_types.sh .
 	@clang-format-14 --dry-run -Werror $(SOURCES)
 	$(call configure,$(BUILD)/lint,-DAXIS_UNITY=OFF)
 	ninja -C $(BUILD)/lint build_version

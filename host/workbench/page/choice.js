@@ -18,7 +18,10 @@ export function onChoice(listener) {
 const folderOf = (name) => name.slice(0, name.lastIndexOf("/") + 1);
 const namesOf = (kind) => choice.files.filter((file) => file.kind === kind).map((file) => file.name);
 
-/** @param {string} role @returns {string[]} */
+/**
+ * @param {string} role
+ * @returns {string[]}
+ */
 export function recordsAs(role) {
   return namesOf("record").filter((name) => choice.roles[name] === role);
 }
@@ -61,7 +64,10 @@ export async function workOn(name) {
   await changed();
 }
 
-/** New records take roles. @param {Object<string, string>} roles */
+/**
+ * New records take roles.
+ * @param {Object<string, string>} roles
+ */
 export async function giveRoles(roles) {
   Object.assign(choice.roles, roles);
   await post("/api/choice", chosen());
@@ -69,12 +75,19 @@ export async function giveRoles(roles) {
   await changed();
 }
 
-/** Pieces of a record take its role. @param {string} name @param {string[]} pieces */
+/**
+ * Pieces of a record take its role.
+ * @param {string} name
+ * @param {string[]} pieces
+ */
 export function replaceRecord(name, pieces) {
   return giveRoles({ ...Object.fromEntries(pieces.map((piece) => [piece, choice.roles[name]])), [name]: "off" });
 }
 
-/** Whether its name says that it judges. @param {string} name */
+/**
+ * Whether its name says that it judges.
+ * @param {string} name
+ */
 export const isForJudging = (name) => /valid|judge|held|test|check/i.test(name);
 
 const chosen = () => ({ model: choice.model || "", beside: choice.beside, roles: choice.roles });
@@ -127,7 +140,10 @@ function sheetRow(name) {
   return el("li", {}, el("span", { className: "name" }, name), el("button", { type: "button", className: "small", disabled: !recordsAs("train").length, title: "Inertia and friction from the training records", onclick: identify }, "Identify"));
 }
 
-/** Logs of one controller are opened together: they help each other. @param {string[]} names */
+/**
+ * Logs of one controller are opened together: they help each other.
+ * @param {string[]} names
+ */
 const openAddress = (names) => "#open/" + names.map(encodeURIComponent).join("/");
 
 function logRow(name) {
@@ -152,7 +168,7 @@ function render() {
     ...(sheets.length ? [group("Data sheets", sheets.map(sheetRow), "")] : []),
     ...(logs.length ? [group("Other logs", [...logs.map(logRow), ...(logs.length > 1 ? [el("li", {}, el("span", { className: "name soft" }, "of one controller"), el("a", { href: openAddress(logs), className: "button small" }, "Open all"))] : [])], "")] : [])
   );
-  if (focused) place.querySelector('[aria-label="' + CSS.escape(focused) + '"]')?.focus();
+  if (focused) /** @type {HTMLElement|null} */ (place.querySelector('[aria-label="' + CSS.escape(focused) + '"]'))?.focus();
 }
 
 export function acceptDrops() {

@@ -2,7 +2,7 @@
 import { choice, recordsAs, replaceRecord } from "./choice.js";
 import { commandLine, el, errorBox, notice, short } from "./elements.js";
 import { post } from "./exchange.js";
-import { save } from "./plot_files.js";
+import { plots, save } from "./plot_files.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
 
 const kSets = [["all", "all records"], ["judge", "held back"], ["train", "training"]];
@@ -22,7 +22,9 @@ function setButtons(again) {
 
 /**
  * Models on records as blocks of their report.
- * @param {Element} place @param {string[]} models @param {string[]} records
+ * @param {Element} place
+ * @param {string[]} models
+ * @param {string[]} records
  * @param {{focus?: any, onZoom?: (...words: any[]) => void}} [options]
  */
 export async function showComparison(place, models, records, options = {}) {
@@ -70,9 +72,10 @@ function zoomTools(traces, again) {
     figure.querySelector(".zoomed")?.remove();
     const whole = plot.kind === "time" ? null : plot.series.flatMap((one) => one.x);
     const isReset = whole && from <= Math.min(...whole) && to >= Math.max(...whole);
+    /** @type {[string, (() => any)?][]} */
     const actions = [];
     if (plot.kind === "time") {
-      const first = window.axisPlots.unpack(plot.panels[0].x);
+      const first = plots().unpack(plot.panels[0].x);
       if (from <= first[0] && to >= first.at(-1)) return;
       const stretch = [from, to].map((value) => Number(value.toPrecision(6)));
       actions.push([short(from) + " to " + short(to) + " s of " + traces], ["Light it in all plots", () => ((focus = { ...focus, traces, stretch }), again())], ["Leave it out", () => leaveOut(traces, stretch)]);

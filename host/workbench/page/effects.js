@@ -50,12 +50,18 @@ function searched() {
   return jobs.find((job) => job.request.do === "diagnose" && job.request.model === choice.model && sameRecords(job));
 }
 
-/** @param {string} kind @param {string} [over] coordinate of a free curve */
+/**
+ * @param {string} kind
+ * @param {string} [over] coordinate of a free curve
+ */
 export function add(kind, over) {
   return begin({ ...request("add"), kind, ...(over ? { over } : {}) });
 }
 
-/** When a job has ended: the new model is worked on, and the rest of a set follows. @param {any[]} ended */
+/**
+ * When a job has ended: the new model is worked on, and the rest of a set follows.
+ * @param {any[]} ended
+ */
 export async function follow(ended) {
   for (const job of ended) {
     if (job.state === "failed") notice(job.message);
@@ -164,7 +170,10 @@ function head() {
     : "Choose a model and at least one training record.")];
 }
 
-/** @param {Element} place @param {string} [wish] "find": the search begins, unless it was made */
+/**
+ * @param {Element} place
+ * @param {string} [wish] "find": the search begins, unless it was made
+ */
 export async function showEffects(place, wish) {
   const mine = ++shown;
   if (wish === "find") {

@@ -1,6 +1,11 @@
 // Elements from data. Text stays text: nothing here reads markup.
 
-/** @param {string} tag @param {Object<string, any>} properties @param {...(Node|string|null)} children */
+/**
+ * @param {string} tag
+ * @param {Object<string, any>} properties
+ * @param {...(Node|string|null)} children
+ * @returns {any}
+ */
 export function el(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -14,7 +19,10 @@ export function el(tag, properties = {}, ...children) {
 
 let noticeTimer = 0;
 
-/** Says something in passing, to screen readers too. @param {string} text */
+/**
+ * Says something in passing, to screen readers too.
+ * @param {string} text
+ */
 export function notice(text) {
   const box = document.getElementById("notice");
   box.textContent = text;
@@ -23,7 +31,10 @@ export function notice(text) {
   noticeTimer = setTimeout(() => box.classList.remove("shown"), 6000);
 }
 
-/** The command that does the same, to copy. @param {string} command */
+/**
+ * The command that does the same, to copy.
+ * @param {string} command
+ */
 export function commandLine(command) {
   const copy = async () => {
     await navigator.clipboard.writeText(command);
@@ -32,7 +43,11 @@ export function commandLine(command) {
   return el("div", { className: "command" }, el("code", {}, command), el("button", { type: "button", onclick: copy }, "Copy"));
 }
 
-/** What went wrong, and what can be done about it. @param {Error & {log?: any[]}} error @param {(words: string[]) => void} [accept] */
+/**
+ * What went wrong, and what can be done about it.
+ * @param {Error & {log?: any[]}} error
+ * @param {(words: string[]) => void} [accept]
+ */
 export function errorBox(error, accept) {
   const fatal = (error.log || []).filter((fault) => fault.kind);
   const box = el("section", { className: "verdict bad", role: "alert" }, el("span", { className: "badge" }, "not possible"), el("h2", {}, error.message));
@@ -43,7 +58,10 @@ export function errorBox(error, accept) {
   return box;
 }
 
-/** Three significant digits, as the commands print. @param {number|null|undefined} value */
+/**
+ * Three significant digits, as the commands print.
+ * @param {number|null|undefined} value
+ */
 export function short(value) {
   return value === null || value === undefined || !isFinite(value) ? "–" : String(Number(value.toPrecision(3)));
 }

@@ -19,12 +19,18 @@ export async function get(path) {
   return told(await reached(fetch(path)));
 }
 
-/** @param {string} path @param {any} document */
+/**
+ * @param {string} path
+ * @param {any} document
+ */
 export async function post(path, document) {
   return told(await reached(fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(document) })));
 }
 
-/** @param {File} file @returns {Promise<{name: string}>} */
+/**
+ * @param {File} file
+ * @returns {Promise<{name: string}>}
+ */
 export async function upload(file) {
   return told(await reached(fetch("/api/files?name=" + encodeURIComponent(file.name), { method: "POST", body: file })));
 }
@@ -34,7 +40,10 @@ export function fileAddress(name) {
   return "/api/file?name=" + encodeURIComponent(name);
 }
 
-/** A report of the folder as text. @param {string} name */
+/**
+ * A report of the folder as text.
+ * @param {string} name
+ */
 export async function report(name) {
   const response = await reached(fetch(fileAddress(name)));
   if (!response.ok) await told(response);

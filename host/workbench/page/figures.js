@@ -1,7 +1,10 @@
 // Errors before and after, as bars and in units of the machine.
 import { el, percent, short } from "./elements.js";
 
-/** Channel, factor and unit that a mechanic reads. @param {string} name */
+/**
+ * Channel, factor and unit that a mechanic reads.
+ * @param {string} name
+ */
 function shown(name) {
   const known = { x_mm: ["position", 1e3, "µm"], x_m: ["position", 1e6, "µm"], w_rad_s: ["speed", 1, "rad/s"], v_m_s: ["speed", 1e3, "mm/s"] };
   return known[name] || [name, 1, ""];
@@ -29,7 +32,14 @@ export function errorBars(steps) {
     el("table", {}, ...rows));
 }
 
-/** A table that becomes blocks on a narrow screen. @param {string} title @param {string} caption @param {string[]} heads @param {string[][]} rows @param {number} numbers first column that is aligned right */
+/**
+ * A table that becomes blocks on a narrow screen.
+ * @param {string} title
+ * @param {string} caption
+ * @param {string[]} heads
+ * @param {string[][]} rows
+ * @param {number} numbers first column that is aligned right
+ */
 function table(title, caption, heads, rows, numbers) {
   const cell = (text, k) => el("td", { className: k >= numbers ? "number" : "", "data-heading": heads[k] }, text);
   return el("figure", { className: "table stacks" }, el("figcaption", {}, el("strong", {}, title), el("span", {}, caption)),
@@ -37,7 +47,11 @@ function table(title, caption, heads, rows, numbers) {
       el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map(cell)))))));
 }
 
-/** Of every channel, before and after. @param {any} given @param {any} after each { train, validate } of figures */
+/**
+ * Of every channel, before and after.
+ * @param {any} given
+ * @param {any} after each { train, validate } of figures
+ */
 export function errorTable(given, after) {
   const rows = [];
   for (const [set, title] of [["train", "training"], ["validate", "held back"]])
@@ -50,7 +64,12 @@ export function errorTable(given, after) {
   return table("Error in units of the machine", "RMS, and share of the signal.", ["records", "channel", "before", "after", "change", "noise floor"], rows, 2);
 }
 
-/** "cogging.cosine" as the model file has it, with its unit. @param {string} name @param {any[]} catalogue @param {boolean} rotary */
+/**
+ * "cogging.cosine" as the model file has it, with its unit.
+ * @param {string} name
+ * @param {any[]} catalogue
+ * @param {boolean} rotary
+ */
 function keyOf(name, catalogue, rotary) {
   const [kind, id] = name.split(".");
   const number = /_\d+$/.exec(id)?.[0] || "";
@@ -59,7 +78,12 @@ function keyOf(name, catalogue, rotary) {
   return kind.replaceAll("_", " ") + ": " + (known ? (rotary ? known.rotary_key : known.linear_key) + (known.id === id ? "" : number) : id);
 }
 
-/** What was fitted. @param {any[]} parameters of axis-addition/1 @param {any[]} catalogue @param {boolean} rotary */
+/**
+ * What was fitted.
+ * @param {any[]} parameters of axis-addition/1
+ * @param {any[]} catalogue
+ * @param {boolean} rotary
+ */
 export function parameterTable(parameters, catalogue, rotary) {
   const k95 = 1.96;
   const rows = parameters.map((one) => [keyOf(one.name, catalogue, rotary), String(Number(one.value.toPrecision(5))), one.determined ? "± " + short(k95 * one.deviation) : "not determined"]);

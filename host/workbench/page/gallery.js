@@ -18,7 +18,10 @@ function entry(info, catalogue) {
     info.base || !choice.model ? null : el("button", { type: "button", onclick: () => add(info.kind) }, "Add it to " + choice.model));
 }
 
-/** @param {Element} place @param {string} [kind] opened */
+/**
+ * @param {Element} place
+ * @param {string} [kind] opened
+ */
 export async function showGallery(place, kind) {
   const catalogue = await effects();
   const groups = Object.entries(kStages).map(([stage, heading]) => el("section", {}, el("h2", {}, heading), ...catalogue.filter((one) => one.stage === stage).map((one) => entry(one, catalogue))));
@@ -29,7 +32,7 @@ export async function showGallery(place, kind) {
   };
   place.replaceChildren(el("div", { className: "row head" }, el("h1", {}, "Gallery"), el("input", { type: "search", placeholder: "Search, e.g. reversal", "aria-label": "Search the effects", oninput: filter })),
     el("p", { className: "lead" }, "Every effect that the plant has and that diagnose looks for."), el("div", { className: "gallery" }, ...groups));
-  const opened = kind && document.getElementById("effect-" + kind);
+  const opened = /** @type {HTMLDetailsElement|null} */ (document.getElementById("effect-" + kind));
   if (!opened) return;
   opened.open = true;
   opened.scrollIntoView();

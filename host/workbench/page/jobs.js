@@ -8,7 +8,10 @@ const listeners = [];
 const isOpen = (job) => job.state === "queued" || job.state === "running";
 let timer = 0;
 
-/** Called with the jobs that have ended since the last look. @param {(ended: any[]) => void} listener */
+/**
+ * Called with the jobs that have ended since the last look.
+ * @param {(ended: any[]) => void} listener
+ */
 export function onJobs(listener) {
   listeners.push(listener);
 }
@@ -44,7 +47,10 @@ export async function cancel(job) {
   await lookAtJobs();
 }
 
-/** With its document. @param {any} job */
+/**
+ * With its document.
+ * @param {any} job
+ */
 export function whole(job) {
   return get("/api/jobs/" + job.id);
 }

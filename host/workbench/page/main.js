@@ -8,6 +8,7 @@ import { showOpening } from "./opening.js";
 import { lookAtJobs, onJobs, progressBars, showJobs } from "./jobs.js";
 import { forgetPlots } from "./report_parts.js";
 
+/** @type {[string, string, (place: Element, detail?: string) => any][]} */
 const kViews = [["compare", "Compare", showCompare], ["effects", "Effects", showEffects], ["gallery", "Gallery", showGallery], ["jobs", "Jobs", showJobs]];
 const content = el("div", { id: "content" }), progress = el("div", { id: "progress" });
 

@@ -5,7 +5,10 @@ import { post } from "./exchange.js";
 
 let asked = 0;
 
-/** @param {Element} place @param {string[]} logs */
+/**
+ * @param {Element} place
+ * @param {string[]} logs
+ */
 export async function showOpening(place, logs) {
   place.replaceChildren(el("h1", {}, logs.join(", ")), el("p", { className: "soft" }, "Reading…"));
   await open(place, logs, false);

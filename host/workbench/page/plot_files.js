@@ -1,9 +1,19 @@
 // A figure as files: its numbers as CSV, what is seen as PNG.
 import { el } from "./elements.js";
 
+/**
+ * What report.js, a script of its own, offers.
+ * @returns {{draw: Function, unpack: (packed: any) => Float64Array}}
+ */
+export const plots = () => /** @type {any} */ (window).axisPlots;
+
 const word = (text) => (/[",\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text);
 
-/** One row a point. @param {any} plot as report.js draws it @returns {string} */
+/**
+ * One row a point.
+ * @param {any} plot as report.js draws it
+ * @returns {string}
+ */
 export function csvOf(plot) {
   const rows = [];
   if (plot.kind === "map") {
@@ -15,8 +25,8 @@ export function csvOf(plot) {
   } else if (plot.kind === "time") {
     rows.push(["panel", "series", plot.xLabel, "value"].join(","));
     for (const panel of plot.panels) {
-      const x = window.axisPlots.unpack(panel.x);
-      for (const series of panel.series) window.axisPlots.unpack(series.y).forEach((y, k) => rows.push([word(panel.label), word(series.name), x[k], isNaN(y) ? "" : y].join(",")));
+      const x = plots().unpack(panel.x);
+      for (const series of panel.series) plots().unpack(series.y).forEach((y, k) => rows.push([word(panel.label), word(series.name), x[k], isNaN(y) ? "" : y].join(",")));
     }
   } else {
     rows.push(["series", word(plot.xLabel), word(plot.label), "lower", "upper", "samples"].join(","));
@@ -25,7 +35,11 @@ export function csvOf(plot) {
   return rows.join("\n") + "\n";
 }
 
-/** Canvases, swatches and texts of a figure where they stand. @param {HTMLElement} figure @returns {HTMLCanvasElement} */
+/**
+ * Canvases, swatches and texts of a figure where they stand.
+ * @param {HTMLElement} figure
+ * @returns {HTMLCanvasElement}
+ */
 export function pictureOf(figure) {
   const scale = 2, outer = figure.getBoundingClientRect();
   const picture = el("canvas", { width: scale * outer.width, height: scale * outer.height });
@@ -37,13 +51,13 @@ export function pictureOf(figure) {
   for (const part of figure.querySelectorAll("canvas, .swatch")) {
     const box = part.getBoundingClientRect();
     context.fillStyle = getComputedStyle(part).backgroundColor;
-    if (part.tagName === "CANVAS") context.drawImage(part, box.left, box.top, box.width, box.height);
+    if (part instanceof HTMLCanvasElement) context.drawImage(part, box.left, box.top, box.width, box.height);
     else context.fillRect(box.left, box.top, box.width, box.height);
   }
   context.textBaseline = "middle";
   const texts = document.createTreeWalker(figure, NodeFilter.SHOW_TEXT), range = document.createRange();
   while (texts.nextNode()) {
-    const node = texts.currentNode;
+    const node = /** @type {Text} */ (texts.currentNode);
     if (node.parentElement.closest("button, .tools")) continue;
     const style = getComputedStyle(node.parentElement);
     context.font = style.font;
@@ -58,14 +72,21 @@ export function pictureOf(figure) {
   return picture;
 }
 
-/** @param {string} name @param {Blob} content */
+/**
+ * @param {string} name
+ * @param {Blob} content
+ */
 export function save(name, content) {
   const link = el("a", { href: URL.createObjectURL(content), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Buttons for both. @param {HTMLElement} figure @param {any} plot */
+/**
+ * Buttons for both.
+ * @param {HTMLElement} figure
+ * @param {any} plot
+ */
 export function fileTools(figure, plot) {
   const title = figure.querySelector("figcaption strong")?.textContent || "plot";
   const name = title.replace(/[^\w.-]+/g, "-").toLowerCase();

@@ -1,9 +1,10 @@
 // The reports of the commands as parts of this page: the same blocks and the same plots, drawn by the same script.
-import { fileTools } from "./plot_files.js";
+import { fileTools, plots as plotScript } from "./plot_files.js";
 
 /**
  * @typedef {{verdict: Element|null, blocks: Element[], plots: any[]}} ReportParts
- * @param {string} html a report that the program wrote @returns {ReportParts}
+ * @param {string} html a report that the program wrote
+ * @returns {ReportParts}
  */
 export function partsOf(html) {
   const page = new DOMParser().parseFromString(html, "text/html");
@@ -25,7 +26,9 @@ export function forgetPlots() {
 
 /**
  * Puts the blocks into the page and draws their plots. Frames lose their ids: several reports may stand in one view.
- * @param {Element} place @param {ReportParts} parts @param {(block: Element) => boolean} [wanted]
+ * @param {Element} place
+ * @param {ReportParts} parts
+ * @param {(block: Element) => boolean} [wanted]
  * @param {(plot: any, canvas: Element, from: number, to: number) => void} [onZoom]
  */
 export function showBlocks(place, parts, wanted = () => true, onZoom) {
@@ -43,11 +46,14 @@ export function showBlocks(place, parts, wanted = () => true, onZoom) {
     frame.removeAttribute("id");
     frame.closest("figure").prepend(fileTools(frame.closest("figure"), plots.at(-1)));
   }
-  drawn.push(window.axisPlots.draw(plots, frames, onZoom));
+  drawn.push(plotScript().draw(plots, frames, onZoom));
   return box;
 }
 
-/** Links to the sections of the boxes. @param {Element[]} boxes */
+/**
+ * Links to the sections of the boxes.
+ * @param {Element[]} boxes
+ */
 export function sectionLinks(boxes) {
   const list = document.createElement("nav");
   list.className = "sections";
