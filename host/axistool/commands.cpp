@@ -51,6 +51,7 @@ void add_all_commands(CLI::App& app) {
   add_excite(app);
   add_bode(app);
   add_run(app);
+  add_circle(app);
   add_faults(app);
   add_clear_faults(app);
   add_bench(app);

@@ -1,0 +1,454 @@
+#include "host/axes/circle_diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/axes/circle_figures.hpp"
+#include "host/infer/evidence.hpp"
+#include "host/infer/posterior.hpp"
+#include "host/statistics.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr int kHats = 8;  ///< of the memory, over the angle
+constexpr double kUsualMemory_um = 5.0;
+constexpr double kPlace_um = 1000.0;  ///< of centre and radius, before the measurement
+constexpr double kLeastNoise = 0.2;   ///< rows have noise of size 1
+constexpr double kCauseOdds = 0.25;   ///< that a cause is there, before the measurement
+constexpr std::size_t kMostCauses = 10, kTried = 3;
+constexpr double kWorthTrying = -3.0;  ///< nats
+constexpr double kHopeless = 15.0;     ///< nats below all: no rival
+constexpr double kWorthSaying = 0.02;  ///< probability of what may stand in a cause's place
+
+using Causes = std::vector<CircleCause>;
+
+std::vector<RowRun> runs_of(const CircleRows& rows) {
+  std::vector<RowRun> runs;
+  for (const CircleBlock& block : rows.blocks()) runs.push_back({block.first, block.end});
+  return runs;
+}
+
+/// Smooth functions of the angle for each sensor, the same and opposite in both directions; without the centre and the
+/// radius that they hold.
+Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
+  Memory memory;
+  memory.usual = kUsualMemory_um;
+  memory.columns.resize(rows.deviation().size(), 0);
+  const auto add = [&](bool is_outer, bool turns_over, const char* name) {
+    MatrixXd hats = MatrixXd::Zero(rows.deviation().size(), kHats);
+    for (const CircleBlock& block : rows.blocks()) {
+      if (block.is_outer != is_outer) continue;
+      const double factor = block.weight * (turns_over ? rows.passes()[block.pass].direction() : 1.0);
+      for (Index row = block.first; row < block.end; ++row) {
+        double at = rows.angle_rad()(row) / kTwoPi * kHats;
+        at -= kHats * std::floor(at / kHats);
+        const auto left = static_cast<Index>(at) % kHats;
+        const double part = at - std::floor(at);
+        hats(row, left) = factor * (1.0 - part);
+        hats(row, (left + 1) % kHats) = factor * part;
+      }
+    }
+    hats -= places * (places.transpose() * places).ldlt().solve(places.transpose() * hats);
+    memory.groups.push_back({name, memory.columns.cols(), kHats});
+    MatrixXd all(hats.rows(), memory.columns.cols() + kHats);
+    all << memory.columns, hats;
+    memory.columns = all;
+  };
+  const bool both = std::ranges::any_of(rows.passes(), &CirclePass::is_ccw) &&
+                    !std::ranges::all_of(rows.passes(), &CirclePass::is_ccw);
+  for (const bool is_outer : {false, true}) {
+    if (is_outer && !rows.has_outer()) continue;
+    add(is_outer, false, "angle");
+    if (both) add(is_outer, true, "angle by direction");
+  }
+  return memory;
+}
+
+/// Centre and radius of every pass as every sensor sees them.
+MatrixXd places_of(const CircleRows& rows) {
+  MatrixXd places = MatrixXd::Zero(rows.deviation().size(), 3 * static_cast<Index>(rows.blocks().size()));
+  Index at = 0;
+  for (const CircleBlock& block : rows.blocks()) {
+    for (Index row = block.first; row < block.end; ++row) {
+      const double angle = rows.angle_rad()(row);
+      places.block<1, 3>(row, at) << block.weight, block.weight * std::cos(angle), block.weight * std::sin(angle);
+    }
+    at += 3;
+  }
+  return places;
+}
+
+class CircleSearch {
+ public:
+  explicit CircleSearch(const CircleRows& rows)
+      : rows_(rows),
+        places_(places_of(rows)),
+        plain_(plain_causes(rows)),
+        bare_(rows.deviation(), runs_of(rows), bare_memory(rows), kLeastNoise),
+        full_(rows.deviation(), runs_of(rows), memory_of(rows, places_), kLeastNoise) {}
+
+  struct Result {
+    Causes causes;
+    EvidenceFit fit;
+    std::vector<double> probability;
+    std::vector<std::vector<std::pair<std::string, double>>> instead;
+    Causes best;  ///< the most probable of all sets that were tried
+  };
+
+  Result run() const {
+    Causes causes = forward();
+    for (int round = 0; round < 4; ++round) {
+      Result result = judged(causes);
+      const auto worst = std::ranges::min_element(result.probability);
+      if (worst == result.probability.end() || *worst > 0.5) return result;
+      causes = result.best;
+    }
+    return judged(causes);
+  }
+
+ private:
+  static Memory bare_memory(const CircleRows& rows) {
+    Memory none;
+    none.columns.resize(rows.deviation().size(), 0);
+    return none;
+  }
+
+  MatrixXd columns(const Causes& causes) const {
+    Index count = places_.cols();
+    for (const CircleCause& one : causes) count += one.columns.cols();
+    MatrixXd all(places_.rows(), count);
+    all.leftCols(places_.cols()) = places_;
+    Index at = places_.cols();
+    for (const CircleCause& one : causes) {
+      all.middleCols(at, one.columns.cols()) = one.columns;
+      at += one.columns.cols();
+    }
+    return all;
+  }
+
+ public:
+  VectorXd deviations(const Causes& causes) const {
+    VectorXd all = VectorXd::Constant(columns_before(causes, causes.size()), kPlace_um);
+    for (std::size_t i = 0; i < causes.size(); ++i)
+      all.segment(columns_before(causes, i), causes[i].columns.cols()) = causes[i].deviations;
+    return all;
+  }
+  /// Where the columns of a cause begin.
+  Index columns_before(const Causes& causes, std::size_t at) const {
+    Index count = places_.cols();
+    for (std::size_t i = 0; i < at; ++i) count += causes[i].columns.cols();
+    return count;
+  }
+
+ private:
+  static double prior(const Causes& causes) {
+    double sum = 0.0;
+    for (const CircleCause& one : causes) sum += one.log_prior + std::log(kCauseOdds);
+    return sum;
+  }
+
+  static bool is_wave(const CircleCause& one) { return one.period_mm || one.frequency_Hz; }
+
+  static bool is_same(const CircleCause& a, const CircleCause& b) {
+    if (a.kind != b.kind || a.axis != b.axis) return false;
+    const auto near = [](const std::optional<double>& one, const std::optional<double>& other) {
+      return !one || !other || std::abs(*one - *other) < 0.1 * *other;
+    };
+    return near(a.period_mm, b.period_mm) && near(a.frequency_Hz, b.frequency_Hz);
+  }
+
+  /// Everything that could be added to these, the most promising first, with what it would gain.
+  std::vector<std::pair<double, CircleCause>> promising(const Evidence& evidence, const EvidenceFit& fit,
+                                                        const Causes& causes, bool with_waves) const {
+    std::vector<std::pair<double, CircleCause>> list;
+    const auto add = [&](const CircleCause& one) {
+      if (std::ranges::any_of(causes, [&](const CircleCause& has) { return is_same(has, one); })) return;
+      const MatrixXd scaled = one.columns * one.deviations.asDiagonal();
+      const std::vector<int> sign(static_cast<std::size_t>(scaled.cols()), 0);
+      const double gain =
+          evidence.gains(fit, scaled, sign, VectorXd::Ones(1))(0) + one.log_prior + std::log(kCauseOdds);
+      if (gain > kWorthTrying) list.emplace_back(gain, one);
+    };
+    for (const CircleCause& one : plain_) add(one);
+    const VectorXd left = rows_.deviation() - columns(causes) * fit.factors - fit.remembered;
+    for (const char axis : {'x', 'y'}) {
+      if (!with_waves) break;
+      if (rows_.has_outer()) add(best_wave(rows_, left, WaveKind::cyclic_error, axis));
+      const CircleCause ripple = best_wave(rows_, left, WaveKind::torque_ripple, axis);
+      add(ripple);
+      add(ripple_through_any_loop(rows_, axis, *ripple.period_mm));
+      add(best_wave(rows_, left, WaveKind::vibration, axis));
+    }
+    std::ranges::stable_sort(list, [](const auto& a, const auto& b) { return a.first > b.first; });
+    // Of one kind the best alone.
+    Causes seen;
+    std::erase_if(list, [&](const auto& entry) {
+      if (std::ranges::any_of(seen, [&](const CircleCause& one) {
+            return one.kind == entry.second.kind && one.axis == entry.second.axis;
+          }))
+        return true;
+      seen.push_back(entry.second);
+      return false;
+    });
+    if (list.size() > kTried) list.resize(kTried);
+    return list;
+  }
+
+  /// Waves at the period or frequency that fits best beside all others.
+  void refine(Causes& causes, const EvidenceFit& fit) const {
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      if (!is_wave(causes[i])) continue;
+      const VectorXd others =
+          columns(causes) * fit.factors -
+          causes[i].columns * fit.factors.segment(columns_before(causes, i), causes[i].columns.cols());
+      causes[i] = nearby_wave(rows_, rows_.deviation() - others, causes[i]);
+    }
+  }
+
+  /// Causes added one by one while each gains, without a memory that would take their place.
+  Causes forward() const {
+    Causes causes;
+    EvidenceFit fit = bare_.fit(columns(causes), deviations(causes), {.correlation = 0.5, .sizes = bare_.no_memory()});
+    while (causes.size() < kMostCauses) {
+      double best = fit.log_evidence + prior(causes);
+      std::optional<Causes> next;
+      EvidenceFit next_fit;
+      for (const auto& [gain, one] : promising(bare_, fit, causes, true)) {
+        Causes more = causes;
+        more.push_back(one);
+        EvidenceFit tried =
+            bare_.fit(columns(more), deviations(more), {.correlation = fit.correlation, .sizes = bare_.no_memory()});
+        if (tried.log_evidence + prior(more) <= best) continue;
+        best = tried.log_evidence + prior(more);
+        next = more;
+        next_fit = std::move(tried);
+      }
+      if (!next) break;
+      causes = *next;
+      refine(causes, next_fit);
+      fit = bare_.fit(columns(causes), deviations(causes),
+                      {.correlation = next_fit.correlation, .sizes = bare_.no_memory()});
+    }
+    return causes;
+  }
+
+  EvidenceFit again(const EvidenceFit& near, const Causes& causes) const {
+    return full_.fit(columns(causes), deviations(causes), {.correlation = near.correlation, .sizes = near.sizes});
+  }
+
+  /// Each cause against nothing and against what else could stand there, with the memory.
+  Result judged(const Causes& causes) const {
+    Result result{causes, full_.fit(columns(causes), deviations(causes)), {}, {}, causes};
+    const double all = result.fit.log_evidence + prior(causes);
+    double best = all;
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      Causes rest = causes;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      const EvidenceFit without = again(result.fit, rest);
+      std::vector<double> logs = {all, without.log_evidence + prior(rest)};
+      std::vector<std::string> names = {"", "nothing"};
+      std::vector<Causes> sets = {causes, rest};
+      for (const auto& [gain, one] : promising(full_, without, rest, false)) {
+        if (is_same(one, causes[i]) || without.log_evidence + prior(rest) + gain < all - kHopeless) continue;
+        Causes other = rest;
+        other.push_back(one);
+        const EvidenceFit fit = again(without, other);
+        logs.push_back(fit.log_evidence + prior(other));
+        names.push_back(one.kind + " " + one.axis);
+        sets.push_back(other);
+      }
+      const std::vector<double> probable = posterior(logs);
+      result.probability.push_back(probable[0]);
+      result.instead.emplace_back();
+      for (std::size_t k = 1; k < logs.size(); ++k) {
+        if (probable[k] > kWorthSaying) result.instead.back().emplace_back(names[k], probable[k]);
+        if (logs[k] <= best) continue;
+        best = logs[k];
+        result.best = sets[k];
+      }
+    }
+    return result;
+  }
+
+  const CircleRows& rows_;
+  MatrixXd places_;
+  Causes plain_;
+  Evidence bare_, full_;
+};
+
+/// The signatures at every sample of every pass.
+MatrixXd at_samples(const std::vector<CirclePass>& passes, const CircleCause& cause) {
+  Index count = 0;
+  for (const CirclePass& pass : passes) count += static_cast<Index>(pass.t_s.size());
+  MatrixXd all(count, cause.columns.cols());
+  for (Index c = 0; c < all.cols(); ++c) {
+    Index row = 0;
+    for (const CirclePass& pass : passes)
+      for (std::size_t k = 0; k < pass.t_s.size(); ++k)
+        all(row++, c) = cause.signatures[static_cast<std::size_t>(c)](pass, k);
+  }
+  return all;
+}
+
+double range_of(const VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
+
+/// Of waves and spikes the largest height.
+double amount_of(const CircleCause& cause, const VectorXd& factors, double um) {
+  if (cause.period_mm || cause.frequency_Hz) return 0.5 * um;
+  if (cause.kind == "reversal_spike") return um;
+  return factors(0) * cause.amount_per_um;
+}
+
+CircleFinding finding_of(const CircleRows& rows, const CircleSearch& search, const CircleSearch::Result& result,
+                         std::size_t at, double rest_um) {
+  CircleFinding found{result.causes[at], {}, 0.0, {}, 0.0, {}, result.probability[at], result.instead[at]};
+  const Index first = search.columns_before(result.causes, at), count = found.cause.columns.cols();
+  found.factors = result.fit.factors.segment(first, count);
+  const MatrixXd samples = at_samples(rows.passes(), found.cause);
+  const auto range = [&](const VectorXd& factors) { return range_of(samples * factors); };
+  found.um = range(found.factors);
+  found.amount = amount_of(found.cause, found.factors, found.um);
+  // Their covariance, and the slope of the range.
+  MatrixXd picked = MatrixXd::Zero(result.fit.information.rows(), count);
+  picked.middleRows(first, count).setIdentity();
+  MatrixXd covariance = result.fit.information.solve(picked).middleRows(first, count);
+  covariance = found.cause.deviations.asDiagonal() * covariance * found.cause.deviations.asDiagonal();
+  VectorXd slope(count);
+  for (Index c = 0; c < count; ++c) {
+    const double step = std::max(std::sqrt(covariance(c, c)), 1e-6);
+    VectorXd moved = found.factors;
+    moved(c) += step;
+    const double up = range(moved);
+    moved(c) -= 2.0 * step;
+    slope(c) = (up - range(moved)) / (2.0 * step);
+  }
+  const double reach = kNormal95 * std::hypot(std::sqrt(std::max(0.0, slope.dot(covariance * slope))), rest_um);
+  found.ci95 = {std::max(0.0, found.um - reach), found.um + reach};
+  return found;
+}
+
+/// Less than a step of the encoders where nothing else sees it, or than a twentieth of the whole deviation, is minor.
+double least_um(const std::vector<CirclePass>& passes) {
+  constexpr double kMinorShare = 0.05;
+  double deviation = 0.0, step = 0.0;
+  for (const CircleFigures& one : circle_figures(passes)) deviation = std::max(deviation, one.G_um);
+  if (const auto both = bidirectional_figures(passes)) deviation = std::max(deviation, both->Gb_um);
+  for (const CirclePass& pass : passes)
+    if (pass.outer_um.empty()) step = std::max(step, pass.count_um);
+  return std::max(kMinorShare * deviation, step);
+}
+
+nlohmann::json optional_json(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
+
+nlohmann::json findings_json(const std::vector<CircleFinding>& findings) {
+  using nlohmann::json;
+  json list = json::array();
+  for (const CircleFinding& found : findings) {
+    json instead = json::object();
+    for (const auto& [name, probability] : found.instead) instead[name] = probability;
+    list.push_back({{"kind", found.cause.kind},
+                    {"axis", found.cause.axis},
+                    {"um", found.um},
+                    {"ci95", found.ci95},
+                    {"probability", found.probability},
+                    {"amount", {{"value", found.amount}, {"unit", found.cause.amount_unit}}},
+                    {"period_mm", optional_json(found.cause.period_mm)},
+                    {"period_turns", optional_json(found.period_turns)},
+                    {"frequency_Hz", optional_json(found.cause.frequency_Hz)},
+                    {"instead", instead},
+                    {"next", cause_text(found.cause.kind).next}});
+  }
+  return list;
+}
+
+}  // namespace
+
+CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes) {
+  CircleDiagnosis diagnosis;
+  diagnosis.passes = std::move(passes);
+  const CircleRows rows(diagnosis.passes);
+  const CircleSearch search(rows);
+  const CircleSearch::Result result = search.run();
+  const VectorXd rest = result.fit.remembered.cwiseQuotient(rows.weights());
+  diagnosis.rest_um = std::sqrt(rest.squaredNorm() / static_cast<double>(rest.size()));
+  for (std::size_t i = 0; i < result.causes.size(); ++i) {
+    CircleFinding found = finding_of(rows, search, result, i, diagnosis.rest_um);
+    if (found.probability <= 0.5) continue;
+    (found.um < least_um(diagnosis.passes) ? diagnosis.minor : diagnosis.causes).push_back(std::move(found));
+  }
+  for (auto* const list : {&diagnosis.causes, &diagnosis.minor})
+    std::ranges::stable_sort(*list, [](const auto& a, const auto& b) { return a.um > b.um; });
+  diagnosis.unseen = unseen_causes(rows);
+  diagnosis.figures = circle_figures(diagnosis.passes);
+  diagnosis.both = bidirectional_figures(diagnosis.passes);
+  return diagnosis;
+}
+
+void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model) {
+  if (model.data.kind != sim::DriveKind::rotary) return;
+  for (auto* const list : {&diagnosis.causes, &diagnosis.minor})
+    for (CircleFinding& found : *list)
+      if (found.cause.period_mm && found.cause.axis == model.name)
+        found.period_turns = *found.cause.period_mm / (2.0 * std::numbers::pi * model.data.lead);
+}
+
+std::vector<double> share_along(const CircleFinding& finding, const CirclePass& pass) {
+  std::vector<double> share;
+  for (std::size_t k = 0; k < pass.t_s.size(); ++k) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < finding.cause.signatures.size(); ++c)
+      sum += finding.factors(static_cast<Index>(c)) * finding.cause.signatures[c](pass, k);
+    share.push_back(sum);
+  }
+  return share;
+}
+
+nlohmann::json circle_json(const CircleDiagnosis& diagnosis) {
+  using nlohmann::json;
+  json unseen = json::array(), why = json::object(), passes = json::array();
+  for (const Unseen& one : diagnosis.unseen) {
+    unseen.push_back(one.kind);
+    why[one.kind] = one.why;
+  }
+  double G = 0.0, F_max = -HUGE_VAL, F_min = HUGE_VAL;
+  for (std::size_t i = 0; i < diagnosis.passes.size(); ++i) {
+    const CirclePass& pass = diagnosis.passes[i];
+    const CircleFigures& figures = diagnosis.figures[i];
+    passes.push_back({{"source", pass.source},
+                      {"direction", pass.is_ccw ? "ccw" : "cw"},
+                      {"feed_mm_s", pass.feed_mm_s},
+                      {"radius_mm", pass.radius_mm},
+                      {"G_um", figures.G_um},
+                      {"F_max_um", figures.F_max_um},
+                      {"F_min_um", figures.F_min_um}});
+    G = std::max(G, figures.G_um);
+    F_max = std::max(F_max, figures.F_max_um);
+    F_min = std::min(F_min, figures.F_min_um);
+  }
+  json iso = {{"G_um", G},         {"Gb_um", nullptr},  {"F_um", std::max(std::abs(F_max), std::abs(F_min))},
+              {"F_max_um", F_max}, {"F_min_um", F_min}, {"H_um", nullptr}};
+  if (diagnosis.both) {
+    iso["Gb_um"] = diagnosis.both->Gb_um;
+    iso["H_um"] = diagnosis.both->H_um;
+  }
+  return {{"format", "axis-circle/1"},
+          {"causes", findings_json(diagnosis.causes)},
+          {"minor", findings_json(diagnosis.minor)},
+          {"cannot_see", unseen},
+          {"cannot_see_why", why},
+          {"iso_230_4", iso},
+          {"passes", passes},
+          {"rest_um", diagnosis.rest_um}};
+}
+
+}  // namespace host

@@ -1,0 +1,58 @@
+// Why a circle is not round: ranked causes, each with its share in micrometres, from one linear model of signatures.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/axes/circle_signatures.hpp"
+
+namespace host {
+
+struct CircleFinding {
+  CircleCause cause;
+  Eigen::VectorXd factors;
+  /// What this cause alone adds to the bi-directional circular deviation: largest less smallest radial deviation.
+  double um = 0.0;
+  std::array<double, 2> ci95{};
+  double amount = 0.0;                   ///< in the cause's own unit; of waves and spikes the largest amplitude
+  std::optional<double> period_turns{};  ///< of the motor
+  double probability = 0.0;              ///< that it is there, against nothing and against everything else in its place
+  std::vector<std::pair<std::string, double>> instead;  ///< what may stand there instead, with its probability
+};
+
+/// Of ISO 230-4, from the outer sensor where there is one, otherwise from the encoders; means over 1 degree.
+struct CircleFigures {
+  double G_um = 0.0;                      ///< circular deviation: largest less smallest radius about the best centre
+  double F_max_um = 0.0, F_min_um = 0.0;  ///< radial deviation from the nominal circle
+};
+struct BidirectionalFigures {
+  double Gb_um = 0.0;  ///< circular deviation of both directions together
+  double H_um = 0.0;   ///< hysteresis: largest difference of the radii of both directions at one angle
+};
+
+struct CircleDiagnosis {
+  std::vector<CirclePass> passes;
+  std::vector<CircleFinding> causes;  ///< the largest first
+  std::vector<CircleFinding> minor;   ///< likewise: a twentieth of the deviation or less
+  std::vector<Unseen> unseen;
+  double rest_um = 0.0;                      ///< root mean square of what no cause takes, beyond noise
+  std::vector<CircleFigures> figures;        ///< of each pass
+  std::optional<BidirectionalFigures> both;  ///< the worst feed; absent with one direction only
+};
+
+CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes);
+
+/// Says periods of the model's axis in turns of its motor, too.
+void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model);
+
+/// Radial deviation that a cause makes along a pass, um, at its samples.
+std::vector<double> share_along(const CircleFinding& finding, const CirclePass& pass);
+
+/// `axis-circle/1`.
+nlohmann::json circle_json(const CircleDiagnosis& diagnosis);
+
+}  // namespace host

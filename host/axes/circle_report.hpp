@@ -1,0 +1,18 @@
+// A circle's diagnosis for people: a page, and lines for a terminal.
+#pragma once
+
+#include <string>
+
+#include "host/axes/circle_diagnosis.hpp"
+#include "host/report/report.hpp"
+#include "host/report/terminal.hpp"
+
+namespace host {
+
+/// The circle magnified in both directions, each cause with its own picture and share, the terms of ISO 230-4, what
+/// these sensors cannot see.
+Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtitle);
+
+std::string circle_text(const CircleDiagnosis& diagnosis, const Terminal& terminal);
+
+}  // namespace host

@@ -1,0 +1,351 @@
+#include "host/axes/circle_signatures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "host/statistics.hpp"
+
+namespace host {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kRowsAPass = 800;
+constexpr double kUsual_um = 10.0;  ///< of a cause
+constexpr double kLeastNoise_um = 0.02;
+constexpr double kLeastLagAngle = 0.02;  ///< rad: below, a lag and a delay draw the same circle
+constexpr double kFirstKnot_s = 0.003, kKnotRatio = 1.6, kSpikeForms = 12.0;
+constexpr int kSpikeKnots = 7;
+
+constexpr int kLoopPowers = 5;
+
+/// Noise of rows, from their second differences.
+double noise_of(const Eigen::VectorXd& values) {
+  std::vector<double> differences;
+  for (Eigen::Index k = 2; k < values.size(); ++k)
+    differences.push_back(std::abs(values(k) - 2.0 * values(k - 1) + values(k - 2)));
+  return differences.empty() ? 1.0 : median(differences) / (0.6745 * std::sqrt(6.0));
+}
+
+double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
+
+/// Angle since the axis turned over at its positive end, 0 to 2 pi; half of that later it turns at the other.
+double since_positive_end(const CirclePass& pass, std::size_t k, char axis) {
+  const double end = axis == 'x' ? 0.0 : kPi / 2.0;
+  const double angle = std::fmod(pass.direction() * (pass.angle_rad[k] - end), 2.0 * kPi);
+  return angle < 0.0 ? angle + 2.0 * kPi : angle;
+}
+
+/// Part of an error along an axis that is radial.
+double radial_part(const CirclePass& pass, std::size_t k, char axis) {
+  return axis == 'x' ? std::cos(pass.angle_rad[k]) : std::sin(pass.angle_rad[k]);
+}
+
+/// Sign of an axis' speed: +1 towards its positive end.
+double moving(const CirclePass& pass, std::size_t k, char axis) {
+  return axis == 'x' ? -pass.direction() * sign(std::sin(pass.angle_rad[k]))
+                     : pass.direction() * sign(std::cos(pass.angle_rad[k]));
+}
+
+double most(const std::vector<CirclePass>& passes, double (*value)(const CirclePass&)) {
+  double largest = 0.0;
+  for (const CirclePass& pass : passes) largest = std::max(largest, value(pass));
+  return largest;
+}
+double feed_of(const CirclePass& pass) { return pass.feed_mm_s; }
+double radius_of(const CirclePass& pass) { return pass.radius_mm; }
+double acceleration_of(const CirclePass& pass) { return pass.feed_mm_s * pass.turn_rad_s(); }
+double lag_angle_of(const CirclePass& pass) { return std::abs(pass.lag_s) * pass.turn_rad_s(); }
+
+bool has_both_directions(const std::vector<CirclePass>& passes) {
+  return std::ranges::any_of(passes, [](const CirclePass& one) { return one.is_ccw; }) &&
+         std::ranges::any_of(passes, [](const CirclePass& one) { return !one.is_ccw; });
+}
+
+CircleCause cause(const CircleRows& rows, const char* kind, const std::string& axis,
+                  const std::vector<CircleRows::Signature>& signatures, bool outer_only, double log_prior = 0.0) {
+  const auto count = static_cast<Eigen::Index>(signatures.size());
+  CircleCause made{kind,
+                   axis,
+                   signatures,
+                   outer_only,
+                   Eigen::MatrixXd(rows.deviation().size(), count),
+                   Eigen::VectorXd::Constant(count, kUsual_um),
+                   log_prior,
+                   {},
+                   {}};
+  for (Eigen::Index c = 0; c < count; ++c)
+    made.columns.col(c) = rows.column(signatures[static_cast<std::size_t>(c)], outer_only);
+  return made;
+}
+
+CircleCause with_amount(CircleCause made, double per_um, const char* unit) {
+  made.amount_per_um = per_um;
+  made.amount_unit = unit;
+  return made;
+}
+
+/// Feeds that differ by more than a pass' own unsteadiness.
+std::vector<double> feeds_of(const std::vector<CirclePass>& passes) {
+  std::vector<double> feeds;
+  for (const CirclePass& pass : passes)
+    if (std::ranges::none_of(feeds, [&](double one) { return std::abs(one - pass.feed_mm_s) < 0.05 * one; }))
+      feeds.push_back(pass.feed_mm_s);
+  return feeds;
+}
+
+/// After each reversal the axis lags by a spike. `forms`: its course over the time since then; of each feed factors of
+/// its own, and of each end where `by_end`.
+CircleCause spike(const CircleRows& rows, char axis, const std::vector<std::function<double(double)>>& forms,
+                  bool by_end) {
+  std::vector<CircleRows::Signature> signatures;
+  for (const double feed : feeds_of(rows.passes()))
+    for (const int end : by_end ? std::vector<int>{1, -1} : std::vector<int>{0})
+      for (const auto& form : forms)
+        signatures.emplace_back([=](const CirclePass& pass, std::size_t k) {
+          const double since = since_positive_end(pass, k, axis);
+          if (std::abs(pass.feed_mm_s - feed) > 0.05 * feed || (end != 0 && (since < kPi) != (end > 0))) return 0.0;
+          return form(std::fmod(since, kPi) / pass.turn_rad_s()) * std::abs(radial_part(pass, k, axis));
+        });
+  return cause(rows, "reversal_spike", {axis}, signatures, false, -std::log(kSpikeForms));
+}
+
+/// Up and exponentially down; and straight lines between some times, of which none lies within one row.
+void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& list) {
+  for (const bool by_end : {false, true}) {
+    for (const double decay_s : {0.004, 0.007, 0.012, 0.02, 0.035})
+      list.push_back(spike(rows, axis, {[=](double t) { return t / decay_s * std::exp(1.0 - t / decay_s); }}, by_end));
+    std::vector<std::function<double(double)>> hats;
+    double before = 0.0, at = std::max(kFirstKnot_s, rows.row_s());
+    for (int knot = 0; knot < kSpikeKnots; ++knot) {
+      const double after = kKnotRatio * at;
+      hats.emplace_back(
+          [=](double t) { return std::max(0.0, std::min((t - before) / (at - before), (after - t) / (after - at))); });
+      before = at;
+      at = after;
+    }
+    list.push_back(spike(rows, axis, hats, by_end));
+  }
+}
+
+/// Differences between the axes' loops. The radius of a lagging loop shrinks with its lag; of a late one it does not.
+void add_servo(const CircleRows& rows, std::vector<CircleCause>& list) {
+  const double feed = most(rows.passes(), feed_of), acceleration = most(rows.passes(), acceleration_of);
+  const auto late = [=](const CirclePass& pass, std::size_t k) {
+    return 0.5 * pass.feed_mm_s / feed * pass.direction() * std::sin(2.0 * pass.angle_rad[k]);
+  };
+  const auto lag = [=](const CirclePass& pass, std::size_t k) {
+    return late(pass, k) -
+           0.5 * pass.feed_mm_s / feed * pass.lag_s * pass.turn_rad_s() * std::cos(2.0 * pass.angle_rad[k]);
+  };
+  const auto gain = [=](const CirclePass& pass, std::size_t k) {
+    return 0.5 * acceleration_of(pass) / acceleration * std::cos(2.0 * pass.angle_rad[k]);
+  };
+  const double ms_per_um = 1.0 / feed;
+  list.push_back(with_amount(cause(rows, "servo_mismatch", "xy", {lag}, false), ms_per_um, "ms"));
+  list.push_back(with_amount(cause(rows, "servo_mismatch", "xy", {late, gain}, false), ms_per_um, "ms"));
+  if (most(rows.passes(), lag_angle_of) > kLeastLagAngle)
+    list.push_back(
+        with_amount(cause(rows, "delay_between_axes", "xy", {late}, false, -std::log(9.0)), ms_per_um, "ms"));
+}
+
+/// What only a sensor at the table sees.
+void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
+  const double radius = most(rows.passes(), radius_of);
+  const auto outer = [&](const char* kind, const std::string& axis, const CircleRows::Signature& signature) {
+    return cause(rows, kind, axis, {signature}, true);
+  };
+  const auto twice = [=](double (*wave)(double)) {
+    return [=](const CirclePass& pass, std::size_t k) {
+      return 0.5 * pass.radius_mm / radius * wave(2.0 * pass.angle_rad[k]);
+    };
+  };
+  list.push_back(
+      with_amount(outer("squareness", "xy", twice([](double a) { return std::sin(a); })), 1e3 / radius, "um/m"));
+  list.push_back(
+      with_amount(outer("scale_mismatch", "xy", twice([](double a) { return std::cos(a); })), 1e3 / radius, "ppm"));
+  for (const char axis : {'x', 'y'}) {
+    const std::string name{axis};
+    list.push_back(outer("backlash", name, [axis](const CirclePass& pass, std::size_t k) {
+      return -0.5 * moving(pass, k, axis) * radial_part(pass, k, axis);
+    }));
+    const char other = axis == 'x' ? 'y' : 'x';
+    list.push_back(outer("straightness", name, [=](const CirclePass& pass, std::size_t k) {
+      return std::pow(radial_part(pass, k, axis), 2) * radial_part(pass, k, other);
+    }));
+    if (has_both_directions(rows.passes()))
+      list.push_back(outer("lateral_play", name, [=](const CirclePass& pass, std::size_t k) {
+        return 0.5 * moving(pass, k, axis) * radial_part(pass, k, other);
+      }));
+  }
+}
+
+}  // namespace
+
+CircleRows::CircleRows(const std::vector<CirclePass>& passes) : passes_(passes) {
+  row_s_ = HUGE_VAL;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const std::size_t samples = std::max<std::size_t>(1, (passes[i].t_s.size() + kRowsAPass - 1) / kRowsAPass);
+    samples_a_row_.push_back(samples);
+    row_s_ = std::min(row_s_, static_cast<double>(samples) * passes[i].period_s);
+    add(i, false);
+    if (!passes[i].outer_um.empty()) add(i, true);
+  }
+}
+
+void CircleRows::add(std::size_t at, bool is_outer) {
+  const CirclePass& pass = passes_[at];
+  const auto samples = samples_a_row_[at];
+  const auto count = static_cast<Eigen::Index>(pass.t_s.size() / samples), first = deviation_.size();
+  CircleBlock block{at, is_outer, first, first + count, 1.0};
+  has_outer_ = has_outer_ || is_outer;
+  const std::vector<double>& values = is_outer ? pass.outer_um : pass.encoder_um;
+  const Eigen::VectorXd mean = block_column([&](const CirclePass&, std::size_t k) { return values[k]; }, block);
+  block.weight = 1.0 / std::max(noise_of(mean), kLeastNoise_um);
+  blocks_.push_back(block);
+  for (Eigen::VectorXd* list : {&deviation_, &weights_, &angle_, &time_}) list->conservativeResize(block.end);
+  deviation_.segment(first, count) = block.weight * mean;
+  weights_.segment(first, count).setConstant(block.weight);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::size_t middle = static_cast<std::size_t>(row) * samples + samples / 2;
+    angle_(first + row) = pass.angle_rad[middle];
+    time_(first + row) = pass.t_s[middle];
+  }
+}
+
+Eigen::VectorXd CircleRows::block_column(const Signature& signature, const CircleBlock& block) const {
+  const CirclePass& pass = passes_[block.pass];
+  const std::size_t samples = samples_a_row_[block.pass];
+  Eigen::VectorXd values(block.end - block.first);
+  for (Eigen::Index row = 0; row < values.size(); ++row) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < samples; ++k) sum += signature(pass, static_cast<std::size_t>(row) * samples + k);
+    values(row) = block.weight * sum / static_cast<double>(samples);
+  }
+  return values;
+}
+
+Eigen::VectorXd CircleRows::column(const Signature& signature, bool outer_only) const {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(deviation_.size());
+  for (const CircleBlock& block : blocks_)
+    if (block.is_outer || !outer_only)
+      values.segment(block.first, block.end - block.first) = block_column(signature, block);
+  return values;
+}
+
+std::vector<CircleCause> plain_causes(const CircleRows& rows) {
+  std::vector<CircleCause> list;
+  add_servo(rows, list);
+  for (const char axis : {'x', 'y'}) add_spikes(rows, axis, list);
+  if (rows.has_outer()) add_geometry(rows, list);
+  return list;
+}
+
+CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double value) {
+  constexpr double kPlaces = 200.0;  // periods or frequencies that differ within a circle
+  using Wave = double (*)(double);
+  const Wave waves[] = {[](double a) { return std::cos(a); }, [](double a) { return std::sin(a); }};
+  std::vector<CircleRows::Signature> signatures;
+  if (kind == WaveKind::vibration) {
+    for (std::size_t i = 0; i < rows.passes().size(); ++i)
+      for (const Wave wave : waves)
+        if (value * rows.row_s(i) < kMostCyclesARow)
+          signatures.emplace_back([=, own = &rows.passes()[i]](const CirclePass& pass, std::size_t k) {
+            return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
+          });
+  } else {
+    // A torque is answered through the loop, by powers of j times its frequency, which goes with the axis' speed.
+    const double top = most(rows.passes(), feed_of);
+    for (int power = 0; power < (kind == WaveKind::torque_ripple ? kLoopPowers : 1); ++power)
+      for (const Wave wave : waves)
+        signatures.emplace_back([=](const CirclePass& pass, std::size_t k) {
+          const double along = radial_part(pass, k, axis);
+          const double speed =
+              moving(pass, k, axis) * pass.feed_mm_s / top * std::sqrt(std::max(0.0, 1.0 - along * along));
+          return std::pow(speed, power) * wave(2.0 * kPi * pass.radius_mm * along / value) * along;
+        });
+  }
+  const char* name = kind == WaveKind::cyclic_error    ? "cyclic_error"
+                     : kind == WaveKind::torque_ripple ? "torque_ripple"
+                                                       : "vibration";
+  CircleCause made = cause(rows, name, {axis}, signatures, kind == WaveKind::cyclic_error, -std::log(kPlaces));
+  (kind == WaveKind::vibration ? made.frequency_Hz : made.period_mm) = value;
+  return made;
+}
+
+CircleCause ripple_through_any_loop(const CircleRows& rows, char axis, double period_mm) {
+  constexpr int kKnots = 6;
+  const double top = most(rows.passes(), feed_of);
+  std::vector<CircleRows::Signature> signatures;
+  for (int knot = 0; knot < kKnots; ++knot)
+    for (const bool is_late : {false, true})
+      for (const bool is_sine : {false, true}) {
+        if (knot == 0 && is_late) continue;  // a standing force has no phase
+        signatures.emplace_back([=](const CirclePass& pass, std::size_t k) {
+          const double along = radial_part(pass, k, axis), phase = 2.0 * kPi * pass.radius_mm * along / period_mm;
+          const double speed = pass.feed_mm_s / top * std::sqrt(std::max(0.0, 1.0 - along * along));
+          const double hat = std::max(0.0, 1.0 - std::abs((kKnots - 1) * speed - knot));
+          return hat * (is_late ? moving(pass, k, axis) : 1.0) * (is_sine ? std::sin(phase) : std::cos(phase)) * along;
+        });
+      }
+  CircleCause made = cause(rows, "torque_ripple", {axis}, signatures, false, -std::log(200.0));
+  made.period_mm = period_mm;
+  return made;
+}
+
+std::vector<Unseen> unseen_causes(const CircleRows& rows) {
+  std::vector<Unseen> list;
+  if (!rows.has_outer()) {
+    const char* why =
+        "the motors' encoders do not see the table: use a ballbar (radius_mm) or scales at the table (x2_mm, y2_mm)";
+    for (const char* kind :
+         {"squareness", "scale_mismatch", "backlash", "lateral_play", "straightness", "cyclic_error"})
+      list.push_back({kind, why});
+  } else if (!has_both_directions(rows.passes())) {
+    list.push_back({"lateral_play", "it differs by direction: record the circle clockwise and counter-clockwise"});
+  }
+  list.push_back(
+      {"screw_pitch", "along a circle it looks as straightness and scales do: measure positions along one axis"});
+  if (!(most(rows.passes(), lag_angle_of) > kLeastLagAngle))
+    list.push_back(
+        {"delay_between_axes",
+         "where the axes follow without lag, a late axis draws the same circle as servo mismatch; lines with "
+         "stops show which"});
+  return list;
+}
+
+CauseText cause_text(const std::string& kind) {
+  static const std::pair<const char*, CauseText> texts[] = {
+      {"servo_mismatch",
+       {"The axes' loops differ: an ellipse at 45 degrees that turns over with the direction and grows with the feed",
+        "axistool design x.toml y.toml -o DIR gives both axes one loop"}},
+      {"delay_between_axes",
+       {"One axis acts later by a fixed time: as servo mismatch, at an unchanged radius",
+        "compare the axes' bus cycles and filters; give both the same notch and low-pass"}},
+      {"reversal_spike",
+       {"Friction holds the axis after it has turned over: a spike outwards at the quadrants",
+        "axistool friction, then design: friction feed-forward; where it is on, axistool diagnose"}},
+      {"squareness", {"The axes are not square: an ellipse at 45 degrees that does not turn over", "align the axes"}},
+      {"scale_mismatch",
+       {"The axes' scales differ: an ellipse along the axes at any feed", "correct lead or scale of one axis"}},
+      {"backlash",
+       {"The table stands still after a reversal by this gap: steps at the quadrants",
+        "backlash compensation (backlash.* parameters), or preload, nut and bearings"}},
+      {"lateral_play",
+       {"Moving to and fro shifts the axis sideways: its guide has play", "adjust the guide's gibs or preload"}},
+      {"straightness", {"The axis runs along a bow: three lobes", "level and align the guideway"}},
+      {"cyclic_error",
+       {"The position is wrong periodically: screw, coupling or encoder",
+        "align screw and encoder; where the period is the encoder's line, its adjustment"}},
+      {"torque_ripple",
+       {"A torque periodic in position moves the motor: cogging, or ripple of the drive",
+        "axistool diagnose names it; cogging compensation (cogging.* parameters)"}},
+      {"vibration", {"An oscillation at a fixed frequency", "axistool bode shows the resonance; design --notch auto"}}};
+  for (const auto& [name, text] : texts)
+    if (kind == name) return text;
+  return {"", ""};
+}
+
+}  // namespace host

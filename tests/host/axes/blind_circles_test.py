@@ -1,0 +1,224 @@
+#!/usr/bin/python3
+"""axistool circle on machines that it knows nothing of: two axes with loops, friction, play and geometry of their own
+physics, integrated here, one to three causes each, with and without a ballbar. Seeds are printed; with an argument as
+many machines are tried (60 for the figures in MEASURED)."""
+
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+AXISTOOL = os.environ["AXISTOOL"]
+RADIUS, PERIOD, SUBSTEPS = 40.0, 1e-3, 2
+STEP = PERIOD / SUBSTEPS
+ENCODER = 0.5e-3  # mm
+FEEDS = (40.0, 120.0)
+MOTOR = ("servo_mismatch", "reversal_spike x", "reversal_spike y", "torque_ripple x", "torque_ripple y", "vibration x",
+         "vibration y")
+TABLE = ("squareness", "scale_mismatch", "backlash x", "backlash y", "lateral_play x", "lateral_play y",
+         "straightness x", "straightness y", "cyclic_error x", "cyclic_error y")
+
+
+def angles() -> list[float]:
+    """Angle of the reference, step by step: each feed in both directions, from rest to rest."""
+    path: list[float] = []
+    angle = 0.0
+    for feed in FEEDS:
+        for direction in (1.0, -1.0):
+            speed, top, turned = 0.0, feed / RADIUS, 0.0
+            acceleration = 1000.0 / RADIUS
+            whole = 2.3 * 2.0 * math.pi
+            path += [angle] * 400
+            while turned < whole - 1e-3:
+                brake = math.sqrt(2.0 * acceleration * (whole - turned))
+                speed = min(speed + acceleration * STEP, top, brake)
+                turned += speed * STEP
+                path.append(angle + direction * turned)
+            angle = path[-1]
+    return path
+
+
+PATH = angles()
+REFERENCE = {"x": [RADIUS * math.cos(a) for a in PATH], "y": [RADIUS * math.sin(a) for a in PATH]}
+
+
+class Axis:
+    """A mass behind position and speed feedback with feed-forward of both derivatives; friction after Dahl, whose
+    feed-forward comes late; torque ripple; a shaker."""
+
+    def __init__(self, causes: dict[str, float], name: str, draw: dict[str, float]) -> None:
+        natural = 2.0 * math.pi * 30.0
+        self.stiffness, self.damping = natural**2, 1.6 * natural
+        lag = causes.get("servo_mismatch", 0.0) if name == "x" else 0.0
+        self.speed_share = 1.0 - lag * self.stiffness / self.damping
+        self.friction = causes.get(f"reversal_spike {name}", 0.0)
+        self.ripple = causes.get(f"torque_ripple {name}", 0.0)
+        self.shake = causes.get(f"vibration {name}", 0.0)
+        self.draw, self.name = draw, name
+
+    def run(self) -> list[float]:
+        draw, reference = self.draw, REFERENCE[self.name]
+        x, v, bristle, known = reference[0], 0.0, 0.0, 0.0
+        out = [x]
+        before, speed_before = reference[0], 0.0
+        for k in range(1, len(reference)):
+            speed = (reference[k] - before) / STEP
+            wanted = (speed - speed_before) / STEP
+            before, speed_before = reference[k], speed
+            force = self.stiffness * (reference[k] - x) + self.damping * (self.speed_share * speed - v) + wanted
+            if self.friction:
+                bristle += STEP * (v - abs(v) * bristle / 2e-4)
+                bristle = max(-2e-4, min(2e-4, bristle))
+                known += STEP / draw["late"] * (math.copysign(1.0, speed) * (abs(speed) > 1e-3) - known)
+                force += self.friction * (known - bristle / 2e-4)
+            if self.ripple:
+                force += self.ripple * math.sin(2.0 * math.pi * x / draw["pitch"] + draw["phase"])
+            if self.shake:
+                force += self.shake * math.sin(2.0 * math.pi * draw["shake"] * k * STEP + draw["phase"])
+            v += STEP * force
+            x += STEP * v
+            out.append(x)
+        return out
+
+
+def table_of(motor: dict[str, list[float]], causes: dict[str, float], draw: dict[str, float]) -> tuple[list[float], list[float]]:
+    seat = {"x": motor["x"][0], "y": motor["y"][0]}
+    side = {"x": 0.0, "y": 0.0}
+    xs, ys = [], []
+    last = dict(seat)
+    for k in range(len(PATH)):
+        at = {"x": motor["x"][k], "y": motor["y"][k]}
+        moved = {}
+        for axis in "xy":
+            gap = causes.get(f"backlash {axis}", 0.0) / 2.0
+            seat[axis] = min(max(seat[axis], at[axis] - gap), at[axis] + gap)
+            moved[axis] = at[axis] - last[axis]
+            if moved[axis]:  # play sideways is taken up within ten micrometres
+                side[axis] = max(-1.0, min(1.0, side[axis] + 2.0 * moved[axis] / 0.01))
+        last = at
+        x, y = seat["x"], seat["y"]
+        for axis in "xy":
+            wave = causes.get(f"cyclic_error {axis}", 0.0) * math.sin(2.0 * math.pi * at[axis] / draw["screw"] + draw["phase"])
+            bow = causes.get(f"straightness {axis}", 0.0) * (at[axis] / RADIUS) ** 2
+            play = causes.get(f"lateral_play {axis}", 0.0) / 2.0 * side[axis]
+            if axis == "x":
+                x += wave
+                y += bow + play
+            else:
+                y += wave
+                x += bow + play
+        x += causes.get("squareness", 0.0) * at["y"] / RADIUS
+        x += causes.get("scale_mismatch", 0.0) * at["x"] / RADIUS
+        xs.append(x)
+        ys.append(y)
+    return xs, ys
+
+
+def radial(xs: list[float], ys: list[float]) -> list[float]:
+    return [1e3 * (math.hypot(x, y) - RADIUS) for x, y in zip(xs, ys)]
+
+
+def draw_machine(seed: int) -> tuple[dict[str, float], dict[str, float], bool]:
+    """Sizes in mm, s and mm/s^2."""
+    dice = random.Random(seed)
+    has_bar = dice.random() < 0.6
+    pool = MOTOR + TABLE if has_bar else MOTOR
+    causes: dict[str, float] = {}
+    for name in dice.sample(pool, dice.choice((1, 2, 2, 3))):
+        kind = name.split()[0]
+        if any(kind == other.split()[0] and kind in ("vibration", "torque_ripple", "cyclic_error") for other in causes):
+            continue
+        sign = dice.choice((-1.0, 1.0))
+        causes[name] = {"servo_mismatch": lambda: sign * dice.uniform(5e-5, 3e-4),
+                        "reversal_spike": lambda: dice.uniform(100.0, 500.0),
+                        "torque_ripple": lambda: dice.uniform(60.0, 250.0),
+                        "vibration": lambda: dice.uniform(60.0, 200.0),
+                        "straightness": lambda: sign * dice.uniform(4e-3, 15e-3),
+                        "backlash": lambda: dice.uniform(2e-3, 12e-3),
+                        "lateral_play": lambda: dice.uniform(3e-3, 10e-3),
+                        "cyclic_error": lambda: dice.uniform(1e-3, 4e-3)}.get(
+                            kind, lambda: sign * dice.uniform(3e-3, 15e-3))()
+    draw = {"late": dice.uniform(0.008, 0.025), "pitch": dice.choice((4.0, 5.0, 10.0)), "screw": dice.choice((5.0, 8.0, 10.0)),
+            "phase": dice.uniform(0.0, 6.28), "shake": dice.uniform(12.0, 40.0)}
+    return causes, draw, has_bar
+
+
+def write(path: Path, motor: dict[str, list[float]], table: tuple[list[float], list[float]] | None, seed: int) -> None:
+    dice = random.Random(seed + 1)
+    off = (dice.uniform(-0.02, 0.02), dice.uniform(-0.02, 0.02), dice.uniform(-0.01, 0.01))
+    rows = ["# format: axis-record/1", "# drive: x", f"# sample_period_s: {PERIOD}",
+            "t_s,u_V,x_mm,x_ref_mm,y_mm,y_ref_mm" + (",radius_mm" if table else "")]
+    for row, k in enumerate(range(0, len(PATH), SUBSTEPS)):
+        seen = [math.floor(motor[axis][k] / ENCODER) * ENCODER for axis in "xy"]
+        line = (f"{row * PERIOD:.3f},{dice.gauss(0.0, 0.1):.5f},{seen[0]:.4f},{REFERENCE['x'][k]:.7f},{seen[1]:.4f},"
+                f"{REFERENCE['y'][k]:.7f}")
+        if table:
+            line += f",{math.hypot(table[0][k] - off[0], table[1][k] - off[1]) + off[2] + dice.gauss(0.0, 1.5e-4):.6f}"
+        rows.append(line)
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+def true_sizes(causes: dict[str, float], draw: dict[str, float], has_bar: bool, motor: dict[str, list[float]]) -> dict[str, float]:
+    """What the radial deviation loses when one cause is taken away: its range while the circle is run steadily."""
+    turning = [k for k in range(1, len(PATH)) if abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[0] - 1.0) < 0.01
+               or abs(abs(PATH[k] - PATH[k - 1]) / STEP * RADIUS / FEEDS[1] - 1.0) < 0.01]
+    whole = radial(*table_of(motor, causes, draw)) if has_bar else radial(motor["x"], motor["y"])
+    sizes = {}
+    for name in causes:
+        rest = {other: size for other, size in causes.items() if other != name}
+        other = motor if name in TABLE else {axis: Axis(rest, axis, draw).run() for axis in "xy"}
+        less = radial(*table_of(other, rest, draw)) if has_bar else radial(other["x"], other["y"])
+        off = [whole[k] - less[k] for k in turning]
+        sizes[name] = max(off) - min(off)
+    return sizes
+
+
+def trial(seed: int, folder: Path) -> dict[str, object]:
+    causes, draw, has_bar = draw_machine(seed)
+    motor = {axis: Axis(causes, axis, draw).run() for axis in "xy"}
+    table = table_of(motor, causes, draw) if has_bar else None
+    record = folder / f"{seed}.csv"
+    write(record, motor, table, seed)
+    done = subprocess.run([AXISTOOL, "circle", str(record), "--json", "-"], capture_output=True, text=True)
+    assert done.returncode == 0, f"seed {seed}: {done.stderr}"
+    found = json.loads(done.stdout)
+    named = {one["kind"] + ("" if one["axis"] == "xy" else " " + one["axis"]): one for one in found["causes"]}
+    sizes = true_sizes(causes, draw, has_bar, motor)
+    off = {name: (named[name]["um"], sizes[name]) for name in sizes if name in named}
+    result = {"right": set(named) == set(sizes), "false": set(named) - set(sizes), "missed": set(sizes) - set(named),
+              "sized": sum(abs(a - b) <= max(0.1 * b, 0.5) for a, b in off.values()), "sizes": len(off),
+              "unseen": [name for name in named if not has_bar and name in TABLE],
+              "within": sum(named[n]["ci95"][0] <= b <= named[n]["ci95"][1] for n, (_, b) in off.items()),
+              "squareness_told": has_bar or "squareness" in found["cannot_see"],
+              "said": [(one["probability"], name in sizes) for name, one in named.items()]}
+    print(f"seed {seed:3d} {'ballbar ' if has_bar else 'encoders'} {'right' if result['right'] else 'WRONG'}: "
+          + ", ".join(f"{name} {b:.2f} um (said {named[name]['um']:.2f})" if name in named else f"{name} {b:.2f} um MISSED"
+                      for name, b in sizes.items())
+          + "".join(f"; FALSE {name} {named[name]['um']:.2f} um p {named[name]['probability']:.2f}" for name in result["false"]),
+          flush=True)
+    return result
+
+
+def main() -> int:
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    with tempfile.TemporaryDirectory() as folder:
+        all_of = [trial(seed, Path(folder)) for seed in range(1, count + 1)]
+    right = sum(one["right"] for one in all_of)
+    sized, sizes = sum(one["sized"] for one in all_of), sum(one["sizes"] for one in all_of)
+    said = [pair for one in all_of for pair in one["said"]]
+    mean = sum(p for p, _ in said) / max(1, len(said))
+    true = sum(ok for _, ok in said) / max(1, len(said))
+    print(f"{count} machines: {right} right; {sized} of {sizes} sizes within 10 % or 0.5 um; "
+          f"{sum(one['within'] for one in all_of)} of {sizes} within their 95 % intervals; "
+          f"named {len(said)} with a mean probability of {mean:.3f}, {true:.3f} of them true")
+    ok = right >= 0.9 * count and sized >= 0.9 * sizes
+    ok = ok and not any(one["unseen"] for one in all_of) and all(one["squareness_told"] for one in all_of)
+    return 0 if ok else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,105 @@
+// axistool circle on what hil writes and on records made by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "host/read_file.hpp"
+#include "tests/host/axistool/run_axistool.hpp"
+#include "tests/host/temporary_folder.hpp"
+
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class Circle : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return folder_.path(name); }
+
+  /// Two turns at 60 mm/s about 30 mm in one direction; a ballbar beside it sees axes that are not square by `q_um`
+  /// over the radius.
+  std::string made(const std::string& name, double direction, double q_um, bool with_bar) const {
+    std::string text =
+        "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.002\nt_s,u_V,x_mm,x_ref_mm,y_mm,y_ref_mm";
+    text += with_bar ? ",radius_mm\n" : "\n";
+    unsigned noise = 12345;
+    for (int k = 0; k < 3400; ++k) {
+      const double angle = direction * 2.0 * 0.002 * k, x = 30.0 * std::cos(angle), y = 30.0 * std::sin(angle);
+      noise = noise * 1103515245u + 12345u;
+      const double part = (noise >> 16) / 65536.0 - 0.5;
+      const double bar = std::hypot(x + q_um / 1e3 * std::sin(angle), y) + 3e-4 * part;
+      text += std::to_string(0.002 * k) + "," + std::to_string(part) + "," + std::to_string(std::floor(x * 1e3) / 1e3) +
+              "," + std::to_string(x) + "," + std::to_string(std::floor(y * 1e3) / 1e3) + "," + std::to_string(y);
+      text += with_bar ? "," + std::to_string(bar) + "\n" : "\n";
+    }
+    return folder_.write(name, text);
+  }
+
+  static json circle(const std::string& words) {
+    const ProgramRun run = run_axistool("circle " + words + " --json -", "2>/dev/null");
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return json::parse(run.output);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Circle, WhatHilWritesIsTakenAsAPair) {
+  ASSERT_EQ(run_axistool("hil circle-without-friction -o " + file("hil")).exit_code, 0);
+  const std::string stem = file("hil/circle-without-friction-");
+  const json found = circle(stem + "x.csv " + stem + "y.csv --report " + file("page.html"));
+  EXPECT_EQ(found["format"], "axis-circle/1");
+  EXPECT_GT(found["iso_230_4"]["G_um"], 5.0);
+  EXPECT_TRUE(found["iso_230_4"]["H_um"].is_null()) << "one direction";
+  EXPECT_THAT(found["cannot_see"], Contains("squareness"));
+  for (const json& cause : found["causes"]) {
+    EXPECT_THAT(found["cannot_see"], Not(Contains(cause["kind"])));
+    EXPECT_GE(cause["um"], cause["ci95"][0]);
+    EXPECT_LE(cause["um"], cause["ci95"][1]);
+    EXPECT_GT(cause["probability"], 0.5);
+  }
+  EXPECT_THAT(host::read_file(file("page.html")), HasSubstr("ISO 230-4"));
+}
+
+TEST_F(Circle, ABallbarShowsThatAxesAreNotSquare) {
+  const json found = circle(made("ccw.csv", 1.0, 9.0, true) + " " + made("cw.csv", -1.0, 9.0, true));
+  ASSERT_EQ(found["causes"].size(), 1u) << found.dump(2);
+  EXPECT_EQ(found["causes"][0]["kind"], "squareness");
+  EXPECT_NEAR(found["causes"][0]["um"], 9.0, 0.3);
+  EXPECT_NEAR(found["causes"][0]["amount"]["value"], 300.0, 10.0);
+  EXPECT_EQ(found["causes"][0]["amount"]["unit"], "um/m");
+  EXPECT_NEAR(found["iso_230_4"]["Gb_um"], 9.0, 0.5);
+  EXPECT_LT(found["iso_230_4"]["H_um"], 0.5);
+  EXPECT_THAT(found["cannot_see"], Not(Contains("squareness")));
+}
+
+TEST_F(Circle, EncodersAloneNameNoGeometry) {
+  const json found = circle(made("ccw.csv", 1.0, 9.0, false) + " " + made("cw.csv", -1.0, 9.0, false));
+  EXPECT_TRUE(found["causes"].empty()) << found.dump(2);
+  for (const char* kind : {"squareness", "scale_mismatch", "backlash", "lateral_play", "straightness"})
+    EXPECT_THAT(found["cannot_see"], Contains(kind));
+}
+
+TEST_F(Circle, SaysWhatARecordLacks) {
+  const std::string jog = std::string(AXIS_TEST_DATA) + "/drive-cases/none/case-00/train-jog.csv";
+  const ProgramRun alone = run_axistool("circle " + jog);
+  EXPECT_EQ(alone.exit_code, 9);
+  EXPECT_THAT(alone.output, HasSubstr("axis y"));
+  std::string line = "# format: axis-record/1\n# drive: x\n# sample_period_s: 0.01\nt_s,u_V,x_mm,y_mm\n";
+  for (int k = 0; k < 400; ++k)
+    line += std::to_string(0.01 * k) + ",0." + std::to_string(k) + "," + std::to_string(0.1 * k) + "," +
+            std::to_string(0.05 * k) + "\n";
+  const ProgramRun straight = run_axistool("circle " + folder_.write("line.csv", line));
+  EXPECT_EQ(straight.exit_code, 8) << straight.output;
+  EXPECT_THAT(straight.output, HasSubstr("no turn of a circle"));
+  const std::size_t field = line.find(",0.050000");
+  const ProgramRun gap = run_axistool("circle " + folder_.write("gap.csv", line.replace(field, 9, ",")));
+  EXPECT_EQ(gap.exit_code, 9) << gap.output;
+  EXPECT_THAT(gap.output, HasSubstr("row 2 of y_mm is no number"));
+}
+
+}  // namespace
