@@ -14,10 +14,21 @@ class VbusInput {
  public:
   explicit constexpr VbusInput(Pin pin) : pin_(pin) {}
   void start() { pin_.make_input(Pull::down); }
-  bool is_present() { return pin_.read(); }
+  /// Beside a servo amplifier single readings lie: it changes once it has read otherwise for `steady` of the units of
+  /// `now`, without a break.
+  bool is_present(std::uint32_t now, std::uint32_t steady) {
+    const bool reads = pin_.read();
+    if (reads == is_present_)
+      agreed_at_ = now;
+    else if (now - agreed_at_ >= steady)
+      is_present_ = reads;
+    return is_present_;
+  }
 
  private:
   Pin pin_;
+  bool is_present_ = false;
+  std::uint32_t agreed_at_ = 0;
 };
 
 /// Clock on. The controller takes VBUS for present at all times; whether it pulls D+ up is then decided by who asks

@@ -9,6 +9,7 @@
 
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
+#include "host/device/board_report.hpp"
 #include "host/exit_codes.hpp"
 #include "host/link/device_users.hpp"
 #include "host/parameters/parameter_names.hpp"
@@ -99,6 +100,8 @@ void require_ok(const Message& reply, const std::string& others = "") {
     case Status::others_capture:
       fail(ExitCode::refused,
            "another program captures: wait until it has ended (a program that died holds a capture for two seconds)");
+    case Status::brown_out_off:
+      fail(ExitCode::refused, brown_out_problem());
     case Status::not_homed:
       fail(ExitCode::refused,
            "the axis does not know where it is: `axistool home` first (or move it --relative, or jog it)");

@@ -53,6 +53,12 @@ std::string reset_text(std::uint8_t reset_cause) {
   return nth(kNames, reset_cause);
 }
 
+std::string brown_out_problem() {
+  return "the chip's brown-out reset is off, as it was delivered: while its supply fails it may do anything, so no "
+         "drive "
+         "is enabled. Set it once, then restart: STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=0";
+}
+
 std::optional<std::string> store_problem(const BoardState& status) {
   switch (static_cast<firmware::StoreState>(status.store_state)) {
     case firmware::StoreState::damaged:
@@ -113,6 +119,7 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
           {"erases", status.store_erases},
           {"reset_cause", reset_text(status.reset_cause)},
           {"resets", status.resets},
+          {"brown_out_reset", (status.flags & firmware::kBoardBrownOutOff) == 0},
           {"emergency_stop", (status.flags & firmware::kBoardStopPressed) != 0},
           {"left_alone", (status.flags & firmware::kBoardLeftAlone) != 0},
           {"axes", axes}};
@@ -132,6 +139,7 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
     text += fmt::format("control      {} clocks of the processor on average, {} at worst, at {:g} MHz\n",
                         timing.cycles_average, timing.cycles_worst, 1e-6 * timing.processor_Hz);
   text += fmt::format("last reset   {}; {} since power on\n", reset_text(status.reset_cause), status.resets);
+  if ((status.flags & firmware::kBoardBrownOutOff) != 0) text += brown_out_problem() + "\n";
   if ((status.flags & firmware::kBoardStopPressed) != 0) text += "emergency stop is pressed\n";
   if ((status.flags & firmware::kBoardLeftAlone) != 0)
     text += "the axes were disabled after host.standing_timeout without a program\n";

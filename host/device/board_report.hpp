@@ -21,6 +21,9 @@ struct AxisPlace {
 std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,
                                          const firmware::ParameterValues* values);
 
+/// What a board without brown-out reset lacks, with the remedy.
+std::string brown_out_problem();
+
 /// Why the store keeps the drives disabled, with the remedy; empty while it does not.
 std::optional<std::string> store_problem(const BoardState& status);
 

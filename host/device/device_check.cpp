@@ -26,6 +26,7 @@ class Examination {
     const BoardState status = board_.status();
     store(status);
     reset(status);
+    brown_out(status);
     faults(status);
     exchange();
     stream();
@@ -64,6 +65,11 @@ class Examination {
     add(!is_bad, CheckResult::attention, "last reset", fmt::format("{}, {} since power on", cause, status.resets),
         cause == "brown-out" ? "check the supply of the board"
                              : "the service port (115200 baud) tells registers and place of the fault: report them");
+  }
+
+  void brown_out(const BoardState& status) {
+    const bool is_off = (status.flags & firmware::kBoardBrownOutOff) != 0;
+    add(!is_off, CheckResult::bad, "brown-out reset", is_off ? "off" : "set", brown_out_problem());
   }
 
   void faults(const BoardState& status) {

@@ -39,6 +39,11 @@ TEST_F(Fault, BusFaultKeepsTheAddress) {
                                    "fault: outputs made safe 1", "cfsr 0x00008200", "bfar 0xa0000000", "last: axis 1"});
 }
 
+TEST_F(Fault, ANullPointerIsNotRead) {
+  expect_lines(report_after("n"), {"reset: fault", "fault: memory protection fault", "cfsr 0x00000082",
+                                   "mmfar 0x00000008", "outputs made safe 1"});
+}
+
 TEST_F(Fault, DivisionByZeroIsAUsageFault) {
   expect_lines(report_after("d"), {"reset: fault", "fault: usage fault", "cfsr 0x02000000", "outputs made safe 1"});
 }

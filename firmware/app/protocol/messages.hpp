@@ -86,6 +86,7 @@ enum class Status : std::uint8_t {
   homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
   others_capture = 22,  ///< another client's capture runs: wait for its end, or stop it
   no_room = 23,         ///< for another node of a path: send it later
+  brown_out_off = 24,   ///< nothing moves before the chip's brown-out reset is set
 };
 
 struct IdentityPayload {
@@ -143,7 +144,8 @@ static_assert(sizeof(StatusPayload) == kPayloadSize);
 inline constexpr std::uint8_t kBoardUnsaved = 1, kBoardStopPressed = 2, kBoardCapturing = 4, kBoardSimulated = 8,
                               kBoardYours = 16,  ///< the asking client owns the axes that are enabled
     kBoardOthers = 32,                           ///< another one does
-    kBoardLeftAlone = 64;                        ///< axes that stood were disabled after host.standing_timeout
+    kBoardLeftAlone = 64,                        ///< axes that stood were disabled after host.standing_timeout
+    kBoardBrownOutOff = 128;
 
 /// Since start-up, or since the last request that asked to begin anew.
 struct TimingPayload {

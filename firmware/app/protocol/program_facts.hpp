@@ -10,6 +10,7 @@ struct BootFacts {
   std::uint8_t reset_cause = 0;  ///< boards/image/survival_record.hpp
   std::uint16_t resets = 0;      ///< since power came on
   bool simulated = false;
+  bool lacks_brown_out_reset = false;  ///< no drive is enabled until its level is set
 };
 
 /// What the program takes of the processor, as it runs. Cycles: of the control interrupt; 0 where nothing counts them.

@@ -85,6 +85,7 @@ class ProtocolServer {
   Status permission(const RequestRule& rule, const Message& request) {
     if (request.length < rule.least || request.length > rule.most) return Status::malformed;
     if (restart_wanted_ && acts(rule)) return Status::restarting;
+    if (boot_.lacks_brown_out_reset && rule.commands) return Status::brown_out_off;
     const ClientToken client = request.asker();
     switch (rule.asker) {
       case Asker::anyone:
@@ -305,6 +306,7 @@ class ProtocolServer {
     if (app_.capture().is_running()) flags |= kBoardCapturing;
     if (app_.was_left_alone()) flags |= kBoardLeftAlone;
     if (boot_.simulated) flags |= kBoardSimulated;
+    if (boot_.lacks_brown_out_reset) flags |= kBoardBrownOutOff;
     if (app_.any_enabled()) flags |= app_.is_owner(client) ? kBoardYours : kBoardOthers;
     board.flags = static_cast<std::uint8_t>(flags);
     return board;

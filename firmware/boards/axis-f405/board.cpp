@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kTimer2Function = 1, kTimer5Function = 2, kSpi1Function = 5, kUsart1Function = 7,
                         kUsbFunction = 10;
 
-/// What the chip lacks until its option bytes are written (README.md).
+/// What the chip lacks until its option bytes are written (front-end.md).
 constexpr std::uint32_t kBrownOutWanted = 270;
 
 constexpr const char* name_of(hal::ConverterState state) {
@@ -109,8 +109,8 @@ void Board::end_stall() {
 }
 
 void Board::watch(bool outputs_off) {
-  usb_.attach(vbus_.is_present());
   const std::uint32_t now_periods = control_periods_;
+  usb_.attach(vbus_.is_present(now_periods, control_rate_Hz_ / 10));  // 100 ms
   if (now_periods - watched_at_period_ < control_rate_Hz_ / kWatches_Hz) return;
   watched_at_period_ = now_periods;
   const ControlShutOut guard;  // 9 us: two frames of the converter that nobody may come between
@@ -122,6 +122,8 @@ void Board::watch(bool outputs_off) {
   }
 }
 
+bool Board::lacks_brown_out_reset() const { return brown_out_threshold(flash_interface()) != kBrownOutWanted; }
+
 void Board::report(TextWriter<Serial>& out) const {
   const std::uint32_t threshold = brown_out_threshold(flash_interface());
   out << "option bytes: brown-out reset ";
@@ -129,7 +131,7 @@ void Board::report(TextWriter<Serial>& out) const {
     out << "off";
   else
     out << "at " << threshold << " hundredths of a volt";
-  out << (threshold == kBrownOutWanted ? "\n" : ", should be 270: see the board's README\n");
+  out << (lacks_brown_out_reset() ? ", must be 270: see front-end.md\n" : "\n");
   out << "converter: " << name_of(converter_.state()) << ", last trouble: " << name_of(converter_trouble_)
       << "; scans restarted after an overrun: " << scan_.overruns() << "; characters lost here: " << serial_.lost()
       << "\n";

@@ -103,6 +103,8 @@ class Board {
   /// The background's share: connects to a computer that is there, reads the D/A converter back, a register at a time,
   /// and starts it anew while the outputs are off.
   void watch(bool outputs_off);
+  /// Its option bytes are as delivered: between 2.7 V and its end the chip may do anything, erase its flash among it.
+  bool lacks_brown_out_reset() const;
   /// What a builder should know: option bytes, converter, overruns.
   void report(TextWriter<Serial>& out) const;
 

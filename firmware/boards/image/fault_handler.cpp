@@ -9,6 +9,7 @@ extern "C" {
 extern std::uint32_t _stack_guard[];  // NOLINT: linker symbols
 extern std::uint32_t _stack_bottom[];
 extern std::uint32_t _stack_top[];
+extern std::uint32_t _image_start[];
 }
 
 namespace firmware::boards {
@@ -16,6 +17,7 @@ namespace firmware::boards {
 namespace {
 
 constexpr std::uint32_t kStackGuardLog2 = 8;  // 256 bytes, as in sections.ld
+constexpr std::uint32_t kNullLog2 = 20;       // 1 MB from address 0, where the STM32F405 shows its flash once more
 constexpr std::uint32_t kFrameWords = 8;      // r0-r3, r12, lr, pc, xpsr: ARMv7-M ARM, B1.5.6
 
 bool holds_frame(const std::uint32_t* stack) { return stack >= _stack_bottom && stack + kFrameWords <= _stack_top; }
@@ -35,6 +37,12 @@ void arm_fault_detection() {
   mpu.RNR = 0;
   mpu.RBAR = reinterpret_cast<std::uint32_t>(_stack_guard);
   mpu.RASR = Mpu::size_field(kStackGuardLog2) | Mpu::kRegionEnable;
+  // Whatever reads through a null pointer is found, where no image lies there.
+  if (reinterpret_cast<std::uint32_t>(_image_start) >= 1u << kNullLog2) {
+    mpu.RNR = 1;
+    mpu.RBAR = 0;
+    mpu.RASR = Mpu::size_field(kNullLog2) | Mpu::kRegionEnable;
+  }
   mpu.CTRL = Mpu::kDefaultMapForPrivileged | Mpu::kEnable;
   asm volatile("dsb\n isb" ::: "memory");
 }

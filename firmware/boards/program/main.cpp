@@ -70,7 +70,7 @@ extern "C" [[noreturn]] void run_board() {
   survival_record().watchdog_armed = 1;
   application.start();
   const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
-                                 false};
+                                 false, board.lacks_brown_out_reset()};
   firmware::ProtocolServer<Application> server(application, this_image(), boot);
   if (!board.start_usb()) out << "periphery: the USB controller does not answer\n";
   board.start_control();

@@ -149,6 +149,9 @@ void run_over_serial() {
       case 'b':
         provoke_bus_fault();
         break;
+      case 'n':
+        provoke_null_read();
+        break;
       case 'd':
         provoke_division_by_zero();
         break;
@@ -169,7 +172,7 @@ void run_over_serial() {
       case 'q':
         hal::qemu::exit_emulator(0);
       default:
-        out << "b d s i provoke faults, j starts again, r resets, u tells stack use, q ends\n";
+        out << "b n d s i provoke faults, j starts again, r resets, u tells stack use, q ends\n";
     }
   }
 }

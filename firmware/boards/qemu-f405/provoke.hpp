@@ -10,6 +10,12 @@ namespace firmware::boards {
 /// Writes where nothing is.
 inline void provoke_bus_fault() { *reinterpret_cast<volatile std::uint32_t*>(0xA0000000u) = 1; }
 
+/// Reads a member of what a null pointer points to.
+inline void provoke_null_read() {
+  volatile std::uintptr_t null = 0;
+  static_cast<void>(*reinterpret_cast<volatile std::uint32_t*>(null + 8));
+}
+
 inline void provoke_division_by_zero() {
   volatile int zero = 0;
   volatile int result = 1;

@@ -293,6 +293,23 @@ TEST_F(Requests, ATriggeredCaptureIsItsClientsUntilThatOneLetsGo) {
   EXPECT_EQ(ask(kOwner, MessageType::arm_trigger, request), Status::ok) << "the other has died";
 }
 
+/// Of a chip that may do anything while its supply fails nothing is enabled, and what would move an axis is not taken.
+TEST_F(Requests, NothingMovesWithoutBrownOutReset) {
+  firmware::ProtocolServer<Bench::Application> server(bench.application, bench.image, {.lacks_brown_out_reset = true});
+  for (const auto& [type, expected] : kMessages) {
+    firmware::Message request = request_of(type, expected.length), reply;
+    request.client = kOwner;
+    ASSERT_EQ(firmware::decode(server.answer(firmware::encode(request)), reply), Status::ok);
+    const bool moves = type == 0x20 || type == 0x23 || type == 0x24 || type == 0x27 || type == 0x28 || type == 0x41 ||
+                       type == 0x50 || type == 0x52;
+    EXPECT_EQ(reply.status == Status::brown_out_off, moves) << type;
+    if (type != 0x02) continue;
+    firmware::StatusPayload status;
+    std::memcpy(&status, reply.payload.data(), reply.length);
+    EXPECT_NE(status.board.flags & firmware::kBoardBrownOutOff, 0);
+  }
+}
+
 /// Without a design nothing else limits an experiment: whatever the request's box is, the board has its own.
 TEST(UnfittedAxis, HasLimitsOfItsOwn) {
   Bench bench;

@@ -205,6 +205,35 @@ TEST_F(AxisBoard, SavingParametersDoesNotEndInAReset) {
   EXPECT_TRUE(chip.window_watchdog.is_running());
 }
 
+/// Sparks of an amplifier, at any phase, and a plug that was pulled.
+TEST_F(AxisBoard, OnlyAComputerThatStaysAwayIsGone) {
+  start();
+  chip.port_a.put(8, Outside::high);
+  run_ms(90.0);
+  EXPECT_FALSE(board.usb().is_configured());
+  run_ms(20.0);
+  EXPECT_TRUE(board.usb().is_configured());
+  for (const double spark_ms : {0.1, 1.0, 20.0, 95.0, 95.0}) {
+    chip.port_a.put(8, Outside::low);
+    run_ms(spark_ms);
+    EXPECT_TRUE(board.usb().is_configured()) << spark_ms;
+    chip.port_a.put(8, Outside::high);
+    run_ms(1.0);
+  }
+  chip.port_a.put(8, Outside::low);
+  run_ms(110.0);
+  EXPECT_FALSE(board.usb().is_configured());
+}
+
+TEST_F(AxisBoard, SaysThatItLacksItsBrownOutReset) {
+  start();
+  EXPECT_TRUE(board.lacks_brown_out_reset()) << "as delivered";
+  chip.flash.option_bytes &= ~0xCu;  // 2.7 V
+  EXPECT_FALSE(board.lacks_brown_out_reset());
+  chip.flash.option_bytes |= 1u << 2;  // 2.4 V
+  EXPECT_TRUE(board.lacks_brown_out_reset());
+}
+
 TEST_F(AxisBoard, ABackgroundThatHangsEndsInAReset) {
   start();
   run_ms(60.0);
@@ -256,22 +285,13 @@ TEST_F(AxisBoard, ADeadCrystalLeavesItDisabledButReporting) {
     board.serial().poll();
     chip.bus.pass_ns(50'000);
   }
-  EXPECT_EQ(chip.serial.sent().find("option bytes: brown-out reset off, should be 270"), 0u) << chip.serial.sent();
+  EXPECT_EQ(chip.serial.sent().find("option bytes: brown-out reset off, must be 270"), 0u) << chip.serial.sent();
 }
 
 TEST_F(AxisBoard, AnAbsentConverterLeavesItDisabled) {
   chip.converter.answers = false;
   EXPECT_FALSE(board.start());
   EXPECT_FALSE(board.axis(0).dac().is_healthy());
-}
-
-TEST_F(AxisBoard, IsOnTheBusOnlyWhileAComputersSupplyIs) {
-  start();
-  run_ms(1.0);
-  EXPECT_FALSE(board.usb().is_configured());
-  chip.port_a.put(8, Outside::high);
-  run_ms(1.0);
-  EXPECT_TRUE(board.usb().is_configured());
 }
 
 /// An input that moves to such a pin, or a resistor that goes, is a short circuit at the next download.

@@ -93,9 +93,14 @@ TEST_F(Lines, TheChargePumpIsASquareWaveThatStopsWithItsBeat) {
 TEST_F(Lines, NoUsbSupplyOnAnOpenWire) {
   VbusInput vbus(Pin(gpio_a(), 8));
   vbus.start();
-  EXPECT_FALSE(vbus.is_present());
+  EXPECT_FALSE(vbus.is_present(0, 100));
   chip.port_a.put(8, Outside::high);
-  EXPECT_TRUE(vbus.is_present());
+  EXPECT_FALSE(vbus.is_present(99, 100));
+  EXPECT_TRUE(vbus.is_present(100, 100));
+  EXPECT_TRUE(vbus.is_present(300, 100));
+  chip.port_a.put(8, Outside::low);
+  EXPECT_TRUE(vbus.is_present(399, 100));
+  EXPECT_FALSE(vbus.is_present(400, 100));
 }
 
 TEST_F(Lines, TheSupplyIsLowBelowItsThresholdOnly) {

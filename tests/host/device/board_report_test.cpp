@@ -32,6 +32,15 @@ TEST(BoardReport, TellsWhatWentWrongFirstAndWhatBesides) {
   EXPECT_EQ(host::fault_text(one_axis(AxisFault::none, AxisFault::none).axis[0]), "");
 }
 
+TEST(BoardReport, SaysThatTheBrownOutResetIsOff) {
+  auto state = one_axis(AxisFault::none, AxisFault::none);
+  EXPECT_THAT(host::board_text("here", {}, state, {}), Not(HasSubstr("brown-out")));
+  EXPECT_TRUE(host::board_json("here", {}, state, {})["brown_out_reset"].get<bool>());
+  state.flags = firmware::kBoardBrownOutOff;
+  EXPECT_THAT(host::board_text("here", {}, state, {}), HasSubstr("BOR_LEV=0"));
+  EXPECT_FALSE(host::board_json("here", {}, state, {})["brown_out_reset"].get<bool>());
+}
+
 TEST(BoardReport, TellsTheClocksOfTheControlInterruptWhereTheyAreCounted) {
   const auto state = one_axis(AxisFault::none, AxisFault::none);
   firmware::TimingPayload timing;
