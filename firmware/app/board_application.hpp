@@ -170,8 +170,10 @@ class BoardApplication {
   Status jog(std::size_t axis, float velocity) {
     if (!ScalarTraits<float>::is_finite(velocity)) return Status::malformed;
     const Scalar wanted = in_core_units(axis, velocity);
+    const bool needs_home = exceeds_unhomed_limit(velocity, active_.axis(axis));
     const typename Board::ControlShutOut guard;
     if (is_led(axis)) return Status::wrong_state;
+    if (needs_home && !axes_[axis].is_homed()) return Status::bad_value;
     if (axes_[axis].state() == SupervisorState::enabled && !axes_[axis].has_room_towards(wanted))
       return Status::outside_travel;
     if (!axes_[axis].jog(wanted)) return refusal(axis);
@@ -187,8 +189,8 @@ class BoardApplication {
       if (!relative && !axes_[axis].is_homed()) return Status::not_homed;
     }
     // At rest the reference stands still, and only this background can change that.
-    const MovePlanResult planned =
-        relative ? axes_[axis].plan_move_by(counts) : axes_[axis].plan_move_to(CountPosition::at(counts));
+    const MovePlanResult planned = relative ? axes_[axis].plan_move_by(counts, unhomed_share(active_.axis(axis)))
+                                            : axes_[axis].plan_move_to(CountPosition::at(counts));
     if (planned.refusal != Refusal::none) return status_of(planned.refusal);
     const typename Board::ControlShutOut guard;
     if (!axes_[axis].start(planned.plan)) return refusal(axis);

@@ -3,6 +3,7 @@
 
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/protocol/excitation_messages.hpp"
+#include "firmware/core/motion/move_plan.hpp"
 
 namespace firmware {
 
@@ -11,6 +12,18 @@ constexpr RefusedValuePayload limit_reply(const ParameterValues& values, std::si
   return {.key = ParameterKey::of_axis(axis, parameter_check::id_of<name>()).code,
           .kind = static_cast<std::uint8_t>(ValueRefusal::above_maximum),
           .bits = std::bit_cast<std::uint32_t>(static_cast<float>(values.axis(axis).template get<name>()))};
+}
+
+/// Of the velocity limit, what an axis may have that does not know where it is: parts of kWholeVelocity.
+constexpr std::int32_t unhomed_share(const AxisValues& v) {
+  const float most = v.get<"limits.unhomed_velocity">(), usual = v.get<"limits.velocity">();
+  if (!(most > 0 && most < usual)) return kWholeVelocity;
+  return static_cast<std::int32_t>(static_cast<float>(kWholeVelocity) * (most / usual));
+}
+/// mm/s (m/s) of a jog.
+constexpr bool exceeds_unhomed_limit(float velocity, const AxisValues& v) {
+  const float most = v.get<"limits.unhomed_velocity">();
+  return most > 0 && (velocity > most || velocity < -most);
 }
 
 /// An axis that is not fitted has no thresholds of a design; these are its own, whatever the request's box is.

@@ -199,8 +199,11 @@ class Axis {
   }
 
   /// Likewise, of a move by so many counts.
-  constexpr MovePlanResult plan_move_by(std::int64_t counts) const {
-    return plan_move(CountPosition::at(counts), limits_);
+  constexpr MovePlanResult plan_move_by(std::int64_t counts, std::int32_t share_of_velocity = kWholeVelocity) const {
+    MotionLimits limits = limits_;
+    if (share_of_velocity < kWholeVelocity) limits.velocity = limits.velocity / kWholeVelocity * share_of_velocity;
+    if (limits.velocity < kLeastMotion) limits.velocity = kLeastMotion;
+    return plan_move(CountPosition::at(counts), limits);
   }
 
   /// Starts a plan made while the reference was at rest, as it must still be. False otherwise, or while disabled.

@@ -38,6 +38,11 @@ constexpr milliseconds kSavePatience{5000};
          fmt::format("the axis is not fitted, and no experiment on it goes beyond {} = {:g}: choose a smaller box, or "
                      "raise the limit if the machine may be moved so (axistool set-params)",
                      full_name(key), std::bit_cast<float>(problem.bits)));
+  if (reply.type == firmware::reply_to(MessageType::jog))
+    fail(ExitCode::refused,
+         fmt::format("the axis does not know where it is, and jogs no faster than {} = {:g}: `axistool home` first, or "
+                     "jog slower",
+                     full_name(key), std::bit_cast<float>(problem.bits)));
   if (reply.status == Status::drive_enabled)
     fail(ExitCode::refused,
          fmt::format("{} may change only while all drives are disabled: `axistool disable`", full_name(key)));

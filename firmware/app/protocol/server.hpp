@@ -238,6 +238,7 @@ class ProtocolServer {
           if (r.axis >= kAxes) return Status::malformed;
           const Status status = app_.jog(r.axis, r.velocity);
           if (status == Status::outside_travel) reply.put(app_.limit_of_travel(r.axis, r.velocity > 0));
+          if (status == Status::bad_value) reply.put(limit_reply<"limits.unhomed_velocity">(app_.active(), r.axis));
           return status;
         });
       case MessageType::move:

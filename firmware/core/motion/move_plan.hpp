@@ -93,6 +93,8 @@ constexpr bool is_admissible(const CountPosition& distance, std::int64_t N1, con
 /// arithmetic of a plan has room for twice as much.
 inline constexpr std::int64_t kFarthestMove = move_planning::kLongest * (kMostMotion >> kFractionBits);
 
+inline constexpr std::int32_t kWholeVelocity = 1 << 16;  ///< shares of the velocity limit are parts of it
+
 /// The shortest plan, to within the rounding of its durations up to whole samples. `limits` have passed check(). Pure
 /// and bounded (some 60 trial durations), but it divides: run it outside the control interrupt.
 constexpr MovePlanResult plan_move(CountPosition distance, const MotionLimits& limits) {

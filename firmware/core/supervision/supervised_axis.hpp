@@ -85,11 +85,11 @@ class SupervisedAxis {
     if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_to(target);
   }
-  constexpr MovePlanResult plan_move_by(std::int64_t counts) const {
+  constexpr MovePlanResult plan_move_by(std::int64_t counts, std::int32_t unhomed_share = kWholeVelocity) const {
     const std::int64_t here = axis_.telemetry().reference.counts;
     const TravelMonitor<Scalar>& travel = monitors_.travel();
     if (is_homed() ? !travel.has_way(here, counts) : travel.is_longer(counts)) return {{}, Refusal::outside_travel};
-    return axis_.plan_move_by(counts);
+    return axis_.plan_move_by(counts, is_homed() ? kWholeVelocity : unhomed_share);
   }
   /// False at a limit of travel that a jog of this velocity would pass.
   constexpr bool has_room_towards(Scalar velocity) const {

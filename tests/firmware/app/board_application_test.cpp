@@ -179,6 +179,42 @@ TYPED_TEST(BoardMotion, AMoveBeyondAllCountingIsRefused) {
   }
 }
 
+/// Until it is homed nobody knows how much room an axis has.
+TYPED_TEST(BoardMotion, AnAxisThatIsNotHomedHasAVelocityLimitOfItsOwn) {
+  typename TestFixture::Bench bench;
+  bench.fit_and_enable_x(5.0);
+  ASSERT_EQ(bench.ask(MessageType::disable, firmware::AxesRequest{1}).status, Status::ok);
+  bench.run(50);
+  ParameterValues values = bench.application.active();
+  set(values, "x.limits.unhomed_velocity", 20);
+  ASSERT_EQ(bench.download(values).status, Status::ok);
+  bench.run(200);
+  ASSERT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{1}).status, Status::ok);
+  bench.run(5);
+  const auto jog = [&](float velocity) { return bench.ask(MessageType::jog, firmware::JogRequest{0, {}, velocity}); };
+  EXPECT_EQ(jog(60.0F).status, Status::ok) << "homed";
+  bench.run(200);
+  bench.ask(MessageType::stop);
+  bench.run(300);
+  bench.application.axes()[0].forget_home();
+  for (const float fast : {20.1F, -20.1F, 1e30F}) {
+    firmware::RefusedValuePayload refused;
+    const firmware::Message reply = jog(fast);
+    EXPECT_EQ(reply.status, Status::bad_value) << fast;
+    ASSERT_TRUE(reply.get(refused));
+    EXPECT_EQ(refused.key, firmware::key_at(firmware_test::place_named("x.limits.unhomed_velocity")).code);
+  }
+  const std::int64_t before = bench.status().axis[0].counts();
+  ASSERT_EQ(bench.ask(MessageType::move, firmware::MoveRequest::by(0, 8192)).status, Status::ok);  // 20 mm
+  bench.run(900);
+  const double way_mm = static_cast<double>(bench.status().axis[0].counts() - before) * 0.00244140625;
+  EXPECT_GT(way_mm, 15.0);
+  EXPECT_LT(way_mm, 18.1) << "faster than 20 mm/s";
+  bench.run(300);
+  EXPECT_NEAR(static_cast<double>(bench.status().axis[0].counts() - before), 8192.0, 2.0);
+  EXPECT_EQ(jog(-20.0F).status, Status::ok);
+}
+
 /// Control periods of 1 ms from the last request to the beginning of the stop, and that it ends well.
 template <typename Bench>
 int periods_until_a_stop(double timeout_s) {
