@@ -15,9 +15,9 @@ std::string name_of(const CirclePass& pass) {
 std::string detail(const CircleFinding& found) {
   const CircleCause& cause = found.cause;
   if (cause.period_mm)
-    return fmt::format("{:.2f} um every {:.3g} mm{}", found.amount, *cause.period_mm,
+    return fmt::format("{:.2f} µm every {:.3g} mm{}", found.amount, *cause.period_mm,
                        found.period_turns ? fmt::format(" ({:.3g} turns)", *found.period_turns) : "");
-  if (cause.frequency_Hz) return fmt::format("{:.2f} um at {:.3g} Hz", found.amount, *cause.frequency_Hz);
+  if (cause.frequency_Hz) return fmt::format("{:.2f} µm at {:.3g} Hz", found.amount, *cause.frequency_Hz);
   return fmt::format("{:.3g} {}", found.amount, cause.amount_unit);
 }
 
@@ -32,9 +32,9 @@ Table causes_table(const CircleDiagnosis& diagnosis) {
   Table table;
   table.title = "Causes";
   table.caption =
-      "um: what each cause alone adds to the circular deviation of both directions (largest less smallest "
+      "µm: what each cause alone adds to the circular deviation of both directions (largest less smallest "
       "radial deviation), with its 95 % interval. Causes below a twentieth of the whole stand last.";
-  table.headings = {"cause", "axis", "um", "95 %", "probability", "size", "or instead"};
+  table.headings = {"cause", "axis", "µm", "95 %", "probability", "size", "or instead"};
   for (const auto* const list : {&diagnosis.causes, &diagnosis.minor})
     for (const CircleFinding& found : *list)
       table.rows.push_back({found.cause.kind, found.cause.axis, fmt::format("{:.2f}", found.um),
@@ -45,7 +45,7 @@ Table causes_table(const CircleDiagnosis& diagnosis) {
 
 Table figures_table(const CircleDiagnosis& diagnosis) {
   Table table;
-  table.title = "Terms of ISO 230-4, um";
+  table.title = "Terms of ISO 230-4, µm";
   table.caption =
       "G: circular deviation, largest less smallest radius about the best centre. F: radial deviation from "
       "the nominal circle, largest and smallest. G(b): circular deviation of both directions together. H: "
@@ -79,7 +79,7 @@ PolarPlot as_seen(const CircleDiagnosis& diagnosis) {
 
 PolarPlot share_of(const CircleDiagnosis& diagnosis, const CircleFinding& found) {
   PolarPlot plot;
-  plot.title = fmt::format("{} {}: {:.2f} um", found.cause.kind, found.cause.axis, found.um);
+  plot.title = fmt::format("{} {}: {:.2f} µm", found.cause.kind, found.cause.axis, found.um);
   plot.caption = fmt::format("{}. Next: {}.", cause_text(found.cause.kind).title, cause_text(found.cause.kind).next);
   plot.radius_mm = diagnosis.passes.front().radius_mm;
   for (const CirclePass& pass : diagnosis.passes) plot.traces.push_back(trace_of(pass, share_along(found, pass)));
@@ -96,7 +96,7 @@ Verdict verdict_of(const CircleDiagnosis& diagnosis) {
     const CircleFinding& first = diagnosis.causes.front();
     verdict.tone = Tone::attention;
     verdict.label = "cause found";
-    verdict.headline = fmt::format("{}{}: {:.2f} um ({:.2f} to {:.2f}), probability {:.3f}.", first.cause.kind,
+    verdict.headline = fmt::format("{}{}: {:.2f} µm ({:.2f} to {:.2f}), probability {:.3f}.", first.cause.kind,
                                    first.cause.axis == "xy" ? "" : " of " + first.cause.axis, first.um, first.ci95[0],
                                    first.ci95[1], first.probability);
     verdict.sentences.push_back(
@@ -121,7 +121,7 @@ Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtit
   report.section("What was seen");
   report.add(as_seen(diagnosis));
   report.add(figures_table(diagnosis));
-  report.section("Why", fmt::format("What no cause takes: {:.2f} um RMS beyond noise.", diagnosis.rest_um));
+  report.section("Why", fmt::format("What no cause takes: {:.2f} µm RMS beyond noise.", diagnosis.rest_um));
   report.add(causes_table(diagnosis));
   for (const CircleFinding& found : diagnosis.causes) report.add(share_of(diagnosis, found));
   report.section("What stays unknown");
@@ -132,7 +132,7 @@ Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtit
 std::string circle_text(const CircleDiagnosis& diagnosis, const Terminal& terminal) {
   std::string text = terminal_verdict(verdict_of(diagnosis), terminal);
   if (!diagnosis.causes.empty()) text += terminal_table(causes_table(diagnosis), terminal);
-  text += fmt::format("What no cause takes: {:.2f} um RMS beyond noise.\n\n", diagnosis.rest_um);
+  text += fmt::format("What no cause takes: {:.2f} µm RMS beyond noise.\n\n", diagnosis.rest_um);
   text += terminal_table(figures_table(diagnosis), terminal);
   return text + terminal_table(unseen_table(diagnosis), terminal);
 }

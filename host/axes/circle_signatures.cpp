@@ -243,6 +243,12 @@ std::vector<CircleCause> plain_causes(const CircleRows& rows) {
   return list;
 }
 
+bool shows_through(double frequency_Hz, double row_s) {
+  constexpr double kLeast = 0.2;
+  const double half = kPi * frequency_Hz * row_s;
+  return std::abs(std::sin(half)) > kLeast * half;
+}
+
 CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double value) {
   constexpr double kPlaces = 200.0;  // periods or frequencies that differ within a circle
   using Wave = double (*)(double);
@@ -251,7 +257,7 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
   if (kind == WaveKind::vibration) {
     for (std::size_t i = 0; i < rows.passes().size(); ++i)
       for (const Wave wave : waves)
-        if (value * rows.row_s(i) < kMostCyclesARow)
+        if (shows_through(value, rows.row_s(i)))
           signatures.emplace_back([=, own = &rows.passes()[i]](const CirclePass& pass, std::size_t k) {
             return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
           });

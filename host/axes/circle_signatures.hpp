@@ -68,8 +68,10 @@ struct CircleCause {
   std::string amount_unit = "um";
 };
 
-/// Cycles of a wave that a row may span and still show it.
+/// Cycles of a wave that a row of the fastest pass may span and still show it.
 inline constexpr double kMostCyclesARow = 0.4;
+/// Whether the mean over rows of a pass leaves something of a wave: also as an alias, which its signature then shows.
+bool shows_through(double frequency_Hz, double row_s);
 
 enum class WaveKind { cyclic_error, torque_ripple, vibration };
 

@@ -26,7 +26,7 @@ class WaveSearch {
     along_ = rows.angle_rad().array() - (axis == 'x' ? 0.0 : 0.5 * std::numbers::pi);
     along_ = along_.array().cos();
     constexpr double kTurns = 8.0;  // fewer cycles a turn are a form of the circle
-    lowest_ = over_time() ? kTurns * turn_Hz : 0.75 / radius_;
+    lowest_ = over_time() ? kTurns * turn_Hz : 1.5 / radius_;
     highest_ = 0.99 * kMostCyclesARow / rows.row_s() / (over_time() ? 1.0 : feed_);
     step_ = over_time() ? 0.3 / duration_s_ : 0.15 / radius_;
   }
@@ -61,7 +61,7 @@ class WaveSearch {
     Vector2d pull = Vector2d::Zero(), own = Vector2d::Zero();
     for (const CircleBlock& block : rows_.blocks()) {
       if (kind_ == WaveKind::cyclic_error && !block.is_outer) continue;
-      if (over_time() && rate * rows_.row_s(block.pass) >= kMostCyclesARow) continue;
+      if (over_time() && !shows_through(rate, rows_.row_s(block.pass))) continue;
       const double cycles = 2.0 * std::numbers::pi * rate;
       const double radius = rows_.passes()[block.pass].radius_mm;
       // Rows are evenly spaced in time: the phase turns by as much from each to the next.

@@ -186,10 +186,10 @@ def trial(seed: int, folder: Path) -> dict[str, object]:
     done = subprocess.run([AXISTOOL, "circle", str(record), "--json", "-"], capture_output=True, text=True)
     assert done.returncode == 0, f"seed {seed}: {done.stderr}"
     found = json.loads(done.stdout)
-    named = {one["kind"] + ("" if one["axis"] == "xy" else " " + one["axis"]): one for one in found["causes"]}
+    named = {one["kind"] + ("" if one["axis"] == "xy" else " " + one["axis"]): one for one in reversed(found["causes"])}
     sizes = true_sizes(causes, draw, has_bar, motor)
     off = {name: (named[name]["um"], sizes[name]) for name in sizes if name in named}
-    result = {"right": set(named) == set(sizes), "false": set(named) - set(sizes), "missed": set(sizes) - set(named),
+    result = {"right": set(named) == set(sizes) and len(found["causes"]) == len(sizes), "false": set(named) - set(sizes), "missed": set(sizes) - set(named),
               "sized": sum(abs(a - b) <= max(0.1 * b, 0.5) for a, b in off.values()), "sizes": len(off),
               "unseen": [name for name in named if not has_bar and name in TABLE],
               "within": sum(named[n]["ci95"][0] <= b <= named[n]["ci95"][1] for n, (_, b) in off.items()),
