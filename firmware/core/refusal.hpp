@@ -40,6 +40,7 @@ enum class Refusal : std::uint16_t {
   backlash_crossing = 226,          ///< on, and not 1..4096 samples
   homing = 241,                     ///< not by an operator, and a velocity 0, creep or a way not above 0
   amplifier_ready = 247,            ///< the ready input on, and no time for it; or a time below 0
+  brake_feedback = 248,             ///< a brake, and no tachometer that shows a dead encoder at rest
   index_spacing = 251,              ///< below 0
   filters = 273,                    ///< on, and not below 0.45 of the rate; or the loop with them does not settle
   controller_is_enabled = 1 << 12,  ///< parameters change only while the axis is disabled

@@ -89,6 +89,9 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
     case Refusal::filters:
       return "with notch and low_pass as they are the loop would not settle, or one of them is not below 0.45 of the "
              "control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
+    case Refusal::brake_feedback:
+      return "an axis with a brake may fall, and while it stands a dead encoder shows by a tachometer alone: fit one "
+             "(tachometer.fitted), or leave the brake to the amplifier (brake.fitted = false)";
     case Refusal::following_error:
       return following_error_relation(p);
     case Refusal::disagreement:

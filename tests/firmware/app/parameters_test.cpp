@@ -233,6 +233,7 @@ TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
                                       {Refusal::backlash_crossing, "backlash.crossing_time"},
                                       {Refusal::homing, "homing.velocity"},
                                       {Refusal::amplifier_ready, "amplifier.ready_time"},
+                                      {Refusal::brake_feedback, "brake.fitted"},
                                       {Refusal::index_spacing, "encoder.index_spacing"},
                                       {Refusal::filters, "notch.frequency"}}) {
     const auto* const row =

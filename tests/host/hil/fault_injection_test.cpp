@@ -113,6 +113,7 @@ void set_up_start(FaultTrial& trial, Random& random) {
     trial.motion = TrialMotion::starting;
     trial.start.brake = false;
   }
+  trial.tachometer = trial.tachometer || trial.start.brake;  // as the board wants it
   trial.start.ready_ms = any_of(random, 0, 250);
   if (either(random) && trial.motion != TrialMotion::starting) trial.start.ready_ms = 0;
   if (trial.start.ready_input || trial.motion == TrialMotion::starting)

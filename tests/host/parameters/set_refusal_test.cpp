@@ -82,6 +82,14 @@ TEST(SetRefusal, TheCeilingsThatAreSaidAreThoseThatHold) {
   }
 }
 
+/// Catches a weight that sinks unseen: its encoder is dead, and nothing moves by command.
+TEST(SetRefusal, ABrakeNeedsFeedbackAtRest) {
+  const std::string said = said_after({{"x.brake.fitted", 1}, {"x.tachometer.fitted", 0}, {"x.kalman.k12", 0}});
+  EXPECT_TRUE(says(said, "x.brake.fitted")) << said;
+  EXPECT_TRUE(says(said, "fit one")) << said;
+  EXPECT_EQ(said_after({{"x.brake.fitted", 1}}), "");
+}
+
 TEST(SetRefusal, ASlowerVelocityLimitNeedsNoOtherMonitors) {
   for (const double velocity : {1.0, 5.0, 50.0})
     EXPECT_EQ(said_after({{"x.limits.velocity", velocity}}), "") << velocity;
