@@ -88,7 +88,7 @@ std::string from_windows_1252(const std::string& text) {
 }  // namespace
 
 std::string as_utf8(std::string text) {
-  if (text.starts_with("\xEF\xBB\xBF")) return text.substr(3);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a mark promises nothing about the bytes after it
   if (text.starts_with("\xFF\xFE")) return from_utf16(text, 2, false);
   if (text.starts_with("\xFE\xFF")) return from_utf16(text, 2, true);
   if (text.size() >= 4 && text[1] == '\0' && text[0] != '\0' && text[3] == '\0') return from_utf16(text, 0, false);

@@ -73,6 +73,7 @@ template <hal::SerialPort Port>
 void report_fault(TextWriter<Port>& out, const FaultRecord& fault) {
   out << "fault: " << name_of(fault.kind);
   if (fault.unexpected_interrupt != 0) out << ", unexpected exception " << fault.unexpected_interrupt;
+  if (fault.stack_overflow != 0) out << ", stack overflow";
   (out << "\nfault: outputs made safe " << fault.outputs_made_safe << "\nfault: pc ").hex(fault.pc);
   (out << " lr ").hex(fault.lr);
   (out << " sp ").hex(fault.sp);

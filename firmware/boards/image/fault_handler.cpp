@@ -20,6 +20,11 @@ constexpr std::uint32_t kStackGuardLog2 = 8;  // 256 bytes, as in sections.ld
 constexpr std::uint32_t kNullLog2 = 20;       // 1 MB from address 0, where the STM32F405 shows its flash once more
 constexpr std::uint32_t kFrameWords = 8;      // r0-r3, r12, lr, pc, xpsr: ARMv7-M ARM, B1.5.6
 
+bool in_guard(std::uint32_t address) {
+  return address >= reinterpret_cast<std::uint32_t>(_stack_guard) &&
+         address < reinterpret_cast<std::uint32_t>(_stack_bottom);
+}
+
 bool holds_frame(const std::uint32_t* stack) { return stack >= _stack_bottom && stack + kFrameWords <= _stack_top; }
 
 }  // namespace
@@ -86,6 +91,8 @@ extern "C" [[gnu::used, noreturn]] void record_fault(const std::uint32_t* stack,
 #else
   const bool stacked = true;
 #endif
+  // An interrupt's frame that does not fit leaves no address (ARMv7-M ARM, B3.2.15).
+  if (!stacked || stack < _stack_bottom || in_guard(fault.mmfar)) fault.stack_overflow = 1;
   if (stacked && holds_frame(stack)) {
     fault.frame_valid = 1;
     for (std::uint32_t i = 0; i < 4; ++i) fault.r[i] = stack[i];

@@ -129,6 +129,7 @@ TEST(LoggerFormats, Utf16OfBothKindsWithAndWithoutMark) {
   for (const bool big : {false, true})
     for (const bool marked : {false, true}) expect_the_log(import(utf16(text, big, marked), ""));
   EXPECT_EQ(host::as_utf8(std::string("\xFF\xFE\xB0\0\x3D\xD8\0\xDE", 8)), "\xC2\xB0\xF0\x9F\x98\x80");
+  EXPECT_EQ(host::as_utf8("\xEF\xBB\xBF\xB0"), "\xC2\xB0");  // a UTF-8 mark before a byte of Windows-1252
   const std::string record = "# format: axis-record/1\n" + text;
   expect_the_log(host::parse_record(utf16(record, false, true), "r.csv"));
 }
