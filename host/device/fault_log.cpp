@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <ranges>
-
 #include "firmware/core/supervision/fault_latch.hpp"
 #include "host/device/board_report.hpp"
 
@@ -21,7 +19,8 @@ double hours(std::uint32_t seconds) { return static_cast<double>(seconds) / 3600
 
 std::string fault_log_text(const FaultLog& log, const firmware::ParameterValues* values) {
   std::string text;
-  for (const firmware::LoggedFault& one : log.faults | std::views::reverse) {
+  for (auto at = log.faults.rbegin(); at != log.faults.rend(); ++at) {
+    const firmware::LoggedFault& one = *at;
     const auto place = place_of_counts(one.counts(), one.axis, values);
     text += fmt::format(
         "#{:<4} {:9.2f} h  {}  {}, {}, at {}{}\n", one.number, hours(one.run_s), firmware::kAxisNames[one.axis],

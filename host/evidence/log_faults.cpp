@@ -204,10 +204,15 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
   }
   if (const std::optional<double> samples = command_shift(record, model)) {
     const double shift_s = *samples * record.sample_period_s;
-    faults.add(
-        LogFaultKind::time_shift, record.u_V.empty() ? &Record::i_A : &Record::u_V, record.t_s.front(), shift_s,
-        fmt::format("the axis answers {:g} ms ({} samples) {} its command, which no drive does: shift the column",
-                    1e3 * std::abs(shift_s), std::abs(*samples), shift_s > 0.0 ? "before" : "after"));
+    // A filtered current is logged late by whole samples; a command that is late, or a current that is early, is not.
+    const bool late_current = record.u_V.empty() && shift_s > 0.0;
+    faults.add(LogFaultKind::time_shift, record.u_V.empty() ? &Record::i_A : &Record::u_V, record.t_s.front(), shift_s,
+               late_current
+                   ? fmt::format("runs {:g} ms ({} samples) behind the motion that it causes", 1e3 * shift_s, *samples)
+                   : fmt::format("the axis answers {:g} ms ({} samples) {} its command, which no drive does: shift "
+                                 "the column",
+                                 1e3 * std::abs(shift_s), std::abs(*samples), shift_s > 0.0 ? "before" : "after"),
+               !late_current);
   }
 }
 

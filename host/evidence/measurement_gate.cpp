@@ -15,6 +15,7 @@
 #include "host/record/columns.hpp"
 #include "host/record/read_record.hpp"
 #include "host/record/record_origin.hpp"
+#include "host/statistics.hpp"
 
 namespace host {
 
@@ -100,7 +101,7 @@ std::vector<LogFault> MeasurementGate::check(Record& record) const {
       record.w.clear();
       fault.message += "; left out here";
     }
-    if (fault.kind == LogFaultKind::time_shift && !fault.fatal && record.has_speed()) {
+    if (fault.kind == LogFaultKind::time_shift && !fault.fatal && fault.channel == name_in_file(record, &Record::w)) {
       shift_back(record, &Record::w, static_cast<int>(std::lround(fault.size / record.sample_period_s)));
       fault.message += "; shifted back here";
     }
@@ -168,6 +169,35 @@ void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<R
                                 file_name(odd), column, what, disagreement->factor, why)});
 }
 
+void MeasurementGate::shift_late_currents(std::vector<Record>& training, std::vector<Record>& validation,
+                                          std::vector<LogFault>& faults) const {
+  const std::string current(name_in_file(training.front(), &Record::i_A));
+  const auto is_late = [&](const LogFault& fault) {
+    return fault.kind == LogFaultKind::time_shift && !fault.fatal && fault.channel == current;
+  };
+  std::vector<double> shifts_s;
+  for (const LogFault& fault : faults)
+    if (is_late(fault)) shifts_s.push_back(fault.size);
+  if (shifts_s.empty()) return;
+  const double shared_s = median(std::move(shifts_s));
+  for (auto* role : {&training, &validation})
+    for (Record& record : *role) {
+      if (!record.u_V.empty() || record.i_A.empty()) continue;
+      const auto own = std::ranges::find_if(
+          faults, [&](const LogFault& fault) { return is_late(fault) && fault.record == record.path; });
+      const double shift_s = own != faults.end() ? own->size : shared_s;
+      shift_back(record, &Record::i_A, static_cast<int>(std::lround(shift_s / record.sample_period_s)));
+      if (own != faults.end())
+        own->message += "; shifted back here";
+      else
+        faults.push_back({LogFaultKind::time_shift, current, record.path, record.t_s.front(), shift_s,
+                          fmt::format("{}, column {}: another record of this logger has it {:g} ms late, and this one "
+                                      "does not tell; shifted back here alike",
+                                      file_name(record), current, 1e3 * shift_s),
+                          false});
+    }
+}
+
 void MeasurementGate::share_zero(std::vector<Record>& training, std::vector<Record>& validation,
                                  std::vector<LogFault>& faults) const {
   std::vector<Record*> records;
@@ -194,6 +224,7 @@ Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Re
   std::vector<LogFault> faults;
   for (auto* role : {&training, &validation})
     for (Record& record : *role) std::ranges::move(check(record), std::back_inserter(faults));
+  if (!options_.as_logged && !any_stops(faults)) shift_late_currents(training, validation, faults);
   compare_roles(training, validation, faults);
   if (!any_stops(faults)) {
     share_zero(training, validation, faults);

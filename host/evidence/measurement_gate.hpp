@@ -12,7 +12,7 @@ namespace host {
 struct GateOptions {
   std::vector<std::string> accepted;  ///< families ("sign") or kinds ("command_sign") of faults that end nothing
   /// Rows and channels stay as they were logged. Otherwise what can be mended without a guess is: a speed that only
-  /// differences the position is left out, a tachometer that runs late by whole samples is shifted back, a record that
+  /// differences the position is left out, a tachometer or a current that runs late by whole samples is shifted back, a record that
   /// was homed anew is moved to the first one's zero, one that is given twice counts once. All of it is said in the
   /// log.
   bool as_logged = false;
@@ -35,6 +35,9 @@ class MeasurementGate {
   /// Whether one of them is fatal and not accepted.
   bool any_stops(const std::vector<LogFault>& faults) const;
   std::vector<LogFault> check(Record& record) const;
+  /// A logger that filters its current does so in all records, whether each one tells or not.
+  void shift_late_currents(std::vector<Record>& training, std::vector<Record>& validation,
+                           std::vector<LogFault>& faults) const;
   void share_zero(std::vector<Record>& training, std::vector<Record>& validation, std::vector<LogFault>& faults) const;
   void compare_roles(std::vector<Record>& training, std::vector<Record>& validation,
                      std::vector<LogFault>& faults) const;

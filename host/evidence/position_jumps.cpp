@@ -65,6 +65,15 @@ bool catches_up(const std::vector<double>& x, std::size_t k) {
   return false;
 }
 
+/// Half of the steps that are any are larger; 0 where there are none. A position that is held over several rows, or
+/// read coarsely, moves in steps that are large beside their neighbours and not beside these.
+double usual_step(const std::vector<double>& x) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < x.size(); ++k)
+    if (x[k] != x[k - 1]) steps.push_back(std::abs(x[k] - x[k - 1]));
+  return steps.empty() ? 0.0 : median(std::move(steps));
+}
+
 void note(std::size_t& count, PositionJump& first, std::size_t more, double t_s, double size) {
   if (count == 0) first = {t_s, size};
   count += more;
@@ -85,6 +94,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
                                 ? drive.effort_per_volt * largest_V / drive.inertia * period_s * period_s * drive.lead
                                 : usual_change(record.x);
   const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
+  const double usual = usual_step(record.x);
   // What a step exceeds the steps around it by.
   const auto excess = [&](std::size_t k) { return step(k) - 0.5 * (step(k - 1) + step(k + 1)); };
   std::vector<double> against_the_motion;  // sizes of new zeros
@@ -113,7 +123,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
       note(jumps.dropped, jumps.first_drop, static_cast<std::size_t>(std::lround(samples)), record.t_s[k], jump);
     } else if (catches_up(record.x, k)) {
       note(jumps.late, jumps.first_late, 1, record.t_s[k], jump);
-    } else if (std::abs(jump) > kJitter * std::max(std::abs(before), std::abs(after))) {
+    } else if (std::abs(jump) > kJitter * std::max({std::abs(before), std::abs(after), usual})) {
       note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
       if (jump * speed <= 0.0) against_the_motion.push_back(std::abs(jump));
     }

@@ -145,6 +145,14 @@ TEST_F(LogFaults, RowsThatComeLateAreNoNewZero) {
   EXPECT_FALSE(faults[0].fatal);
 }
 
+/// As of a controller that reads its position every tenth sample.
+TEST_F(LogFaults, APositionThatIsHeldOverSomeRowsIsNoNewZero) {
+  record.w.clear();
+  for (std::size_t k = 0; k < record.size(); ++k) record.x[k] = record.x[k - k % 10];
+  for (const host::LogFault& fault : host::log_faults(record, model))
+    EXPECT_NE(fault.kind, LogFaultKind::new_zero) << fault.message;
+}
+
 TEST_F(LogFaults, TachometerFilterIsPhysics) {
   const double keep = std::exp(-1.0 / 3.0);  // 3 ms
   double held = 0.0;

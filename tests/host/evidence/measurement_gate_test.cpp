@@ -102,6 +102,16 @@ const Injection kInjections[] = {
     {"late", "time_shift", false, [](Record& r, const auto&) { std::rotate(r.w.begin(), r.w.end() - 4, r.w.end()); }},
 };
 
+/// The command's current, as an ammeter logs it, `late` samples after it has flown.
+Record with_late_current(Record record, const sim::DataSheet& data, std::size_t late) {
+  record.i_A = record.u_V;
+  scale(record.i_A, data.amplifier_gain_A_per_V);
+  record.u_V.clear();
+  std::rotate(record.i_A.begin(), record.i_A.end() - static_cast<std::ptrdiff_t>(late), record.i_A.end());
+  std::fill_n(record.i_A.begin(), late, record.i_A[late]);
+  return record;
+}
+
 /// The families that the gate names; fatal ones only where `fatal`.
 std::vector<std::string> named(const Case& spoilt, bool fatal) {
   std::vector<host::LogFault> faults;
@@ -116,6 +126,31 @@ std::vector<std::string> named(const Case& spoilt, bool fatal) {
   for (const host::LogFault& fault : faults)
     if (fault.fatal == fatal) families.emplace_back(log_fault_family(fault.kind));
   return families;
+}
+
+// A logger that filters its current has it late in all its records, and two of them may not tell.
+TEST(LateCurrent, IsShiftedBackInAllRecordsOfItsLogger) {
+  constexpr std::size_t kLate = 5;
+  const Case sound(fs::path(AXIS_TEST_DATA) / "drive-cases" / "none" / "case-00");
+  Case late = sound;
+  for (auto* role : {&late.train, &late.validate})
+    for (Record& record : *role) record = with_late_current(std::move(record), sound.model.data, kLate);
+  const host::Measurements measured = host::MeasurementGate(sound.model).admit(late.train, late.validate);
+  std::size_t shifted = 0;
+  for (const host::LogFault& fault : measured.log()) {
+    if (fault.kind != host::LogFaultKind::time_shift) continue;
+    EXPECT_FALSE(fault.fatal);
+    EXPECT_EQ(fault.channel, "i_A");
+    EXPECT_NEAR(fault.size, 0.005, 1e-9) << fault.message;
+    ++shifted;
+  }
+  EXPECT_EQ(shifted, sound.train.size() + sound.validate.size());
+  const Record &mended = *measured.training_records().front(), &given = sound.train.front();
+  ASSERT_EQ(mended.size(), given.size() - kLate);
+  for (std::size_t k = 0; k < mended.size(); ++k) {
+    ASSERT_NEAR(mended.i_A[k], sound.model.data.amplifier_gain_A_per_V * given.u_V[k], 1e-12) << k;
+    ASSERT_EQ(mended.x[k], given.x[k]) << k;
+  }
 }
 
 enum class Where { training, validation, both };
