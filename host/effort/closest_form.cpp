@@ -13,7 +13,7 @@ EffortTerm closest_form(const EffortRegression& regression, const std::vector<Ef
   std::vector<const EffortTerm*> further;
   for (const EffortTerm& before : chosen) further.push_back(&before);
   further.push_back(nullptr);
-  for (double part = kFirstPart; part > kLastPart;) {
+  for (double part = kFirstPart; part > kLastPart && term.neighbours;) {
     throw_if_cancelled();
     bool closer = false;
     for (EffortTerm& neighbour : term.neighbours(part)) {

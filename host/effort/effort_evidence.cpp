@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "host/cancellation.hpp"
@@ -14,10 +15,8 @@ namespace host {
 
 namespace {
 
-/// More rows say nothing new of a dozen parameters and cost time with the square of the memory's columns.
-constexpr std::size_t kMostRows = 2500;
 /// Further waves of a kind included.
-constexpr int kMostSteps = 12;
+constexpr int kMostSteps = 16;
 /// A group of more kinds is no answer.
 constexpr std::size_t kLargestGroup = 4;
 
@@ -57,77 +56,161 @@ class Search {
 
  private:
   /// The best model with a further term, fitted to the training rows; its kinds hold the term's once.
-  bool with(EffortTerm& term, ScreenedModel& out) const {
+  bool with(const EffortTerm& term, ScreenedModel& out) const {
     std::vector<const EffortTerm*> further;
     for (const EffortTerm& before : chosen_) further.push_back(&before);
     further.push_back(&term);
     if (!regression_.fit(base_, further, out)) return false;
     out.words = term.words;
-    if (term.neighbours) term = closest_form(regression_, base_, chosen_, std::move(term), out);
     out.kinds = found_.best.kinds;
     if (!contains(out.kinds, term.kind)) out.kinds.push_back(term.kind);
     return true;
   }
 
-  /// Takes a kind that validation rows contradict out of what may come next: what the rows hold there is something that
-  /// no effect of the catalogue is.
-  void contradict(NextEffects& next, const std::string& kind) {
-    for (const NextEffect& effect : next.effects)
-      if (effect.term.kind == kind) next.nothing += effect.probability;
-    std::erase_if(next.effects, [&](const NextEffect& effect) { return effect.term.kind == kind; });
-    excluded_.push_back(kind);
+  /// The same with the form refined, from each start of its kind: the one that leaves least of the training rows.
+  bool with_closest(NextEffect& effect, ScreenedModel& out) const {
+    if (!with(effect.term, out)) return false;
+    if (!effect.term.neighbours) return true;
+    effect.term = closest_form(regression_, base_, chosen_, std::move(effect.term), out);
+    for (EffortTerm& start : effect.others) {
+      ScreenedModel tried;
+      if (!with(start, tried)) continue;
+      EffortTerm refined = closest_form(regression_, base_, chosen_, std::move(start), tried);
+      if (tried.train >= out.train) continue;
+      out = std::move(tried);
+      effect.term = std::move(refined);
+    }
+    effect.others.clear();
+    return true;
   }
 
-  /// Takes kinds that are certain, but small, out of what may come next; the others share their probability.
-  void set_aside(NextEffects& next, const std::vector<std::string>& kinds) {
+  /// Takes kinds out of what may come next; the others share their probability.
+  static void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
     std::erase_if(next.effects, [&](const NextEffect& effect) { return contains(kinds, effect.term.kind); });
     double sum = next.nothing;
     for (const NextEffect& effect : next.effects) sum += effect.probability;
     next.nothing = sum > 0.0 ? next.nothing / sum : 1.0;
     for (NextEffect& effect : next.effects) effect.probability = sum > 0.0 ? effect.probability / sum : 0.0;
-    excluded_.insert(excluded_.end(), kinds.begin(), kinds.end());
+  }
+
+  /// Motions that no fit has seen have the last word: they must be more probable with the effect, and lie nearer to a
+  /// model that has it.
+  bool is_refuted(const EffortHypotheses& hypotheses, const EffortTerm& term, const ScreenedModel& taken) const {
+    if (taken.validate >= found_.best.validate) return true;
+    std::vector<EffortTerm> all = chosen_;
+    all.push_back(term);
+    return hypotheses.held_back_log_odds(all) < 0.0;
+  }
+
+  /// Whether a fit takes enough of the squared error on validation rows: of what is left, and of what the base leaves.
+  bool is_worth_naming(const ScreenedModel& fitted) const {
+    const double before = std::pow(found_.best.validate, 2), taken = before - std::pow(fitted.validate, 2);
+    return taken >= kWorthNaming * before && taken >= kWorthOfAll * std::pow(found_.base.validate, 2);
+  }
+
+  bool is_there(const std::string& kind) const { return contains(found_.best.kinds, kind); }
+
+  static NextEffect& effect_of(NextEffects& next, const std::string& kind) {
+    return *std::ranges::find(next.effects, kind, [](const NextEffect& other) { return other.term.kind; });
+  }
+
+  NextEffects weigh(const EffortHypotheses& hypotheses) {
+    NextEffects next = hypotheses.next(chosen_, rows_.effort - found_.best.residual, excluded_,
+                                       [this](const EffortTerm& term) -> std::optional<double> {
+                                         ScreenedModel tried;
+                                         if (contains(refused_waves_, term.words) || !with(term, tried)) return {};
+                                         return tried.train;
+                                       });
+    left_ = next.fit;
+    regression_.weigh(hypotheses.weights(left_));
+    return next;
+  }
+
+  /// Kinds of which no form takes enough to be named. What is there, but takes hardly anything, is no rival of what
+  /// takes much.
+  std::vector<std::string> small_ones(NextEffects& next) const {
+    constexpr double kPossible = 1e-4;
+    std::vector<std::string> small;
+    for (NextEffect& effect : next.effects) {
+      ScreenedModel tried;
+      const bool fits = effect.probability > kPossible ? with_closest(effect, tried) : with(effect.term, tried);
+      if (!is_there(effect.term.kind) && (!fits || !is_worth_naming(tried))) small.push_back(effect.term.kind);
+    }
+    return small;
+  }
+
+  /// A wave that does not hold under one name is no other effect.
+  void refuse_wave(const std::string& form, NextEffects& next) {
+    refused_waves_.push_back(form);
+    std::vector<std::string> same;
+    for (const NextEffect& effect : next.effects)
+      if (effect.term.words == form) same.push_back(effect.term.kind);
+    take_out(next, same);
   }
 
   /// Adds the most probable effect that is certain, holds on validation rows and takes enough of the error; false where
   /// none does.
   bool step(const EffortHypotheses& hypotheses) {
-    const ScreenedModel& before = found_.best;
-    NextEffects next = hypotheses.next(chosen_, rows_.effort - before.residual, excluded_);
-    left_ = next.fit;
+    NextEffects all = weigh(hypotheses);
+    const std::vector<std::string> small = small_ones(all);
+    NextEffects next = all;
+    take_out(next, small);
     while (true) {
       double probability = 0.0;
-      const std::vector<std::string> group = certain_group(next, probability);
+      std::vector<std::string> group = certain_group(next, probability);
       found_.nothing = next.nothing;
-      if (group.empty()) return false;
-      const std::string& kind = group.front();
-      EffortTerm& term =
-          std::ranges::find(next.effects, kind, [](const NextEffect& effect) { return effect.term.kind; })->term;
+      if (group.empty()) {
+        list_small_ones(hypotheses, std::move(all));
+        return false;
+      }
+      // Where an effect that is there may have another wave, no second one is needed.
+      std::stable_partition(group.begin(), group.end(), [&](const std::string& kind) { return is_there(kind); });
+      const std::string kind = group.front();
+      NextEffect& effect = effect_of(next, kind);
+      const std::string form = effect.term.words;
       ScreenedModel taken;
-      // Motions that no fit has seen have the last word.
-      if (!with(term, taken) || taken.validate >= before.validate) {
-        contradict(next, kind);
+      if (!with_closest(effect, taken) || is_refuted(hypotheses, effect.term, taken)) {
+        if (is_there(kind)) {
+          refuse_wave(form, next);
+        } else {
+          excluded_.push_back(kind);
+          take_out(all, {kind});
+        }
+        take_out(next, {kind});
         continue;
       }
-      const bool refines = contains(before.kinds, kind);
-      const bool named = 1.0 - std::pow(taken.validate / before.validate, 2) >= kWorthNaming;
-      if (!refines) found_.certain.push_back({group, probability, before.validate, taken.validate, named});
-      if (!refines && !named) {
-        set_aside(next, group);
-        continue;
-      }
+      if (is_there(kind))
+        std::ranges::find(found_.certain, kind, [](const CertainEffect& found) { return found.group.front(); })->after =
+            taken.validate;
+      else
+        found_.certain.push_back({group, probability, found_.best.validate, taken.validate, true});
       // Of a group no second one follows: the first stands for all.
       for (const std::string& other : group)
-        if (other != kind || !term.can_repeat) excluded_.push_back(other);
-      chosen_.push_back(std::move(term));
+        if (other != kind || !effect.term.can_repeat) excluded_.push_back(other);
+      chosen_.push_back(std::move(effect.term));
       found_.best = std::move(taken);
       return true;
+    }
+  }
+
+  /// Effects that are certain beside all that was found, but too small to be named.
+  void list_small_ones(const EffortHypotheses& hypotheses, NextEffects all) {
+    while (true) {
+      double probability = 0.0;
+      const std::vector<std::string> group = certain_group(all, probability);
+      if (group.empty()) return;
+      NextEffect& effect = effect_of(all, group.front());
+      ScreenedModel taken;
+      if (!is_there(group.front()) && with_closest(effect, taken) && !is_refuted(hypotheses, effect.term, taken))
+        found_.certain.push_back({group, probability, found_.best.validate, taken.validate, false});
+      take_out(all, group);
     }
   }
 
   const EffortRows& rows_;
   std::vector<EffortTerm> base_, chosen_ = {};
   EffortRegression regression_;
-  std::vector<std::string> excluded_;
+  std::vector<std::string> excluded_, refused_waves_ = {};
   EvidenceFit left_ = {};
   EffortEvidence found_ = {};
 };
@@ -155,7 +238,7 @@ void take_mean_speeds(EffortRows& rows) {
 std::optional<EffortEvidence> weigh_effects(const sim::DriveDescription& model, const RecordSet& training,
                                             const RecordSet& validation, const std::vector<std::string>& absent) {
   if (model.find("inertia") == nullptr || !has_inverse(sim::Drive(model))) return {};
-  EffortRows rows = effort_rows(model, training, validation, kMostRows);
+  EffortRows rows = effort_rows(model, training, validation);
   if (rows.size() == 0) return {};
   if (rows.steady) take_mean_speeds(rows);
   const double effort = root_mean_square(rows, rows.effort, false);

@@ -34,8 +34,22 @@ constexpr double kInstantKnownTo = 0.25;
 constexpr double kOutOfReach = 30.0;
 constexpr std::size_t kFormsFitted = 6;  // of each ranking
 constexpr std::size_t kMostFitted = 8, kMostWavesWeighed = 24;
+constexpr std::size_t kStarts = 4;  // from which the form of one kind is refined
 
 double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
+
+/// The rows that train come first.
+Evidence of_training_rows(const EffortRows& rows, const Memory& memory, double least_noise) {
+  const auto count = static_cast<Index>(std::ranges::count(rows.judges, false));
+  std::vector<RowRun> runs = runs_of(rows);
+  std::erase_if(runs, [&](const RowRun& run) { return run.first >= count; });
+  Memory part = memory;
+  part.columns = memory.columns.topRows(count).eval();
+  return {rows.effort.head(count), std::move(runs), std::move(part), least_noise};
+}
+
+/// More rows say nothing new of a dozen parameters and cost time with the square of the memory's columns.
+constexpr std::size_t kMostRows = 2500;
 
 double longest_period_s(const EffortRows& rows) {
   double longest_s = 0.0;
@@ -100,20 +114,22 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
                                    const std::vector<EffortTerm>& base, const VectorXd& explained, double coulomb)
     : model_(model),
       rows_(rows),
+      thin_(thinned(rows, std::max<std::size_t>(1, (rows.size() + kMostRows / 2) / kMostRows))),
       coulomb_(coulomb),
-      evidence_(rows.effort, runs_of(rows), effort_memory(rows, explained, coulomb),
-                std::max(rows.noise, 1e-9 * coulomb)) {
-  const auto rows_count = static_cast<Index>(rows.size());
+      evidence_(thin_.rows.effort, runs_of(thin_.rows), effort_memory(thin_.rows, thin_.of(explained), coulomb),
+                std::max(rows.noise, 1e-9 * coulomb)),
+      training_(of_training_rows(thin_.rows, evidence_.memory(), std::max(rows.noise, 1e-9 * coulomb))) {
+  const auto rows_count = static_cast<Index>(thin_.rows.size());
   base_.columns.resize(rows_count, 0);
   std::vector<double> deviations;
-  const double size = rms(rows.effort);
+  const double size = rms(thin_.rows.effort);
   MatrixXd all(rows_count, 0);
   for (const EffortTerm& term : base) {
     if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // inertia at steady speeds
     all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
-    all.rightCols(term.columns.cols()) = term.columns;
+    all.rightCols(term.columns.cols()) = thin_.of(term.columns);
   }
-  const VectorXd factors = all.completeOrthogonalDecomposition().solve(rows.effort);
+  const VectorXd factors = all.completeOrthogonalDecomposition().solve(thin_.rows.effort);
   for (Index c = 0; c < all.cols(); ++c)
     deviations.push_back(kBaseKnownTo *
                          std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));
@@ -131,15 +147,16 @@ void EffortHypotheses::Known::add(const VectorXd& column, double deviation) {
 EffortHypotheses::Known EffortHypotheses::known_with(const std::vector<EffortTerm>& chosen) const {
   Known known = base_;
   // What was found stands: its size is known to the widest tail.
-  for (const EffortTerm& term : chosen)
-    for (Index c = 0; c < term.columns.cols(); ++c)
-      known.add(term.columns.col(c),
-                kTails[kTailCount - 1] * kUsual * coulomb_ / std::max(rms(term.columns.col(c)), 1e-300));
+  for (const EffortTerm& term : chosen) {
+    const MatrixXd columns = thin_.of(term.columns);
+    for (Index c = 0; c < columns.cols(); ++c)
+      known.add(columns.col(c), kTails[kTailCount - 1] * kUsual * coulomb_ / std::max(rms(columns.col(c)), 1e-300));
+  }
   return known;
 }
 
 NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const VectorXd& explained,
-                                   const std::vector<std::string>& excluded) const {
+                                   const std::vector<std::string>& excluded, const PlainFit& plain_fit) const {
   sim::DriveDescription held = model_;
   for (const EffortTerm& term : chosen)
     if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
@@ -147,7 +164,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   Known known = known_with(chosen);
   // When the torque or force acts is known to a part of a sample: a nuisance, unless a delay is what is missing.
   for (const EffortTerm& term : terms)
-    if (term.kind == "input_delay") known.add(term.columns.col(0), kInstantKnownTo * longest_period_s(rows_));
+    if (term.kind == "input_delay") known.add(thin_.of(term.columns.col(0)), kInstantKnownTo * longest_period_s(rows_));
   NextEffects found;
   found.fit = evidence_.fit(known.columns, known.deviations);
   constexpr int kAgain = 3;  // the fixed point of the sizes may be slow
@@ -168,14 +185,14 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   const auto is_excluded = [&](const std::string& kind) { return std::ranges::find(excluded, kind) != excluded.end(); };
   for (const EffortTerm& term : terms) {
     if (is_excluded(term.kind)) continue;
-    std::optional<Form> form = form_of(term.kind, term.columns, term.sign, [&term] { return term; });
+    std::optional<Form> form = form_of(term.kind, thin_.of(term.columns), term.sign, [&term] { return term; });
     counts[term.kind] += 1.0;
     if (form) forms[term.kind].push_back(*std::move(form));
   }
   if (rows_.has_position) {
     const VectorXd one = VectorXd::Ones(rows_.w.size());
     const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
-    const VectorXd left = rows_.effort - explained;
+    const VectorXd left = thin_.of(rows_.effort - explained);
     for (const auto& [kind, weight, longest] : {std::tuple<std::string, const VectorXd*, double>{"cogging", &one, 1.0},
                                                 {"torque_ripple", &explained, 1.0},
                                                 {"position_dependent_friction", &direction, 2.0}}) {
@@ -186,8 +203,9 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       if (kind == "position_dependent_friction")
         std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
       counts[kind] += static_cast<double>(waves.size());
-      for (const Wave& wave : most_promising(waves, rows_, *weight, left)) {
-        std::optional<Form> form = form_of(kind, wave_columns(rows_, *weight, wave), {0, 0},
+      const VectorXd thin_weight = thin_.of(*weight);
+      for (const Wave& wave : most_promising(waves, thin_.rows, thin_weight, left)) {
+        std::optional<Form> form = form_of(kind, wave_columns(thin_.rows, thin_weight, wave), {0, 0},
                                            [this, kind = std::string(kind), weight = *weight, wave] {
                                              return wave_term(model_, rows_, kind, weight, wave);
                                            });
@@ -199,15 +217,19 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   // Approximate evidence of every form at several sizes, at the memory that was found and without one.
   VectorXd scales(kTailCount);
   for (Index s = 0; s < kTailCount; ++s) scales(s) = kTails[s] * kUsual * coulomb_;
+  struct Fitted {
+    double log_odds, train;
+    EffortTerm term;
+  };
   struct Kind {
     std::string name;
     std::vector<Weighed> ranked[2];  ///< by their gain at the memory that was found, and without a memory
-    double best = -HUGE_VAL, log_odds = -HUGE_VAL;
-    std::optional<EffortTerm> term;
+    double best = -HUGE_VAL;
+    std::vector<Fitted> fitted;
   };
   std::vector<Kind> kinds;
   std::mutex better;
-  for (const auto& [name, list] : forms) kinds.push_back({name, {}, -HUGE_VAL, -HUGE_VAL, {}});
+  for (const auto& [name, list] : forms) kinds.push_back({name, {}, -HUGE_VAL, {}});
   for_each_in_parallel(kinds.size(), [&](std::size_t k) {
     Kind& kind = kinds[k];
     for (const bool without : {false, true}) {
@@ -222,15 +244,15 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     }
   });
   std::ranges::stable_sort(kinds, std::greater(), &Kind::best);
-  while (!kinds.empty() && kinds.size() > kMostFitted && kinds.back().best < kinds.front().best - kOutOfReach)
-    kinds.pop_back();
+  std::size_t in_reach = kinds.size();
+  while (in_reach > kMostFitted && kinds[in_reach - 1].best < kinds.front().best - kOutOfReach) --in_reach;
 
   struct Trial {
     std::size_t kind, rank;
     bool without;
   };
   std::vector<Trial> trials;
-  for (std::size_t k = 0; k < kinds.size(); ++k)
+  for (std::size_t k = 0; k < in_reach; ++k)
     for (const bool without : {false, true}) {
       std::vector<const Form*> tried;
       const std::vector<Weighed>& ranked = kinds[k].ranked[without ? 1 : 0];
@@ -257,20 +279,58 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     const double spread = trials[index].rank == 0 ? log_sum(gains) : 0.0;  // over the forms beside the best
     const double log_odds = fit.log_evidence - now.log_evidence + spread -
                             std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
+    EffortTerm term = weighed.form->term();
+    const std::optional<double> train = plain_fit(term);
+    if (!train) return;
     const std::lock_guard lock(better);
-    if (log_odds <= kinds[k].log_odds) return;
-    kinds[k].log_odds = log_odds;
-    kinds[k].term = weighed.form->term();
+    kinds[k].fitted.push_back({log_odds, *train, std::move(term)});
   });
+  // What was out of reach stands in the list by its approximate gain.
+  for (std::size_t k = in_reach; k < kinds.size(); ++k)
+    for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
+      if (ranked.empty()) continue;
+      const double log_odds = ranked.front().log_gain - std::log(counts.at(kinds[k].name) * kTailCount);
+      kinds[k].fitted.push_back({log_odds, 1.0, ranked.front().form->term()});
+    }
+  std::erase_if(kinds, [](const Kind& kind) { return kind.fitted.empty(); });
   std::vector<double> logs{std::log(kNothingMore)};
-  for (const Kind& kind : kinds)
-    logs.push_back(kind.log_odds + std::log((1.0 - kNothingMore) / static_cast<double>(forms.size())));
+  for (Kind& kind : kinds) {
+    std::ranges::stable_sort(kind.fitted, std::greater(), &Fitted::log_odds);
+    logs.push_back(kind.fitted.front().log_odds + std::log((1.0 - kNothingMore) / static_cast<double>(forms.size())));
+  }
   const std::vector<double> probabilities = posterior(logs);
   found.nothing = probabilities.front();
-  for (std::size_t k = 0; k < kinds.size(); ++k)
-    if (kinds[k].term) found.effects.push_back({*std::move(kinds[k].term), kinds[k].log_odds, probabilities[k + 1]});
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    std::vector<Fitted>& fitted = kinds[k].fitted;
+    NextEffect effect{std::move(fitted.front().term), {}, fitted.front().log_odds, probabilities[k + 1]};
+    std::ranges::stable_sort(fitted.begin() + 1, fitted.end(), {}, &Fitted::train);
+    if (effect.term.neighbours)
+      for (std::size_t other = 1; other < std::min(fitted.size(), kStarts); ++other)
+        effect.others.push_back(std::move(fitted[other].term));
+    found.effects.push_back(std::move(effect));
+  }
   std::ranges::stable_sort(found.effects, std::greater(), &NextEffect::probability);
   return found;
+}
+
+VectorXd EffortHypotheses::weights(const EvidenceFit& fit) const {
+  return thin_.spread((fit.noise * fit.noise * fit.weights).cwiseMin(1.0), rows_.w.size());
+}
+
+double EffortHypotheses::log_evidence(const std::vector<EffortTerm>& chosen) const {
+  const Known known = known_with(chosen);
+  return evidence_.fit(known.columns, known.deviations).log_evidence;
+}
+
+double EffortHypotheses::training_log_evidence(const std::vector<EffortTerm>& chosen) const {
+  const Known known = known_with(chosen);
+  return training_.fit(known.columns.topRows(training_.rows().size()), known.deviations).log_evidence;
+}
+
+double EffortHypotheses::held_back_log_odds(const std::vector<EffortTerm>& chosen) const {
+  const std::vector<EffortTerm> without(chosen.begin(), chosen.end() - 1);
+  return log_evidence(chosen) - training_log_evidence(chosen) -
+         (log_evidence(without) - training_log_evidence(without));
 }
 
 double EffortHypotheses::memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const {

@@ -1,6 +1,8 @@
 // Which effect comes next, by evidence: every form of every effect as columns of the force balance.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +15,9 @@ namespace host {
 /// One kind in its most probable form, given what was chosen before.
 struct NextEffect {
   EffortTerm term;
-  double log_odds = 0.0;     ///< against nothing more, forms and sizes averaged out, nats
-  double probability = 0.0;  ///< among all kinds and nothing more
+  std::vector<EffortTerm> others;  ///< further forms to start a refinement from, where the kind has any
+  double log_odds = 0.0;           ///< against nothing more, forms and sizes averaged out, nats
+  double probability = 0.0;        ///< among all kinds and nothing more
 };
 
 /// What may come next, most probable first.
@@ -23,6 +26,9 @@ struct NextEffects {
   double nothing = 1.0;  ///< probability that no effect of the catalogue is missing
   EvidenceFit fit;       ///< without a further effect
 };
+
+/// Plain training error of a form beside what was chosen before; nothing where it has no room within physics.
+using PlainFit = std::function<std::optional<double>(const EffortTerm&)>;
 
 /// The force balance of one drive, with what is fitted in every hypothesis: base and effects chosen so far.
 class EffortHypotheses {
@@ -34,10 +40,20 @@ class EffortHypotheses {
 
   /// Fits all kinds but those `excluded` beside the terms chosen so far.
   NextEffects next(const std::vector<EffortTerm>& chosen, const Eigen::VectorXd& explained,
-                   const std::vector<std::string>& excluded) const;
+                   const std::vector<std::string>& excluded, const PlainFit& plain_fit) const;
+
+  /// ln p of the rows with these terms beside the base.
+  double log_evidence(const std::vector<EffortTerm>& chosen) const;
+
+  /// ln of the odds for the last of these terms by the rows that judge, once the others have been seen: ln p(judging
+  /// rows | training rows, with it) less the same without it.
+  double held_back_log_odds(const std::vector<EffortTerm>& chosen) const;
 
   /// ln of the odds that a memory is needed beside the chosen terms: something depends on a coordinate.
   double memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const;
+
+  /// How far a fit takes each row for no outlier, 0 to 1.
+  Eigen::VectorXd weights(const EvidenceFit& fit) const;
 
   const Memory& memory() const { return evidence_.memory(); }
 
@@ -48,12 +64,14 @@ class EffortHypotheses {
     void add(const Eigen::VectorXd& column, double deviation);
   };
   Known known_with(const std::vector<EffortTerm>& chosen) const;
+  double training_log_evidence(const std::vector<EffortTerm>& chosen) const;
 
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
+  ThinnedRows thin_;
   Known base_;
   double coulomb_;
-  Evidence evidence_;
+  Evidence evidence_, training_;  ///< of all rows, and of those that train
 };
 
 }  // namespace host

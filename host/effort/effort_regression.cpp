@@ -21,6 +21,11 @@ EffortRegression::EffortRegression(const sim::DriveDescription& model, const Eff
   effort_validate_ = root_mean_square(rows, rows.effort, true);
 }
 
+void EffortRegression::weigh(const VectorXd& weights) {
+  for (Index k = 0; k < train_.size(); ++k)
+    if (!rows_.judges[static_cast<std::size_t>(k)]) train_(k) = weights(k);
+}
+
 bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vector<const EffortTerm*>& further,
                            ScreenedModel& out, std::vector<std::string>* held) const {
   std::vector<const EffortTerm*> terms;
@@ -45,7 +50,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
     }
   }
   const MatrixXd seen = train_.asDiagonal() * phi;
-  const MatrixXd moments = seen.transpose() * seen;
+  const MatrixXd moments = phi.transpose() * seen;
   const VectorXd projection = seen.transpose() * effort_;
   std::vector<bool> fixed(static_cast<std::size_t>(width));
   for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = beliefs[c].held;

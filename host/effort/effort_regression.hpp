@@ -32,6 +32,9 @@ class EffortRegression {
   /// `effort`: what is left to explain, Nm or N, one element a row.
   EffortRegression(const sim::DriveDescription& model, const EffortRows& rows, const Eigen::VectorXd& effort);
 
+  /// How much each row counts, 0 to 1: less where the residual's Student distribution takes it for an outlier.
+  void weigh(const Eigen::VectorXd& weights);
+
   /// Fits the base and the further terms; false where a further term's factor has no room within physics.
   bool fit(const std::vector<EffortTerm>& base, const std::vector<const EffortTerm*>& further, ScreenedModel& out,
            std::vector<std::string>* held = nullptr) const;
@@ -58,7 +61,7 @@ class EffortRegression {
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
   const Eigen::VectorXd& effort_;          ///< what is left to explain, one element a row
-  Eigen::VectorXd train_;                  ///< 1 for rows that train, 0 for those that judge
+  Eigen::VectorXd train_;                  ///< 0 for rows that judge, else the weight, 0 to 1
   double effort_train_, effort_validate_;  ///< RMS of all that the motor gave
 };
 

@@ -165,6 +165,7 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
     if (builder.columns[0].size() <= most_rows) {
       EffortRows rows = builder.finish();
       rows.first_stamp_s = first_stamp_s(training);
+      rows.lead = model.data.lead;
       for (const RecordSet* set : {&training, &validation})
         for (const ComparedRecord& compared : set->records)
           if (compared.prepared.record->u_V.empty())
@@ -239,6 +240,44 @@ EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& trai
   rows.has_position = position;
   if (!enough(rows, false) || !enough(rows, true)) return {};
   return rows;
+}
+
+ThinnedRows thinned(const EffortRows& rows, std::size_t stride) {
+  ThinnedRows thin;
+  thin.rows = rows;
+  thin.rows.judges.clear();
+  thin.rows.block.clear();
+  thin.rows.record.clear();
+  thin.rows.fast.clear();
+  for (EffortSignals& signals : thin.rows.signals) {
+    std::vector<std::size_t> kept;
+    const std::size_t first = thin.from.size();
+    for (std::size_t k = 0; k < signals.kept.size(); k += stride) {
+      kept.push_back(signals.kept[k]);
+      thin.from.push_back(static_cast<Eigen::Index>(signals.first_row + k));
+    }
+    signals.kept = std::move(kept);
+    signals.first_row = first;
+  }
+  for (const Eigen::Index k : thin.from) {
+    const auto row = static_cast<std::size_t>(k);
+    thin.rows.judges.push_back(rows.judges[row]);
+    thin.rows.block.push_back(rows.block[row]);
+    thin.rows.record.push_back(rows.record[row]);
+    thin.rows.fast.push_back(rows.fast[row]);
+  }
+  for (auto* values : {&thin.rows.t_s, &thin.rows.x, &thin.rows.w, &thin.rows.acceleration, &thin.rows.effort})
+    *values = thin.of(*values);
+  return thin;
+}
+
+Eigen::VectorXd ThinnedRows::spread(const Eigen::VectorXd& values, Eigen::Index all) const {
+  Eigen::VectorXd spread(all);
+  for (std::size_t n = 0; n < from.size(); ++n) {
+    const Eigen::Index next = n + 1 < from.size() ? from[n + 1] : all;
+    spread.segment(from[n], next - from[n]).setConstant(values(static_cast<Eigen::Index>(n)));
+  }
+  return spread;
 }
 
 }  // namespace host

@@ -31,6 +31,7 @@ struct EffortRows {
   bool has_position = false;  ///< in every record
   bool steady = true;         ///< the speed hardly changes within the records: no inertia can be found from them
   double lowest_cutoff_Hz = 0.0;
+  double lead = 1.0;  ///< travel of one radian, mm; 1 of a linear drive
   /// The longest period of the records whose effort was measured: nobody knows when within a row each channel was read.
   /// A command is known to act from its row on.
   double unknown_order_s = 0.0;
@@ -51,5 +52,17 @@ Eigen::VectorXd travel_since_reversal(const EffortRows& rows);
 /// nothing new and cost time.
 EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
                        std::size_t most_rows = 12000);
+
+/// Every `stride`-th row of each record.
+struct ThinnedRows {
+  EffortRows rows;
+  std::vector<Eigen::Index> from;  ///< of each row, which one it was
+
+  /// The same rows of columns over all.
+  Eigen::MatrixXd of(const Eigen::MatrixXd& columns) const { return columns(from, Eigen::all); }
+  /// A value for each of all rows: of the last one before it that was kept.
+  Eigen::VectorXd spread(const Eigen::VectorXd& values, Eigen::Index all) const;
+};
+ThinnedRows thinned(const EffortRows& rows, std::size_t stride);
 
 }  // namespace host

@@ -49,6 +49,15 @@ bool write_wave(const std::string& kind, const Wave& wave, double cosine, double
   return append_within_bounds(model, std::move(entry));
 }
 
+/// Below this period waves pass faster than the filter lets through, or are made by the encoder's steps.
+double shortest_wave(const sim::DataSheet& data, const EffortRows& rows) {
+  std::vector<double> speeds(rows.w.size());
+  std::ranges::transform(rows.w, speeds.begin(), [](double w) { return std::abs(w); });
+  constexpr double kPassed = 0.8, kStepsAPeriod = 8.0;
+  const double usual = median(std::move(speeds)) * data.lead;
+  return std::max(usual / (kPassed * rows.lowest_cutoff_Hz), kStepsAPeriod * data.encoder_resolution);
+}
+
 }  // namespace
 
 double turn_of(const sim::DataSheet& data) {
@@ -56,13 +65,7 @@ double turn_of(const sim::DataSheet& data) {
 }
 
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest) {
-  const double travel = travel_of(rows), turn = turn_of(data);
-  std::vector<double> speeds(rows.w.size());
-  std::ranges::transform(rows.w, speeds.begin(), [](double w) { return std::abs(w); });
-  // What passes faster than the filter lets through cannot be seen, nor what the encoder's steps make themselves.
-  constexpr double kPassed = 0.8, kStepsAPeriod = 8.0;
-  const double usual = median(std::move(speeds)) * data.lead;
-  const double shortest = std::max(usual / (kPassed * rows.lowest_cutoff_Hz), kStepsAPeriod * data.encoder_resolution);
+  const double travel = travel_of(rows), turn = turn_of(data), shortest = shortest_wave(data, rows);
   std::vector<Wave> waves;
   if (!(travel > 0.0)) return waves;
   if (turn > 0.0 && travel > kLeastOfATurn * turn) {
@@ -82,8 +85,12 @@ MatrixXd wave_columns(const EffortRows& rows, const VectorXd& weight, const Wave
   MatrixXd columns(rows.x.size(), 2);
   const double per_travel = wave.order / wave.period;
   for (Index k = 0; k < columns.rows(); ++k) {
-    columns(k, 0) = weight(k) * sim::cosine_of_turns(per_travel * rows.x(k));
-    columns(k, 1) = weight(k) * sim::cosine_of_turns(per_travel * rows.x(k) - 0.25);
+    // What the zero-phase filter of the rows leaves of a wave that passes so fast.
+    const double cutoff_Hz = rows.signals[rows.record[static_cast<std::size_t>(k)]].cutoff_Hz;
+    const double passing = std::pow(per_travel * rows.w(k) * rows.lead / cutoff_Hz, 2), fourth = passing * passing;
+    const double seen = weight(k) / (1.0 + fourth * fourth);
+    columns(k, 0) = seen * sim::cosine_of_turns(per_travel * rows.x(k));
+    columns(k, 1) = seen * sim::cosine_of_turns(per_travel * rows.x(k) - 0.25);
   }
   return columns;
 }

@@ -14,6 +14,8 @@ inline constexpr double kClaimed = 0.95;
 /// Of the squared error that is left on held-back records, what an effect must take to be named first: with less the
 /// error itself (its root) falls by less than 5 %, which nobody sees in the machine's work.
 inline constexpr double kWorthNaming = 0.1;
+/// And of the squared error that the base leaves there: beside what was found first, a tenth of the error is not seen.
+inline constexpr double kWorthOfAll = 0.01;
 /// Before the measurement, that nothing (more) is missing is as probable as that something is.
 inline constexpr double kNothingMore = 0.5;
 
