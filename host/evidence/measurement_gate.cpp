@@ -171,7 +171,7 @@ void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<R
 
 void MeasurementGate::shift_late_currents(std::vector<Record>& training, std::vector<Record>& validation,
                                           std::vector<LogFault>& faults) const {
-  const std::string current(name_in_file(training.front(), &Record::i_A));
+  const std::string current(name_in_file(Record{}, &Record::i_A));
   const auto is_late = [&](const LogFault& fault) {
     return fault.kind == LogFaultKind::time_shift && !fault.fatal && fault.channel == current;
   };
