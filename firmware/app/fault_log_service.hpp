@@ -67,8 +67,7 @@ class FaultLogService {
     const auto velocity = [&] {
       const ControlShutOut guard;
       is_taken_[index] = axis.state() == SupervisorState::fault;
-      const auto& kept = axis.capture();
-      const auto& last = kept.row(kept.size() - 1);
+      const auto& last = axis.capture().last();
       entry.fault = static_cast<std::uint8_t>(axis.fault());
       entry.second_fault = static_cast<std::uint8_t>(axis.second_fault());
       entry.activity = static_cast<std::uint8_t>(axis.latched().activity());
