@@ -29,17 +29,17 @@ TEST_F(CostOfAStep, FloatKeepsItsBudget) {
   EXPECT_LE(costs["control_filters"].worst, 80) << "notch and low-pass";
   EXPECT_GT(costs["control_filters"].mean, 30) << "nothing was filtered";
   // With all monitors, homed, everything switched on: the budget is of the average; the worst step is a ramp's.
-  EXPECT_LE(costs["one_axis"].mean, 455);
-  EXPECT_LE(costs["both_axes"].mean, 1000);
+  EXPECT_LE(costs["one_axis"].mean, 448);
+  EXPECT_LE(costs["both_axes"].mean, 987);
   EXPECT_LE(costs["one_axis"].worst, 560);
-  EXPECT_LE(costs["both_axes"].worst, 1280);
+  EXPECT_LE(costs["both_axes"].worst, 1240);
   EXPECT_LT(costs["both_axes"].worst * 20e3 / 168e6, 0.15) << "share of the chip at 20 kHz";
   EXPECT_GT(costs["one_axis"].mean, 100) << "the step did nothing";
 }
 
 TEST_F(CostOfAStep, ExperimentsKeepTheirBudget) {
   auto costs = count_instructions("cost-float-m4");
-  EXPECT_LE(costs["both_axes_excited"].worst, 1500) << "as many lines as there may be";
+  EXPECT_LE(costs["both_axes_excited"].worst, 1420) << "as many lines as there may be";
   EXPECT_GT(costs["both_axes_excited"].mean, costs["both_axes"].mean + 200) << "nothing was excited";
   EXPECT_LE(costs["captured_row"].worst, 200) << "four channels";
 }
@@ -47,11 +47,11 @@ TEST_F(CostOfAStep, ExperimentsKeepTheirBudget) {
 TEST_F(CostOfAStep, PathsKeepTheirBudget) {
   auto costs = count_instructions("cost-float-m4");
   // The budget is of the average; the worst step is one in which the path's clock changes and a piece ends.
-  EXPECT_LE(costs["both_axes_on_path"].mean, 1500);
-  EXPECT_LE(costs["both_axes_on_path"].worst, 1605);
+  EXPECT_LE(costs["both_axes_on_path"].mean, 1262);
+  EXPECT_LE(costs["both_axes_on_path"].worst, 1545);
   EXPECT_GT(costs["both_axes_on_path"].mean, costs["both_axes"].mean + 50) << "nothing was followed";
-  EXPECT_LE(costs["excited_and_on_path"].mean, 1545) << "one axis excited by all lines, the other on the path";
-  EXPECT_LE(costs["excited_and_on_path"].worst, 1855);
+  EXPECT_LE(costs["excited_and_on_path"].mean, 1496) << "one axis excited by all lines, the other on the path";
+  EXPECT_LE(costs["excited_and_on_path"].worst, 1780);
   EXPECT_GT(costs["excited_and_on_path"].mean, costs["both_axes_excited"].mean + 50) << "nothing was followed";
 }
 

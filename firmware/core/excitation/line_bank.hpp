@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "firmware/core/arithmetic/hide_origin.hpp"
 #include "firmware/core/arithmetic/scalar.hpp"
 #include "firmware/core/excitation/excitation_plan.hpp"
 
@@ -82,6 +83,7 @@ class LineBank {
       const std::int32_t cosine = second(at) - upper_product(half_step, sine) * 4;
       at = pair(sine + upper_product(half_step, cosine) * 4, cosine);
       sum += sine;
+      hide_origin(sum);  // else all sines are kept, and added in the end
     };
     if (begins_anew) {
       for (const std::uint64_t at : at_) sum += first(at);

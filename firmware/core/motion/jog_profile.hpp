@@ -47,7 +47,6 @@ class JogProfile {
   }
 
   constexpr Increment next() {
-    if (is_steady_) return velocity_;  // nearly always
     const Increment missing = target_ - velocity_;
     if (settling_) {  // the last sample's acceleration was off the lattice: pass through zero before the next step
       settling_ = false;

@@ -65,6 +65,18 @@ class ReferenceGenerator {
 
   /// Travel of the reference in the next sample.
   constexpr Increment next() {
+    if (mode_ == MotionMode::jog && jog_.is_steady()) return jog_.velocity();  // nearly always
+    return changing_next();
+  }
+
+  constexpr bool at_rest() const {
+    return mode_ == MotionMode::jog ? jog_.at_rest() : mode_ == MotionMode::move && move_.is_done();
+  }
+  constexpr MotionMode mode() const { return mode_; }
+  constexpr const JogProfile& jog_profile() const { return jog_; }
+
+ private:
+  [[gnu::noinline]] constexpr Increment changing_next() {
     if (mode_ == MotionMode::leaving_move && !move_.is_accelerating()) {
       jog_.take_over(move_.velocity());
       jog_.set_target(pending_jog_);
@@ -77,13 +89,6 @@ class ReferenceGenerator {
     return mode_ == MotionMode::jog ? jog_.next() : move_.next();
   }
 
-  constexpr bool at_rest() const {
-    return mode_ == MotionMode::jog ? jog_.at_rest() : mode_ == MotionMode::move && move_.is_done();
-  }
-  constexpr MotionMode mode() const { return mode_; }
-  constexpr const JogProfile& jog_profile() const { return jog_; }
-
- private:
   MotionMode mode_ = MotionMode::jog;
   JogProfile jog_;
   MoveProfile move_;

@@ -127,7 +127,7 @@ class PathClock {
   /// limit * w.
   static constexpr Increment limited(Increment limit, std::uint64_t square, std::uint32_t headroom) {
     const auto share = static_cast<std::uint32_t>(square * path_clock::kInverseSquares[headroom] >> 32);
-    return path_piece::scaled(limit, ~share, 32);
+    return path_piece::part_of(limit, ~share, 32);
   }
   [[gnu::noinline]] constexpr void note_target_ramp(std::uint32_t ahead) {
     target_ahead_ = ahead;
@@ -144,14 +144,14 @@ class PathClock {
                last = static_cast<std::uint32_t>((v + d) >> kShift) + 1;
     const std::uint64_t needed = std::uint64_t{first} * last;
     return needed <=
-           2 * static_cast<std::uint64_t>(path_piece::scaled(d, static_cast<std::uint32_t>(left >> kShift), kShift));
+           2 * static_cast<std::uint64_t>(path_piece::part_of(d, static_cast<std::uint32_t>(left >> kShift), kShift));
   }
 
   /// Until the clock slows down as quickly as it may pass twice ramp_samples_, and as many at the end.
   constexpr std::int64_t way_from(Increment rate) const {
     const auto r = static_cast<std::uint32_t>(rate >> (kFractionBits - 31));
-    const std::int64_t along = path_piece::scaled(way_from_full_, r, 31) + 3 * ramp_samples_;
-    return path_piece::scaled(along, r, 31) + 2;
+    const std::int64_t along = path_piece::part_of(way_from_full_, r, 31) + 3 * ramp_samples_;
+    return path_piece::part_of(along, r, 31) + 2;
   }
 
   Increment rate_ = 0, change_ = 0, target_ = 0;

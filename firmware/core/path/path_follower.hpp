@@ -231,7 +231,7 @@ class PathFollower {
     lead(group, piece);
     if (piece == nullptr && is_complete_ && passed_time_ == accepted_)
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::completed);
-    else if (!is_settled_ && clock_.stands() && (phase_ == PathPhase::stopping || is_starved_))
+    else if (!is_settled_ && (phase_ == PathPhase::stopping || is_starved_) && clock_.stands())
       finish(phase_ == PathPhase::stopping ? end_ : PathEnd::starved);
   }
 
@@ -269,15 +269,13 @@ class PathFollower {
   }
 
   constexpr Increment next_rate() {
-    const bool is_enough = is_ample();
-    if (is_settled_ && is_enough) return clock_.rate();  // nearly always
-    return changing_rate(is_enough);
+    return is_settled_ && is_ample() ? clock_.rate() : changing_rate();  // the former nearly always
   }
-  [[gnu::noinline]] constexpr Increment changing_rate(bool is_enough) {
+  [[gnu::noinline]] constexpr Increment changing_rate() {
     const Increment wanted = wanted_rate();
     // Once it has begun to stop it goes on with that until more nodes have come: no creeping to the last. A ring that
     // is full, and still too short for a stop from the highest rate, is no reason to end.
-    if (is_enough || wanted == 0) {
+    if (wanted == 0 || is_ample()) {
       is_starved_ = false;
     } else {
       const std::int64_t ahead = time_ahead() >> kPathTimeBits, way = clock_.way_of_stop();

@@ -4,9 +4,9 @@
 
 #include <bit>
 #include <optional>
-#include <type_traits>
 
 #include "firmware/core/arithmetic/count_position.hpp"
+#include "firmware/core/arithmetic/hide_origin.hpp"
 #include "firmware/core/path/path_node.hpp"
 
 namespace firmware {
@@ -26,13 +26,20 @@ constexpr std::int64_t scaled(std::int64_t value, std::uint32_t factor, int shif
   return ((high * factor) << (32 - shift)) + static_cast<std::int64_t>(of_low >> shift);
 }
 
-/// value * share / 2^32, downwards; `share` in 2^-31, below 1. Two long multiplications, if the compiler is kept from
-/// seeing that the upper word comes from a longer one: then it takes four.
+/// value * share / 2^32, downwards; `share` in 2^-31, below 1. Two long multiplications; four where the compiler knows
+/// of either factor in 64 bits.
 constexpr std::int64_t half_of_share(std::int64_t value, std::uint32_t share) {
   auto upper = static_cast<std::int32_t>(value >> 32);
-  if (!std::is_constant_evaluated()) asm("" : "+r"(upper));
+  hide_origin(upper);
   const std::uint64_t lower = std::uint64_t{static_cast<std::uint32_t>(value)} * share;
   return std::int64_t{upper} * static_cast<std::int32_t>(share) + static_cast<std::uint32_t>(lower >> 32);
+}
+
+/// The same where nothing is below 0, 0 <= shift <= 32.
+constexpr std::int64_t part_of(std::int64_t value, std::uint32_t factor, int shift) {
+  const std::uint64_t high = std::uint64_t{static_cast<std::uint32_t>(value >> 32)} * factor;
+  const std::uint64_t low = std::uint64_t{static_cast<std::uint32_t>(value)} * factor;
+  return static_cast<std::int64_t>((high << (32 - shift)) + (low >> shift));
 }
 
 constexpr std::int64_t shifted(std::int64_t value, int left) { return left >= 0 ? value << left : value >> -left; }
@@ -117,6 +124,7 @@ class PathPiece {
   /// Of an axis from where the piece begins, 2^-kBits counts.
   constexpr std::int64_t travel_at(std::size_t axis, std::uint32_t share) const {
     const Polynomial& p = axis_[axis];
+    hide_origin(share);
     std::int64_t sum = p.term[4];
     for (int i = 3; i >= 0; --i) sum = p.term[static_cast<std::size_t>(i)] + path_piece::half_of_share(sum, share);
     return path_piece::half_of_share(sum, share);
