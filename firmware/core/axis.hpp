@@ -72,6 +72,7 @@ class Axis {
     if (telemetry_.fault != AxisFault::none) return false;
     if (!telemetry_.enabled) {
       telemetry_.enabled = true;
+      generator_.reset();  // with the usual deceleration
       is_closed_loop_ = !is_open_loop_;
       energise();
     }
@@ -178,6 +179,9 @@ class Axis {
 
   /// Slows down to standstill within the limits.
   constexpr void stop() { generator_.stop(); }
+
+  /// The stops to come, until the loop opens, have the deceleration of faults.
+  constexpr void brake_hard() { generator_.brake_hard(); }
 
   /// The same after step_with(): takes the whole reference over.
   constexpr void stop_interpolated() { generator_.stop_from(preview_.newest()); }

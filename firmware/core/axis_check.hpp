@@ -57,9 +57,14 @@ template <typename Scalar>
 constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
   if (p.motion.velocity != 0 || p.motion.acceleration != 0 || p.motion.jerk != 0) return p.motion;
   using parameter_check::motion;
+  // What is out of range is so here, too.
+  const Increment hard = motion(p.fault_deceleration, p.encoder_resolution, p.sample_period_s, 2);
+  const Increment fault_deceleration =
+      p.fault_deceleration > p.acceleration_limit && hard == 0 ? kMostMotion + 1 : hard;
   return {.velocity = motion(p.velocity_limit, p.encoder_resolution, p.sample_period_s, 1),
           .acceleration = motion(p.acceleration_limit, p.encoder_resolution, p.sample_period_s, 2),
-          .jerk = motion(p.jerk_limit, p.encoder_resolution, p.sample_period_s, 3)};
+          .jerk = motion(p.jerk_limit, p.encoder_resolution, p.sample_period_s, 3),
+          .fault_deceleration = fault_deceleration};
 }
 
 /// The first thing that is wrong.

@@ -46,7 +46,8 @@ struct AxisParameters {
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
   Scalar jerk_limit{};          ///< mm/s^3 (m/s^3)
-  /// The three as increments, where the scalar cannot hold them closely enough: fixed point at a fast control rate has
+  Scalar fault_deceleration{};  ///< of the ramp that a fault makes; up to acceleration_limit: as that
+  /// The four as increments, where the scalar cannot hold them closely enough: fixed point at a fast control rate has
   /// a few steps for a jerk limit. Zero: made of the scalars.
   MotionLimits motion{};
 

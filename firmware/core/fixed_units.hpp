@@ -107,6 +107,7 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
   q.monitors = fixed_limits(p.monitors, unit);
   q.velocity_limit = fixed(p.velocity_limit / unit.travel_velocity);
   q.acceleration_limit = fixed(p.acceleration_limit / unit.travel_velocity * unit.time_s);
+  q.fault_deceleration = fixed(p.fault_deceleration / unit.travel_velocity * unit.time_s);
   q.jerk_limit = fixed(p.jerk_limit / unit.travel_velocity * unit.time_s * unit.time_s);
   q.motion = motion_limits(p);
   return q;

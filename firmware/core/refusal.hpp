@@ -26,6 +26,7 @@ enum class Refusal : std::uint16_t {
   acceleration_limit = 129,         ///< likewise
   jerk_limit = 130,                 ///< likewise
   jerk_time = 1 << 12 | 130,        ///< acceleration / jerk is so long that one ramp would pass 2^14 counts a sample
+  fault_deceleration = 131,         ///< outside the references' range, or reached so slowly as of jerk_time
   following_error = 144,            ///< floor not above 0, or share below 0; either above its ceiling
   disagreement = 146,               ///< floor not above 0, share outside 0..1, or jump not above the floor; ceilings
   overspeed = 149,                  ///< not above the velocity limit and the encoder's steps, or above its ceiling

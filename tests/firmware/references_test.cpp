@@ -127,6 +127,41 @@ RC_GTEST_PROP(Move, TakesNoLongerThanItMust, ()) {
   RC_ASSERT(static_cast<double>(plan.samples()) <= optimal + 4.0);
 }
 
+/// From any moment of a jog: the jerk limit holds, the deceleration is the fault's, and after a reset the usual one
+/// again.
+RC_GTEST_PROP(Jog, BrakesHardWithinTheLimitsOfAFault, ()) {
+  MotionLimits limits = *any_limits();
+  limits.fault_deceleration = limits.acceleration * *rc::gen::inRange<Increment>(1, 6);
+  RC_PRE(check(limits) == Refusal::none);
+  const Increment ramp = limits.velocity / limits.acceleration + limits.acceleration / limits.jerk;
+  RC_PRE(ramp < kAffordable / 4);
+  ReferenceGenerator generator;
+  generator.configure(limits);
+  MotionLimits hard = limits;
+  hard.acceleration = limits.fault_deceleration;
+  Watch watch(hard);
+  generator.jog(limits.velocity);
+  const Increment before = *rc::gen::inRange<Increment>(0, ramp + 10);
+  for (Increment k = 0; k < before; ++k) watch.see(generator.next());
+  RC_ASSERT(watch.most_acceleration <= limits.acceleration);  // nobody has asked for more yet
+  const Increment speed = watch.most_velocity;
+  generator.brake_hard();
+  generator.stop();
+  std::int64_t samples = 0;
+  for (; !generator.at_rest(); ++samples) watch.see(generator.next());
+  // The acceleration runs out; then v / a + a / j at most. The acceleration is so many whole steps.
+  const Increment steps = (limits.acceleration + limits.jerk - 1) / limits.jerk, step = limits.acceleration / steps;
+  const Increment most = limits.fault_deceleration / step;
+  const Increment fastest = speed + limits.acceleration * (steps + 1) / 2;
+  RC_ASSERT(samples <= fastest / (most * step) + most + steps + 10);
+  generator.reset();
+  Watch after(limits);
+  generator.jog(limits.velocity);
+  for (Increment k = 0; k < ramp + 10; ++k) after.see(generator.next());
+  generator.stop();
+  while (!generator.at_rest()) after.see(generator.next());
+}
+
 RC_GTEST_PROP(Jog, KeepsEveryLimitWhateverIsAskedAndReachesWhatWasAskedLast, ()) {
   const MotionLimits limits = *any_limits();
   ReferenceGenerator generator;
@@ -248,6 +283,9 @@ TEST(MotionLimits, AreCheckedOneByOne) {
   EXPECT_EQ(check({0, good.acceleration, good.jerk}), Refusal::velocity_limit);
   EXPECT_EQ(check({(kOneCount << 14) + 1, good.acceleration, good.jerk}), Refusal::velocity_limit);
   EXPECT_EQ(check({good.velocity, -5, good.jerk}), Refusal::acceleration_limit);
+  EXPECT_EQ(check({good.velocity, good.acceleration, good.jerk, firmware::kMostMotion + 1}),
+            Refusal::fault_deceleration);
+  EXPECT_EQ(check({good.velocity, good.acceleration, good.jerk, good.acceleration * 10}), Refusal::none);
   EXPECT_EQ(check({good.velocity, good.acceleration, 15}), Refusal::jerk_limit);
   EXPECT_EQ(check({good.velocity, good.acceleration, firmware::kLeastMotion}), Refusal::jerk_time);
 }

@@ -50,12 +50,11 @@ class SensorStop : public testing::Test {
     EXPECT_EQ(axis.axis.state(), SupervisorState::fault);
     return stop;
   }
-  static double ramp_mm(double speed_mm_s) { return speed_mm_s * speed_mm_s / (2.0 * kAcceleration); }
-  static void expect_ramp(const Stop& stop, double speed_mm_s) {
+  static void expect_ramp(const Stop& stop, double speed_mm_s, double deceleration = kAcceleration) {
     EXPECT_FALSE(stop.was_let_go_at_speed);
-    EXPECT_LT(std::abs(stop.way_mm), ramp_mm(speed_mm_s) + 2.0);
+    EXPECT_LT(std::abs(stop.way_mm), speed_mm_s * speed_mm_s / (2.0 * deceleration) + 2.0);
     EXPECT_LT(std::abs(stop.still_mm_s), 3.0);
-    EXPECT_LT(stop.longest_s, std::abs(speed_mm_s) / kAcceleration + 0.1);
+    EXPECT_LT(stop.longest_s, std::abs(speed_mm_s) / deceleration + 0.1);
   }
 };
 
@@ -66,6 +65,42 @@ TEST_F(SensorStop, ADeadTachometerLeavesTheEncoder) {
     EXPECT_EQ(axis.axis.fault(), AxisFault::encoder_tachometer_disagreement);
     expect_ramp(found, static_cast<double>(speed));
   }
+}
+
+/// 15.6 mm at the reference's limit, 7.8 mm at twice that.
+TEST_F(SensorStop, FaultsHaveADecelerationOfTheirOwn) {
+  auto p = parameters();
+  p.fault_deceleration = 4000.0f;
+  DrivenAxis axis(p);
+  const Stop found = stop(axis, 250.0f, [](DrivenAxis& a, int) { a.io.tachometer().reading.valid = false; });
+  expect_ramp(found, 250.0, 4000.0);
+  EXPECT_GT(found.way_mm, 6.0);
+}
+
+/// v^2 / (2 a) + v a / (2 j) of the fault's a; orderly stops keep to the reference's.
+TEST_F(SensorStop, ARampByAFaultHasThatDecelerationToo) {
+  auto p = parameters();
+  p.jerk_limit = 200'000.0f;
+  p.fault_deceleration = 5000.0f;
+  const auto way_mm = [](DrivenAxis& axis, auto begin_stop) {
+    EXPECT_TRUE(axis.axis.jog(250.0f));
+    for (int k = 0; k < 600; ++k) axis.step();
+    const double begin_mm = axis.at_mm();
+    begin_stop(axis);
+    for (int k = 0; k < 1000; ++k) axis.step();
+    return axis.at_mm() - begin_mm;
+  };
+  const auto by_itself = [](DrivenAxis& a) { a.axis.stop(); };
+  const double usual = 250.0 * 250.0 / 4000.0 + 250.0 * 2000.0 / 400'000.0;
+  const double hard = 250.0 * 250.0 / 10'000.0 + 250.0 * 5000.0 / 400'000.0;
+  DrivenAxis axis(p);
+  EXPECT_NEAR(way_mm(axis, by_itself), usual, 1.5);
+  EXPECT_NEAR(way_mm(axis, [](DrivenAxis& a) { a.step(AxisFault::host_heartbeat_lost); }), hard, 1.5);
+  EXPECT_TRUE(axis.axis.clear_fault());
+  for (int k = 0; k < firmware::kSelfTestSamples + 1; ++k) axis.step();
+  EXPECT_TRUE(axis.axis.enable());
+  axis.step();
+  EXPECT_NEAR(way_mm(axis, by_itself), usual, 1.5) << "enabled anew";
 }
 
 TEST_F(SensorStop, ATachometerWithoutReadingLeavesTheEncoder) {

@@ -144,6 +144,7 @@ constexpr AxisParameters<float> in_single_precision(const AxisValues& v) {
   p.velocity_limit = v.get<"limits.velocity">();
   p.acceleration_limit = v.get<"limits.acceleration">();
   p.jerk_limit = v.get<"limits.jerk">();
+  p.fault_deceleration = v.get<"limits.fault_deceleration">();
   p.homing = homing(v);
   p.sequence = sequence(v, 1.0F / p.sample_period_s);
   p.monitors = monitor_limits<float>([&](auto id) { return v.with_id<decltype(id)::value>(); }, p.encoder_resolution,

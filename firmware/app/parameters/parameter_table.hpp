@@ -103,6 +103,8 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {128, axis, "limits.velocity", real, "mm/s", "m/s", 1e-6F, 1e6F, 250, while_disabled, "of references"},
     {129, axis, "limits.acceleration", real, "mm/s^2", "m/s^2", 1e-6F, 1e8F, 2000, while_disabled, "of references"},
     {130, axis, "limits.jerk", real, "mm/s^3", "m/s^3", 1e-6F, 1e10F, 50000, while_disabled, "of references"},
+    {131, axis, "limits.fault_deceleration", real, "mm/s^2", "m/s^2", 0, 1e8F, 0, while_disabled,
+     "of the ramp that a fault makes; 0 and up to limits.acceleration: as that"},
     {132, axis, "limits.unhomed_velocity", real, "mm/s", "m/s", 0, 1e6F, 0, while_disabled,
      "of jogs and moves while the axis is not homed; 0: limits.velocity"},
 

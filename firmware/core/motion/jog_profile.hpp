@@ -17,8 +17,9 @@ class JogProfile {
   /// `limits` have passed check().
   constexpr void configure(const MotionLimits& limits) {
     velocity_limit_ = limits.velocity;
-    most_steps_ = static_cast<std::int32_t>((limits.acceleration + limits.jerk - 1) / limits.jerk);
-    acceleration_step_ = limits.acceleration / most_steps_;
+    usual_steps_ = static_cast<std::int32_t>((limits.acceleration + limits.jerk - 1) / limits.jerk);
+    acceleration_step_ = limits.acceleration / usual_steps_;
+    hard_steps_ = static_cast<std::int32_t>(limits.fault_deceleration / acceleration_step_);
     reset();
   }
 
@@ -33,10 +34,16 @@ class JogProfile {
 
   /// Standing, from now on.
   constexpr void reset() {
+    most_steps_ = usual_steps_;
     velocity_ = target_ = 0;
     level();
     settling_ = false;
     is_steady_ = false;
+  }
+
+  /// Until reset() by the deceleration of faults, on the same lattice.
+  constexpr void brake_hard() {
+    if (hard_steps_ > most_steps_) most_steps_ = hard_steps_;
   }
 
   /// Limited to the velocity limit; 0 stops.
@@ -47,6 +54,7 @@ class JogProfile {
   }
 
   constexpr Increment next() {
+    if (is_steady_) return velocity_;  // nearly always
     const Increment missing = target_ - velocity_;
     if (settling_) {  // the last sample's acceleration was off the lattice: pass through zero before the next step
       settling_ = false;
@@ -120,6 +128,7 @@ class JogProfile {
   Increment target_ = 0;
   bool settling_ = false;
   bool is_steady_ = false;  ///< at the target, with nothing left to do
+  std::int32_t usual_steps_ = 1, hard_steps_ = 1;
 };
 
 }  // namespace firmware

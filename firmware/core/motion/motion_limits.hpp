@@ -13,6 +13,8 @@ struct MotionLimits {
   Increment velocity = 0;
   Increment acceleration = 0;
   Increment jerk = 0;
+  /// Of the ramp that a fault makes; at most as much as the acceleration: that one.
+  Increment fault_deceleration = 0;
 };
 
 inline constexpr Increment kMostMotion = Increment{1} << (kFractionBits + 14);
@@ -28,6 +30,11 @@ constexpr Refusal check(const MotionLimits& limits) {
   // A ramp to full acceleration and back adds acceleration * steps to the velocity, where steps rounds up.
   const Increment steps = limits.acceleration / limits.jerk + 2;
   if (steps > kMostMotion / limits.acceleration) return Refusal::jerk_time;
+  const Increment hard = limits.fault_deceleration;
+  if (hard > limits.acceleration) {
+    const Increment step = limits.acceleration < limits.jerk ? limits.acceleration : limits.jerk;
+    if (!in_range(hard) || hard / step + 2 > kMostMotion / hard) return Refusal::fault_deceleration;
+  }
   return Refusal::none;
 }
 

@@ -55,6 +55,9 @@ class ReferenceGenerator {
     mode_ = MotionMode::jog;
   }
 
+  /// The stops to come, until reset(), have the deceleration of faults. What is planned keeps its own.
+  constexpr void brake_hard() { jog_.brake_hard(); }
+
   /// Only from rest; returns false otherwise, and nothing changes.
   constexpr bool start(const MovePlan& plan) {
     if (!at_rest()) return false;

@@ -39,6 +39,7 @@ class FaultLatch {
   }
 
   constexpr AxisFault first() const { return first_; }
+  /// none: nothing else went wrong while the first fault brought the axis to a stop.
   constexpr AxisFault second() const { return second_; }
   /// Once for each first fault.
   constexpr bool take_new() {

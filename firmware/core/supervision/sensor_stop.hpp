@@ -11,7 +11,7 @@ namespace firmware {
 
 enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
 
-/// Takes the speed that the sensor shows down to 0 along the acceleration limit, and holds it there:
+/// Takes the speed that the sensor shows down to 0 along the deceleration of faults, and holds it there:
 ///
 ///   e(k) = e(k-1) + (w_ref - w) lead Ts,   u = Kc1 e + Kc2 (w_ref - w) + load + (w_ref(k) - w_ref(k-1)) / Bd2
 ///
@@ -27,7 +27,8 @@ class SensorStop {
     Kc_ = p.Kc;
     travel_per_velocity_ = p.lead * p.sample_period_s;
     velocity_per_count_ = p.encoder_resolution / travel_per_velocity_;
-    slower_ = p.acceleration_limit * p.sample_period_s / p.lead;
+    const bool is_hard = p.fault_deceleration > p.acceleration_limit;
+    slower_ = (is_hard ? p.fault_deceleration : p.acceleration_limit) * p.sample_period_s / p.lead;
     ramp_V_ = slower_ / p.drive.Bd2;
     astray_ = p.monitors.disagreement_floor * Scalar(2);
     limit_V_ = p.dac_limit_V;

@@ -175,12 +175,11 @@ class SupervisedAxis {
   constexpr bool is_or_will_be_on() const {
     return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
   }
-  /// The first fault since the last clear_fault().
   constexpr AxisFault fault() const { return latched_.first(); }
   /// Whether it came since this was asked last.
   constexpr bool take_new_fault() { return latched_.take_new(); }
-  /// What went wrong besides while the first fault brought the axis to a stop; the worst of it. none: nothing.
   constexpr AxisFault second_fault() const { return latched_.second(); }
+  /// What stopped it since the last clear_fault().
   constexpr const FaultLatch& latched() const { return latched_; }
   /// The amplifier drives on although its enable has dropped. Until clear_fault().
   constexpr bool must_cut_power() const { return must_cut_power_; }
@@ -408,6 +407,7 @@ class SupervisedAxis {
   constexpr void latch_first(AxisFault found) {
     latched_.begin(found, activity(), is_homed());
     capture_.freeze(axis_.telemetry());
+    axis_.brake_hard();
   }
 
   constexpr AxisActivity activity() const {

@@ -112,8 +112,9 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
     if (place == place_named("host.timeout") || place == place_named("host.standing_timeout")) continue;
     const std::string_view name = firmware::kParameters[firmware::row_at(place)].name;
     if (name.starts_with("homing.") || name.starts_with("unfitted."))
-      continue;                                       // homing_on_board_test.cpp, motion_owner_test.cpp
-    if (name == "limits.unhomed_velocity") continue;  // board_application_test.cpp
+      continue;  // homing_on_board_test.cpp, motion_owner_test.cpp
+    if (name == "limits.unhomed_velocity" || name == "limits.fault_deceleration")
+      continue;  // board_application_test.cpp; below
     if (name.starts_with("amplifier.") || name.starts_with("brake.") || name.starts_with("encoder."))
       continue;  // below
     const auto changes = [place](ParameterValues of, const auto& behaved) {
@@ -144,6 +145,19 @@ TYPED_TEST(Parameters, AmplifierAndBrakeAreWaitedForInControlPeriods) {
   set(values, "x.amplifier.ready_time", 0);
   EXPECT_EQ(firmware::check<TypeParam>(values),
             (SetRefusal{ValueRefusal::refused_by_core, firmware::key_at(place_named("x.amplifier.ready_time"))}));
+}
+
+TYPED_TEST(Parameters, FaultsHaveADecelerationOfTheirOwn) {
+  ParameterValues values = paper_values();
+  const auto limits = [&values] { return motion_limits(firmware::axis_parameters<TypeParam>(values.axis(0))); };
+  set(values, "x.limits.acceleration", 2000);
+  set(values, "x.limits.fault_deceleration", 5000);
+  EXPECT_NEAR(static_cast<double>(limits().fault_deceleration), 2.5 * static_cast<double>(limits().acceleration),
+              1e-6 * static_cast<double>(limits().acceleration));
+  EXPECT_EQ(firmware::check<TypeParam>(values), SetRefusal{});
+  set(values, "x.limits.fault_deceleration", 1e8);
+  EXPECT_EQ(firmware::check<TypeParam>(values),
+            (SetRefusal{ValueRefusal::refused_by_core, firmware::key_at(place_named("x.limits.fault_deceleration"))}));
 }
 
 TYPED_TEST(Parameters, ASlowerControlRateIsTakenTogetherWithItsPeriod) {
@@ -219,6 +233,7 @@ TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
                                       {Refusal::acceleration_limit, "limits.acceleration"},
                                       {Refusal::jerk_limit, "limits.jerk"},
                                       {Refusal::jerk_time, "limits.jerk"},
+                                      {Refusal::fault_deceleration, "limits.fault_deceleration"},
                                       {Refusal::following_error, "monitor.following_error"},
                                       {Refusal::disagreement, "monitor.disagreement"},
                                       {Refusal::overspeed, "monitor.overspeed"},
