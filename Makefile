@@ -146,12 +146,13 @@ response: ## How often measured frequency responses lie within their own bands, 
 	AXIS_COVERAGE_SEEDS=$(or $(SEEDS),200) $(BUILD)/bin/test_host_response --gtest_filter='TwoMasses.*'
 
 .PHONY: pages
-pages: ## Write the pages of parameters and faults anew; tests compare them
+pages: ## Write the pages of parameters, faults and data sheets anew; tests compare them
 	$(NEED) build
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	$(BUILD)/bin/axistool parameters --markdown > firmware/app/parameters/README.md
 	$(BUILD)/bin/axistool hil --fault-page > firmware/core/supervision/README.md
+	$(BUILD)/bin/axistool sheet --markdown > host/model/README.md
 
 .PHONY: hidden-effect
 hidden-effect: ## Worked example: a circle spoilt by an effect that the model lacks; find it, compensate it, run again

@@ -53,6 +53,11 @@ void add_sheet(CLI::App& app) {
   command->add_option("--step", arguments->step, "travel of an encoder count, mm")->check(CLI::PositiveNumber);
   command->add_option("--period", arguments->period_s, "sampling period of the logs, s")->check(CLI::PositiveNumber);
   add_output(*command, "-o,--output", arguments->path, "the sheet to write (axis-model/1)")->required();
+  const auto print_page = [] {
+    fmt::print("{}", host::sheet_page());
+    throw CLI::Success();
+  };
+  command->add_flag_callback("--markdown", print_page, "print the format's reference page instead")->trigger_on_parse();
   command->footer(
       "Examples:\n"
       "  axistool sheet z --kind rotary -o z-drive.toml\n"

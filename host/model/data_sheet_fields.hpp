@@ -22,7 +22,8 @@ struct DataSheetField {
   double sim::DataSheet::*value;
   bool zero_allowed;  ///< all are physical sizes: none is negative
   Presence presence;
-  double divisor = 1.0;  ///< from the key's unit to the data sheet's
+  std::string_view meaning;  ///< with where its value stands on paper
+  double divisor = 1.0;      ///< from the key's unit to the data sheet's
 
   bool belongs_to(sim::DriveKind kind) const { return !only || *only == kind; }
 };
@@ -30,21 +31,42 @@ struct DataSheetField {
 /// In the order in which they are written.
 inline constexpr DataSheetField kDataSheetFields[] = {
     {"", "amplifier_gain_A_per_V", sim::DriveKind::rotary, &sim::DataSheet::amplifier_gain_A_per_V, false,
-     Presence::of_volts},
+     Presence::of_volts, "Ka, A/V: the amplifier's current limit over its command range"},
     {"", "torque_constant_Nm_per_A", sim::DriveKind::rotary, &sim::DataSheet::torque_constant_Nm_per_A, false,
-     Presence::required},
-    {"", "lead_mm_per_rad", sim::DriveKind::rotary, &sim::DataSheet::lead, false, Presence::required},
+     Presence::required, "Kt, Nm/A: the motor's data sheet; per A rms where the log is in A rms"},
+    {"", "lead_mm_per_rad", sim::DriveKind::rotary, &sim::DataSheet::lead, false, Presence::required,
+     "mm/rad: travel of a motor turn over 2 pi (10 mm a turn: 1.5915)"},
     {"", "force_constant_N_per_V", sim::DriveKind::linear, &sim::DataSheet::force_constant_N_per_V, false,
-     Presence::of_volts},
+     Presence::of_volts, "N/V: N/A times the amplifier's A/V"},
     {"", "force_constant_N_per_A", sim::DriveKind::linear, &sim::DataSheet::torque_constant_Nm_per_A, false,
-     Presence::optional},
-    {"", "sample_period_s", {}, &sim::DataSheet::sample_period_s, false, Presence::required},
-    {"dac", "resolution_V", {}, &sim::DataSheet::dac_resolution_V, true, Presence::of_volts},
-    {"dac", "limit_V", {}, &sim::DataSheet::dac_limit_V, false, Presence::of_volts},
-    {"encoder", "resolution_mm", sim::DriveKind::rotary, &sim::DataSheet::encoder_resolution, true, Presence::optional},
-    {"encoder", "resolution_m", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true, Presence::optional},
+     Presence::optional, "N/A: the motor's data sheet"},
+    {"",
+     "sample_period_s",
+     {},
+     &sim::DataSheet::sample_period_s,
+     false,
+     Presence::required,
+     "s: the controller's period, that of the log"},
+    {"dac",
+     "resolution_V",
+     {},
+     &sim::DataSheet::dac_resolution_V,
+     true,
+     Presence::of_volts,
+     "V: one step of the command's converter (20 V, 16 bit: 3.05e-4)"},
+    {"dac",
+     "limit_V",
+     {},
+     &sim::DataSheet::dac_limit_V,
+     false,
+     Presence::of_volts,
+     "V: its range is -limit to +limit, 10 if absent"},
+    {"encoder", "resolution_mm", sim::DriveKind::rotary, &sim::DataSheet::encoder_resolution, true, Presence::optional,
+     "mm: travel of one count (10 mm a turn, 65536 counts: 1.526e-4)"},
+    {"encoder", "resolution_m", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true, Presence::optional,
+     "m: travel of one count"},
     {"encoder", "resolution_mm", sim::DriveKind::linear, &sim::DataSheet::encoder_resolution, true,
-     Presence::alternative_unit, 1000.0},
+     Presence::alternative_unit, "mm: travel of one count, in place of resolution_m", 1000.0},
 };
 
 /// Variance of the tachometer's noise: the one field that the data sheet itself may lack.

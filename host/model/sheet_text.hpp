@@ -25,4 +25,7 @@ std::string sheet_text(const SheetValues& values);
 /// The keys that are needed and not yet known.
 std::string sheet_gaps(const SheetValues& values);
 
+/// The reference of the format, in Markdown: every field, and an example of each kind.
+std::string sheet_page();
+
 }  // namespace host

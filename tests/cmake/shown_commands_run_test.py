@@ -19,6 +19,7 @@ PROGRAM = Path(os.environ["AXIS_BUILD"]) / "bin" / "axistool"
 CASE = PROJECT / "tests/data/drive-cases/none/case-00"
 COGGING = PROJECT / "tests/data/drive-cases/single/case-00"
 PAGES = ["README.md", ".github/CONTRIBUTING.md", "host/examples/README.md"]
+WORKED_PAGE = PROJECT / "host/examples/from-log-to-model.md"  # its commands follow from each other
 
 NOT_RUN = [
     (r"\bsudo\b|--usb\b", "as root"),
@@ -84,10 +85,12 @@ class Bench:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.environment = {**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}", "HOME": str(folder),
-                            "XDG_RUNTIME_DIR": str(folder), "AXIS_DEVICE": "sim", "AXIS_PATIENCE": "30", "C": str(CASE)}
+                            "XDG_RUNTIME_DIR": str(folder), "AXIS_DEVICE": "sim", "AXIS_PATIENCE": "30", "C": str(CASE),
+                            "L": "host/examples/log"}
         for needed in ("firmware/core/supervision", "firmware/app/parameters", ".zfunc", ".config/fish/completions",
                        ".local/share/bash-completion/completions"):
             (folder / needed).mkdir(parents=True)
+        shutil.copytree(PROJECT / "host/examples/log", folder / "host/examples/log")
         for plant in ("05-own-plant.py", "05-own-plant.toml"):
             shutil.copy(PROJECT / "host/examples" / plant, folder)
         shutil.copy(PROJECT / "host/hil/scenarios/square.toml", folder / "mine.toml")
@@ -138,8 +141,27 @@ class Bench:
         self.board.wait()
 
 
-def try_all(bench: Bench) -> int:
+def try_worked_page(bench: Bench) -> int:
+    """Each line of the page's blocks is a command, or stands in what the command above it says."""
     bad = ran = 0
+    said = ""
+    for line in re.findall(r"^ {4}(.*)$", WORKED_PAGE.read_text(encoding="utf-8"), re.M):
+        if line.startswith("axistool "):
+            done = bench.run(line)
+            said = " ".join(done.stdout.split())
+            ran += 1
+            if done.returncode != 0:
+                bad += 1
+                print(f"{WORKED_PAGE.name}: {line}\nends with {done.returncode}:\n{done.stdout}", flush=True)
+        elif not line.startswith("L=") and " ".join(line.split()) not in said:
+            bad += 1
+            print(f"{WORKED_PAGE.name}: {line}\nis not in what the command says:\n{said}", flush=True)
+    return bad if ran > 8 else 1
+
+
+def try_all(bench: Bench) -> int:
+    bad = try_worked_page(bench)
+    ran = 0
     page = ""
     for where, command in shown():
         reason = next((why for pattern, why in NOT_RUN if re.search(pattern, command)), None)
