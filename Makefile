@@ -3,12 +3,14 @@
 BUILD   ?= build
 CHECKED ?= $(BUILD)/checked
 JOBS    ?= $(shell nproc)
-UNITY   ?= OFF
+UNITY   ?= $(if $(wildcard $(BUILD)/CMakeCache.txt),,ON)
 NEED     = @cmake/packages/install.sh
 SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null)
 
-# Configures the build tree $1 with the options $2.
-configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages -DAXIS_UNITY=$(UNITY) $2
+# Configures the build tree $1 with the options $2. A new tree for programs compiles a folder's sources together, which is
+# faster; UNITY=OFF, for work on single files, each by itself; a tree stays as it is unless UNITY is given.
+configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages \
+  $(if $(filter $(BUILD),$1),$(if $(UNITY),-DAXIS_UNITY=$(UNITY))) $2
 
 # Builds the microcontroller's images, then checks and reports their size, stack and symbols.
 define firmware
@@ -224,9 +226,10 @@ lint: ## Static analysis, include rules, formatting, file length; no finding is 
 	$(NEED) build python test lint
 	cmake/checks/file_length.sh .
 	cmake/checks/include_rules.sh .
+	cmake/checks/local_names.py .
 	cmake/checks/page_types.sh .
 	@clang-format-14 --dry-run -Werror $(SOURCES)
-	$(call configure,$(BUILD)/lint,-DAXIS_UNITY=OFF)
+	$(call configure,$(BUILD)/lint)
 	ninja -C $(BUILD)/lint build_version
 	cmake/checks/cppcheck.sh . $(JOBS)
 	cmake/checks/clang_tidy.sh $(BUILD)/lint $(JOBS)

@@ -3,7 +3,7 @@ add_library(axis_flags INTERFACE)
 target_include_directories(axis_flags INTERFACE "${AXIS_ROOT}")
 target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic
                        # Among sources compiled together a local name may be one of another source.
-                       $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Werror
+                       $<$<NOT:$<OR:$<BOOL:${AXIS_UNITY}>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Werror
                        -ffp-contract=off)
 if(AXIS_SANITIZE)
   target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer

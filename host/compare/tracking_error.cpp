@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/record/channel_checks.hpp"
 #include "host/record/columns.hpp"
@@ -44,7 +45,7 @@ Eigen::VectorXd take_parts(const Eigen::VectorXd& error, const std::vector<Eigen
   for (std::size_t count = 1; count <= columns.size(); ++count) {
     Eigen::MatrixXd regressors(error.size(), static_cast<Eigen::Index>(count));
     for (std::size_t c = 0; c < count; ++c) regressors.col(static_cast<Eigen::Index>(c)) = columns[c];
-    const Eigen::VectorXd found = regressors.colPivHouseholderQr().solve(error);
+    const Eigen::VectorXd found = least_squares_solution(regressors, error);
     rest = error - regressors * found;
     result.parts[count - 1].share = whole > 0.0 ? (left - rest.squaredNorm()) / whole : 0.0;
     left = rest.squaredNorm();

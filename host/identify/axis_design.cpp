@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/eigenvalues.hpp"
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -87,7 +87,8 @@ Eigen::Matrix3d solve_estimator_dare(const Eigen::Matrix3d& A, const Eigen::Matr
   constexpr int kMaxDoublings = 60;  // each squares the error: 60 is far beyond any detectable axis
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d a = A.transpose();
-  Eigen::Matrix3d g = C.transpose() * R.inverse() * C;
+  const Eigen::MatrixXd weight = R.inverse(), weighted = C.transpose() * weight;  // named: one product compiles faster
+  Eigen::Matrix3d g = weighted * C;
   Eigen::Matrix3d h = Q;
   for (int k = 0; k < kMaxDoublings; ++k) {
     const Eigen::PartialPivLU<Eigen::Matrix3d> coupling(I + g * h);
@@ -129,7 +130,9 @@ AxisDesign design_axis(const sim::DriveDescription& model, const DesignOptions& 
   R(0, 0) = *design.used.position_variance;
   if (design.used.tach_variance) R(1, 1) = *design.used.tach_variance;
   const Eigen::Matrix3d P = solve_estimator_dare(design.model.A, C, Q, R);
-  design.Kobs = P * C.transpose() * (C * P * C.transpose() + R).inverse();
+  const Eigen::MatrixXd CP = C * P, innovation = CP * C.transpose() + R, weight = innovation.inverse();
+  const Eigen::MatrixXd PC = P * C.transpose();
+  design.Kobs = PC * weight;
   describe_observer(design, period_s);
   design.Kc = place_poles(sampled, options.bandwidth_Hz, options.damping, period_s);
   require_usable(design);

@@ -92,7 +92,7 @@ Regression discrete_regression(const std::vector<Record>& records, const sim::Da
   return regression.solve();
 }
 
-constexpr int kTravelTerms = 8;
+constexpr int kCurveTerms = 8;
 
 /// Where the travel of all motions begins and how long it is.
 std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
@@ -105,7 +105,7 @@ std::pair<double, double> travel_of(const std::vector<Motion>& motions) {
   return {low, high - low};
 }
 
-/// Of inertia and viscous friction (P = 2), Coulomb friction (4) and a curve over the travel (4 + kTravelTerms).
+/// Of inertia and viscous friction (P = 2), Coulomb friction (4) and a curve over the travel (4 + kCurveTerms).
 template <int P>
 Regression inverse_regression(const std::vector<Motion>& motions) {
   std::size_t rows = 0;
@@ -136,7 +136,7 @@ Regression inverse_regression(const std::vector<Motion>& motions) {
         phi(3) = backward[k];
       }
       if constexpr (P > 4)
-        for (int n = 1; n <= kTravelTerms; ++n)
+        for (int n = 1; n <= kCurveTerms; ++n)
           phi(3 + n) = std::cos(n * std::numbers::pi * (travel[k] - whole_travel.first) / whole_travel.second);
       regression.add(phi, effort[k]);
     }
@@ -162,7 +162,7 @@ RigidEstimate inverse_least_squares(const std::vector<Motion>& motions, Coulomb 
 }
 
 RigidEstimate least_squares_beside_travel(const std::vector<Motion>& motions) {
-  const Regression regression = inverse_regression<4 + kTravelTerms>(motions);
+  const Regression regression = inverse_regression<4 + kCurveTerms>(motions);
   return from_list(map_estimate(regression, [](const Eigen::VectorXd& theta) { return theta; }), regression);
 }
 

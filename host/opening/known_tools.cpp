@@ -9,7 +9,7 @@ namespace host {
 
 namespace {
 
-struct KnownColumn {
+struct ToolColumn {
   std::string_view ending;  ///< of the column's name
   Quantity quantity;
   bool is_reference;
@@ -17,7 +17,7 @@ struct KnownColumn {
 };
 
 /// ODrive firmware 0.5.1 and later: turns, turns/s, A (docs.odriverobotics.com, interface reference).
-constexpr KnownColumn kOdrive[] = {
+constexpr ToolColumn kOdrive[] = {
     {"pos_estimate", Quantity::position, false, "turns"}, {"pos_rel", Quantity::position, false, "turns"},
     {"pos_abs", Quantity::position, false, "turns"},      {"vel_estimate", Quantity::speed, false, "turns/s"},
     {".vel", Quantity::speed, false, "turns/s"},          {"Iq_measured", Quantity::current, false, "A"},
@@ -28,7 +28,7 @@ constexpr KnownColumn kOdrive[] = {
 };
 
 /// moteus registers: revolutions, revolutions/s, Nm, A (github.com/mjbots/moteus, docs/reference.md).
-constexpr KnownColumn kMoteus[] = {
+constexpr ToolColumn kMoteus[] = {
     {"position", Quantity::position, false, "turns"},
     {"velocity", Quantity::speed, false, "turns/s"},
     {"torque", Quantity::torque, false, "Nm"},
@@ -44,7 +44,7 @@ constexpr KnownColumn kMoteus[] = {
 };
 
 /// VESC Tool's log: ms since midnight, A, degrees (github.com/vedderb/vesc_tool, vescinterface.cpp).
-constexpr KnownColumn kVesc[] = {
+constexpr ToolColumn kVesc[] = {
     {"ms_today", Quantity::time, false, "ms"},
     {"q_axis_current", Quantity::current, false, "A"},
     {"current_motor", Quantity::other, false, "A"},
@@ -76,9 +76,9 @@ bool has_named(const Log& log, std::string_view name) {
   return std::ranges::any_of(log.columns, [&](const LogColumn& column) { return column.name == name; });
 }
 
-void apply(const Log& log, std::span<const KnownColumn> known, std::vector<ChannelName>& names) {
+void apply(const Log& log, std::span<const ToolColumn> known, std::vector<ChannelName>& names) {
   for (std::size_t k = 0; k < log.columns.size(); ++k)
-    for (const KnownColumn& column : known) {
+    for (const ToolColumn& column : known) {
       const std::string& name = log.columns[k].name;
       const bool whole =
           name == column.ending || (name.ends_with(column.ending) && name.size() > column.ending.size() &&

@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi, kTurn = 2.0 * kPi, kDegree = kPi / 180.0, kInch = 25.4, kPound_N = 4.4482216;
+constexpr double kTurn = 2.0 * std::numbers::pi, kDegree = kTurn / 360.0, kInch = 25.4, kPound_N = 4.4482216;
 
 struct NamedUnit {
   std::string_view name;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <complex>
 
-#include "host/eigenvalues.hpp"
+#include "host/dense_solutions.hpp"
 #include "host/parameters/monitor_relations.hpp"
 #include "host/parameters/parameter_names.hpp"
 

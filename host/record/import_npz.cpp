@@ -8,7 +8,7 @@ namespace host {
 
 namespace {
 
-[[noreturn]] void fail(std::string_view path, const std::string& what) {
+[[noreturn]] void refuse_archive(std::string_view path, const std::string& what) {
   throw Failure(ExitCode::bad_input, fmt::format("{}: {}", path, what));
 }
 
@@ -22,13 +22,14 @@ class ZipReader {
     log.layout = "npz";
     find_directory();
     for (std::size_t k = 0; k < members_; ++k) add_member(log);
-    if (log.columns.empty()) fail(path_, "a packed archive without NumPy arrays; save the arrays with numpy.savez");
+    if (log.columns.empty())
+      refuse_archive(path_, "a packed archive without NumPy arrays; save the arrays with numpy.savez");
     return log;
   }
 
  private:
   std::size_t number(std::size_t at, std::size_t size) const {
-    if (at > bytes_.size() || bytes_.size() - at < size) fail(path_, "the archive is cut off; save it again");
+    if (at > bytes_.size() || bytes_.size() - at < size) refuse_archive(path_, "the archive is cut off; save it again");
     std::size_t value = 0;
     for (std::size_t k = 0; k < size; ++k)
       value += static_cast<std::size_t>(static_cast<unsigned char>(bytes_[at + k])) << (8 * k);
@@ -38,7 +39,7 @@ class ZipReader {
   /// The directory stands at the end, and behind it where it begins.
   void find_directory() {
     const std::size_t end = bytes_.rfind("PK\x05\x06");
-    if (end == std::string_view::npos) fail(path_, "the archive is cut off; save it again");
+    if (end == std::string_view::npos) refuse_archive(path_, "the archive is cut off; save it again");
     members_ = number(end + 10, 2);
     at_ = number(end + 16, 4);
   }
@@ -53,12 +54,13 @@ class ZipReader {
     if (!name.ends_with(".npy")) return;
     name.remove_suffix(4);
     if (method != 0)
-      fail(path_,
-           fmt::format("'{}' is compressed; save the arrays with numpy.savez instead of savez_compressed", name));
+      refuse_archive(
+          path_, fmt::format("'{}' is compressed; save the arrays with numpy.savez instead of savez_compressed", name));
     const std::size_t begin = local + kLocal + number(local + 26, 2) + number(local + 28, 2);
-    if (begin > bytes_.size() || bytes_.size() - begin < packed) fail(path_, "the archive is cut off; save it again");
+    if (begin > bytes_.size() || bytes_.size() - begin < packed)
+      refuse_archive(path_, "the archive is cut off; save it again");
     taken_ += packed;
-    if (taken_ > bytes_.size()) fail(path_, "the members of the archive overlap; save it again");
+    if (taken_ > bytes_.size()) refuse_archive(path_, "the members of the archive overlap; save it again");
     add_array(bytes_.substr(begin, packed), name, log);
   }
 

@@ -1,6 +1,8 @@
 // What a report shows: each struct is one figure or block, filled by the caller in physical units.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -139,6 +141,15 @@ struct BarChart {
   std::vector<BarRow> rows;
   std::optional<std::pair<std::string, double>> reference;  ///< a vertical line: name and value
   bool folded = false;                                      ///< the title alone is shown until the reader opens it
+
+  /// What the longest bar stands for; above 0.
+  double longest() const {
+    double most = reference ? reference->second : 0.0;
+    for (const BarRow& row : rows)
+      for (const double value : row.values)
+        if (std::isfinite(value)) most = std::max(most, value);
+    return most > 0.0 ? most : 1.0;
+  }
 };
 
 /// Rows of text. A column whose every cell starts with a number is aligned right.

@@ -35,16 +35,6 @@ std::string caption_of(std::string_view title, std::string_view caption) {
   return fmt::format("<figcaption>{}{}</figcaption>\n", element("strong", title), element("span", caption));
 }
 
-double longest_bar(const BarChart& chart) {
-  double longest = chart.reference ? chart.reference->second : 0.0;
-  for (const BarRow& row : chart.rows) {
-    for (const double value : row.values) {
-      if (std::isfinite(value)) longest = std::max(longest, value);
-    }
-  }
-  return longest > 0.0 ? longest : 1.0;
-}
-
 std::string reference_mark(const BarChart& chart, double longest) {
   if (!chart.reference) return "";
   return fmt::format("<i class=\"reference\" style=\"left:{:.2f}%\"></i>", 100.0 * chart.reference->second / longest);
@@ -94,7 +84,7 @@ std::string verdict(const Verdict& verdict) {
 }
 
 std::string bar_chart(const BarChart& chart) {
-  const double longest = longest_bar(chart);
+  const double longest = chart.longest();
   std::string rows;
   for (const BarRow& row : chart.rows) {
     std::string bars;

@@ -84,16 +84,6 @@ int environment_columns() {
   return columns == nullptr ? 0 : std::atoi(columns);
 }
 
-double longest_bar(const BarChart& chart) {
-  double longest = chart.reference ? chart.reference->second : 0.0;
-  for (const BarRow& row : chart.rows) {
-    for (const double value : row.values) {
-      if (std::isfinite(value)) longest = std::max(longest, value);
-    }
-  }
-  return longest;
-}
-
 template <typename Items, typename Width>
 int widest(const Items& items, Width width) {
   int most = 0;
@@ -135,8 +125,8 @@ std::string terminal_bars(const BarChart& chart, const Terminal& terminal) {
   const int value_width = 10 + visible_width(chart.unit);
   const int room = terminal.columns - label_width - 2 - name_width - value_width;
   const int width = std::clamp(room, 8, widest_bar);
-  const double longest = longest_bar(chart);
-  const double scale = longest > 0.0 ? 1.0 / longest : 0.0;
+  const double longest = chart.longest();
+  const double scale = 1.0 / longest;
   const int mark =
       chart.reference ? std::min(width - 1, static_cast<int>(chart.reference->second * scale * width)) : -1;
 

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
 #include <sstream>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/fourier.hpp"
 
@@ -128,7 +129,7 @@ void detrend(std::vector<double>& x, std::size_t period) {
     const double at = (static_cast<double>(p * period) + 0.5 * (scale - 1.0) - centre) / scale;
     for (int power = 0; power <= degree; ++power) powers(row, power) = std::pow(at, power);
   }
-  const Eigen::VectorXd found = powers.colPivHouseholderQr().solve(means);
+  const Eigen::VectorXd found = least_squares_solution(powers, means);
   const double start = x.front();
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double at = (static_cast<double>(k) - centre) / scale;
