@@ -82,14 +82,14 @@ struct SheetExample {
 /// Typical drives: a ball screw of 10 mm a turn, and a linear motor with a scale of 1 um.
 std::vector<SheetExample> examples() {
   sim::DriveDescription screw, motor;
-  screw.name = "x";
+  screw.name = std::string("x");
   screw.data.amplifier_gain_A_per_V = 2.5;
   screw.data.torque_constant_Nm_per_A = 0.48;
   screw.data.lead = 1.5915;
   screw.data.dac_resolution_V = motor.data.dac_resolution_V = 3.05e-4;
   screw.data.encoder_resolution = 1e-3;
   screw.data.tach_noise_variance = 0.05;
-  motor.name = "z";
+  motor.name = std::string("z");
   motor.data.kind = sim::DriveKind::linear;
   motor.data.force_constant_N_per_V = 60.0;
   motor.data.sample_period_s = 5e-4;
