@@ -35,6 +35,11 @@ double position_of(host::BoardClient& board, std::uint8_t axis, const firmware::
   return static_cast<double>(board.status().axis.at(axis).counts()) * resolution;
 }
 
+/// A linear drive's lead is 1.
+const char* unit_of(std::uint8_t axis, const firmware::ParameterValues& values) {
+  return values.axis(axis).get<"drive.lead">() == 1.0F ? "m" : "mm";
+}
+
 void report(const MotionArguments& arguments, const char* what, nlohmann::json document) {
   document["format"] = "axis-motion/1";
   document["command"] = what;
@@ -77,9 +82,10 @@ void jog(const MotionArguments& arguments) {
   report(arguments, "jog", {{"axis", arguments.axis}, {"from", before}, {"to", after}});
   if (!talks(arguments)) return;
   if (arguments.dry_run)
-    fmt::print("would jog {} at {:g} for {:g} s\n", arguments.axis, arguments.value, arguments.duration_s);
+    fmt::print("would jog {} at {:g} {}/s for {:g} s\n", arguments.axis, arguments.value, unit_of(axis, values),
+               arguments.duration_s);
   else
-    fmt::print("{} went from {:.4f} to {:.4f}{}\n", arguments.axis, before, after,
+    fmt::print("{} went from {:.4f} to {:.4f} {}{}\n", arguments.axis, before, after, unit_of(axis, values),
                interrupted() ? " (interrupted)" : "");
 }
 
@@ -117,12 +123,13 @@ void move(const MotionArguments& arguments) {
   const double after = position_of(board, axis, values);
   report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
   if (!talks(arguments)) return;
-  fmt::print("{} {} {:.4f} from {:.4f}{}\n", arguments.axis, arguments.dry_run ? "would move to" : "is at",
-             arguments.dry_run ? target : after, before, interrupted() ? " (interrupted)" : "");
+  fmt::print("{} {} {:.4f} {unit} from {:.4f} {unit}{}\n", arguments.axis,
+             arguments.dry_run ? "would move to" : "is at", arguments.dry_run ? target : after, before,
+             interrupted() ? " (interrupted)" : "", fmt::arg("unit", unit_of(axis, values)));
 }
 
 void add_take_over(CLI::App& command, MotionArguments& arguments) {
-  command.add_flag("--take-over", arguments.take_over, "even while another program moves the axes: it loses them");
+  command.add_flag("--take-over", arguments.take_over, "take the axes from another program that moves them");
 }
 
 /// What finds home, from now on: set where the loop is open, and closed again. Consent as for `enable`.
@@ -170,9 +177,9 @@ void home(const MotionArguments& arguments) {
   if (arguments.dry_run)
     fmt::print("would {}\n", arguments.here ? "take the place where the axis stands for home" : "look for home");
   else
-    fmt::print("{} {}{}, at {:.4f}{}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)",
+    fmt::print("{} {}{}, at {:.4f} {}{}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)",
                arguments.here ? std::string(" where it stands") : fmt::format(" by {}", kHomingModes.at(mode)), at,
-               sets ? "; `axistool save` keeps its mode" : "");
+               unit_of(axis, values), sets ? "; `axistool save` keeps its mode" : "");
 }
 
 }  // namespace
@@ -217,8 +224,7 @@ void add_home(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("home", "Let an enabled axis find the place that positions are counted from");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
-  command->add_flag("--here", arguments->here,
-                    "the axis stands at homing.position: your word for it, where homing.mode is 0");
+  command->add_flag("--here", arguments->here, "take the present place as homing.position, where homing.mode is 0");
   command
       ->add_option(
           "--mode", arguments->mode,

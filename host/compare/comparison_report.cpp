@@ -55,12 +55,12 @@ bool is_same_file(const std::string& a, const std::string& b) {
 /// Trains on what the model was fitted to, where that is known, and never on a record that was held back from it.
 std::string diagnose_command(const ComparedModel& compared) {
   std::vector<std::string> train = training_files(compared.model), validate;
-  const bool is_known = !train.empty();
   for (const RecordError& record : compared.comparison.records) {
     const bool trained =
         std::ranges::any_of(train, [&](const std::string& name) { return is_same_file(name, record.path); });
-    if (!trained) (is_known ? validate : train).push_back(record.path);
+    if (!trained) validate.push_back(record.path);
   }
+  if (train.empty()) train = {"TRAINING.csv"};
   std::string command = "axistool diagnose " + shell_word(compared.path) + " --train";
   for (const std::string& path : train) command += " " + shell_word(path);
   if (!validate.empty()) command += " --validate";
@@ -108,8 +108,10 @@ Verdict verdict_of(const ComparedModel& compared) {
   }
   verdict.sentences.push_back(capitalised(where_it_fails(comparison.where)) + ".");
   if (comparison.log_faults.empty()) {
-    verdict.sentences.push_back("Next: find out which effect is missing.");
     verdict.command = diagnose_command(compared);
+    verdict.sentences.push_back(training_files(compared.model).empty()
+                                    ? "Next: find out which effect is missing, trained on other records than these."
+                                    : "Next: find out which effect is missing.");
   }
   return verdict;
 }

@@ -120,6 +120,7 @@ TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_EQ(run("set-params x.feedback.k1=20").exit_code, 8);
   EXPECT_EQ(run("move x 5").exit_code, 8) << "not homed";
   ASSERT_EQ(run("home x --here").exit_code, 0);
+  EXPECT_THAT(run("jog x 10 --for 0.1").output, HasSubstr(" mm"));
   const nlohmann::json moved = json("move x 5");
   EXPECT_NEAR(moved["to"].get<double>(), 5.0, 0.01);
   EXPECT_NEAR(json("move x -2 --relative")["to"].get<double>(), 3.0, 0.01);
