@@ -130,7 +130,9 @@ void add_compare(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_option("--traces", arguments->traces, "record whose traces the page draws; default: the largest error");
-  command->add_option("--stretch", arguments->stretch, "from and to, s, of that record: lit in all plots of the page")
+  command
+      ->add_option("--stretch", arguments->stretch,
+                   "from and to, s, of that record: highlighted in all plots of the page")
       ->expected(2);
   command->add_option("--period", arguments->period_mm, "draw what is missing within a period of the travel, mm")
       ->check(CLI::PositiveNumber);

@@ -287,8 +287,8 @@ void add_design(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--zeta", arguments->options.damping, "damping ratio of the closed loop")->capture_default_str();
   command->add_option("--accept", arguments->accepted,
-                      "design although the values of this effect (inertia, viscous, coulomb, …) are none that a drive "
-                      "has or that its records determine");
+                      "design although this effect's values (inertia, viscous, coulomb, …) are physically impossible "
+                      "or not determined by the records");
   add_input(*command, "--response", arguments->response,
             "what `bode --json` wrote of this axis, or records of it: the design is shown on it, and --margin, "
             "--bandwidth and --notch auto are sought on it; of several models one such file each, in their order");
@@ -314,8 +314,8 @@ void add_design(CLI::App& app) {
       "`improve`, design again and set-params once.\n"
       "Several models are the axes of one machine: they get one closed loop (poles of loop and estimator, filters,\n"
       "feed-forward), as fast as the slowest axis allows at --margin, because axes that lag differently turn straight\n"
-      "lines and make circles ellipses. What remains is told by feed in um, beside what the best loop of each axis\n"
-      "(--own) would cost. Exit code 8: the model's values are none that a drive can have.");
+      "lines and make circles ellipses. Prints the remaining error by feed in um, and that with each axis's own best\n"
+      "loop (--own). Exit code 8: the model's values are physically impossible.");
   command->callback([arguments] {
     arguments->options.zero_phase = arguments->feedforward == "zero-phase";
     arguments->models.size() > 1 ? run_machine(*arguments) : run(*arguments);

@@ -59,11 +59,11 @@ void print(const host::Diagnosis& diagnosis) {
     fmt::print("Search incomplete (simulation budget exhausted) for: {}\n", fmt::join(diagnosis.not_searched, ", "));
   print_errors(diagnosis);
   if (diagnosis.candidates.empty()) return;
-  fmt::print("\n  {:<50} {:>9} {:>9} {:>11} {:>9}\n", "candidate", "train", "validate", "probability", "no luck");
+  fmt::print("\n  {:<50} {:>9} {:>9} {:>11} {:>10}\n", "candidate", "train", "validate", "probability", "not chance");
   constexpr std::size_t kShown = 8;
   for (std::size_t k = 0; k < std::min(kShown, diagnosis.candidates.size()); ++k) {
     const host::JudgedCandidate& candidate = diagnosis.candidates[k];
-    fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}% {:8.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
+    fmt::print("  {:<50} {:9.3f} {:9.3f} {:10.1f}% {:9.1f}%\n", fmt::format("{}", fmt::join(candidate.kinds, " + ")),
                diagnosis.told_of_training(candidate.train_after), diagnosis.told(candidate.after),
                100.0 * candidate.probability, 100.0 * candidate.confidence);
   }
@@ -106,7 +106,7 @@ void run(const DiagnoseArguments& arguments) {
 void add_diagnose(CLI::App& app) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command =
-      app.add_subcommand("diagnose", "which physical effect is missing from a model, and how sure is that");
+      app.add_subcommand("diagnose", "which physical effect is missing from a model, and how certain that is");
   arguments->add_to(*command);
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   add_input(*command, "--believed", arguments->beliefs,

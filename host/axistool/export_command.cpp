@@ -46,7 +46,8 @@ void add_export(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember({"mjcf", "urdf", "linuxcnc", "c", "modelica", "python"}));
   add_output(*command, "-o,--output", arguments->path, "file to write; LinuxCNC's .hal lines go beside it")->required();
-  add_input(*command, "--record", arguments->record, "tells by how much what cannot be expressed matters on it");
+  add_input(*command, "--record", arguments->record,
+            "record on which to measure the error of what the format cannot express");
   add_json_option(*command, arguments->json);
   command->footer(
       "Each file says what it cannot express.\n"

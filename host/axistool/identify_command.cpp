@@ -92,9 +92,10 @@ void add_identify(CLI::App& app) {
   add_output(*command, "-o,--output", arguments->output, "model to write (axis-model/1)");
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive: a model file, with or without effects");
   command
-      ->add_option("--method", arguments->method,
-                   "ls: friction left out; unbiased-ls: the paper's, with Coulomb friction; sliding-ls: inverse model "
-                   "on the samples that slide for sure. Default sliding-ls with a tachometer, unbiased-ls without")
+      ->add_option(
+          "--method", arguments->method,
+          "ls: friction left out; unbiased-ls: the paper's, with Coulomb friction; sliding-ls: inverse model on "
+          "samples where the axis certainly slides. Default sliding-ls with a tachometer, unbiased-ls without")
       ->check(CLI::IsMember({"unbiased-ls", "ls", "sliding-ls"}));
   command
       ->add_option(

@@ -103,14 +103,14 @@ void add_add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("add", "add one effect to a model and fit all parameters again");
   add_input(*command, "model", arguments->model, "model file (axis-model/1)")->required();
   command->add_option("kind", *kind, "the effect; axistool effects lists them")->required();
-  add_input(*command, "--train", arguments->train, "records that the fit may see")->required();
-  add_input(*command, "--validate", arguments->validate, "records that judge");
+  add_input(*command, "--train", arguments->train, "training records")->required();
+  add_input(*command, "--validate", arguments->validate, "validation records");
   add_output(*command, "-o,--output", arguments->output, "the new model")->required();
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");
   auto over = std::make_shared<std::string>();
-  command->add_option("--over", *over, "coordinate of a free_curve; the one that judges best unless given");
+  command->add_option("--over", *over, "coordinate of a free_curve; default: the one with the least validation error");
   command->callback([arguments, kind, over] {
     with_log_of_failure(arguments->json, "axis-addition/1", [&] { run_add(*arguments, *kind, *over); });
   });

@@ -20,9 +20,9 @@ struct InsightArguments {
 
   void add_to(CLI::App& command) {
     add_input(command, "model", model, "model file (axis-model/1)")->required();
-    add_input(command, "--train", train, "records that the fit may see")->required();
+    add_input(command, "--train", train, "training records")->required();
     add_input(command, "--validate", validate,
-              "records that judge; without them blocks of the training data are kept back");
+              "validation records; without them blocks of the training data are held back");
     command.add_option("--hold", held, "parameters that stay as they stand in the model, e.g. J_kg_m2")
         ->expected(1, -1);
     command.add_option("--prior", believed, "standard deviations of what the model says, e.g. J_kg_m2=1e-4")

@@ -154,8 +154,8 @@ void run(const OpenArguments& arguments) {
 
 void add_open(CLI::App& app) {
   const auto arguments = std::make_shared<OpenArguments>();
-  CLI::App* command =
-      app.add_subcommand("open", "Any controller's logs in: what they hold, records of it, what is missing");
+  CLI::App* command = app.add_subcommand(
+      "open", "Read any controller's logs: name the channels, write records, find the missing effect");
   add_input(
       *command, "LOG", arguments->logs,
       "logs: TwinCAT Scope, SINUMERIK trace, halsampler, halscope, ODrive, moteus, VESC, camonitor, drive monitors, "
@@ -168,7 +168,7 @@ void add_open(CLI::App& app) {
       ->excludes(sheet);
   command->add_option(
       "--map", arguments->map,
-      "column=channel[*factor][+shift], … in the place of what is understood (axistool help import); or the "
+      "column=channel[*factor][+shift], … in place of what was recognised (axistool help import); or the "
       "mapping.toml of an earlier log");
   add_input(*command, "--hal", arguments->hal, "the .hal file that names halsampler's columns");
   command->add_option("--period", arguments->period_s, "sampling period (s) of a log that does not tell it")
@@ -180,11 +180,10 @@ void add_open(CLI::App& app) {
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer(
-      "Every channel is listed with what it is taken as, the factor, why, and how sure that is. What is less than 90 % "
-      "sure\n"
-      "is asked on a terminal, and elsewhere refused without --yes. With --sheet or --kt it goes on: identify, "
-      "diagnose, one\n"
-      "page; a log that is called valid…, test… or check… judges. With --kt alone 1 mm stands for 1 rad.\n"
+      "Lists each channel: the quantity that it is taken as, the factor, the reason, and how sure that is. Below 90 %\n"
+      "it asks on a terminal; elsewhere it needs --yes. With --sheet or --kt it continues: identify, diagnose, one "
+      "page;\n"
+      "a log named valid…, test… or check… is for validation. With --kt alone 1 mm stands for 1 rad.\n"
       "Examples:\n"
       "  axistool open scope.csv                                  (only look)\n"
       "  axistool open steps.csv jog.csv --kt 0.6 -o x            (records, mapping)\n"

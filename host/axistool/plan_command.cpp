@@ -1,4 +1,4 @@
-// axistool plan: the run that best separates the explanations that are left.
+// axistool plan: the run that best tells the remaining explanations apart.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -98,7 +98,7 @@ void run(const PlanArguments& arguments) {
 
 void add_plan(CLI::App& app) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* command = app.add_subcommand("plan", "the run that separates the explanations that are left");
+  CLI::App* command = app.add_subcommand("plan", "plan the run that tells the remaining explanations apart");
   arguments->add_to(*command);
   command->add_option("--rivals", arguments->rivals, "explanations to separate; default: what diagnose leaves")
       ->delimiter(',')
@@ -116,11 +116,11 @@ void add_plan(CLI::App& app) {
       "    --box travel=40,speed=100,volts=3,time=10 -o run.toml --json plan.json\n"
       "  axistool excite x run.toml -o run.csv\n"
       "  axistool diagnose x.toml --train steps.csv run.csv --believed plan.json\n"
-      "Simulates pieces of motion with each rival as the truth, under the controller that `axistool design MODEL` "
-      "gives\n"
-      "the board, and takes those that the others explain worst however they bend. The odds are stated before.\n"
-      "Where no motion in the box separates, it says what does. Exit code 0 in both cases; 1 where diagnose leaves\n"
-      "nothing to separate.");
+      "Simulates candidate motions with each explanation as the truth, under the controller of `axistool design "
+      "MODEL`,\n"
+      "and keeps those that the other explanations fit worst, refitted as they may be. States the odds beforehand.\n"
+      "Where no motion in the box tells them apart, it says what would. Exit code 0 in both cases; 1 where diagnose\n"
+      "leaves nothing to tell apart.");
   command->callback([arguments] { with_log_of_failure(arguments->json, "axis-plan/1", [&] { run(*arguments); }); });
 }
 

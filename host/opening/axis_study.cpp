@@ -228,7 +228,7 @@ void AxisStudy::settle_position() {
                                        : "position without a unit, taken as mm"};
   if (const auto range = wrap_range(values(*position_))) {
     axis_->unwrap.push_back({"x_mm", *range * std::abs(decision->factor)});
-    decision->why += fmt::format("; begins again after {:.6g}", *range);
+    decision->why += fmt::format("; wraps at {:.6g}", *range);
   }
   position_taken_ = decision;
   take(*position_, *decision);

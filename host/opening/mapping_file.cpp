@@ -39,7 +39,7 @@ std::string format_mapping_file(const std::vector<MappedAxis>& axes) {
       text += fmt::format("resample_s = {:#}  # uneven rows are made even with this period\n", *axis.resample_s);
     for (std::size_t k = 0; k < axis.unwrap.size(); ++k)
       text += fmt::format("{}{}{}", k == 0 ? "unwrap = [" : ", ", quoted(axis.unwrap[k]),
-                          k + 1 == axis.unwrap.size() ? "]  # begins again after so much\n" : "");
+                          k + 1 == axis.unwrap.size() ? "]  # range at which it wraps\n" : "");
   }
   return text;
 }

@@ -7,8 +7,8 @@
 #include <functional>
 #include <numeric>
 
-#include "host/parallel.hpp"
 #include "host/diagnose/prepared_sets.hpp"
+#include "host/parallel.hpp"
 
 namespace host {
 
@@ -51,7 +51,7 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
     sim::DriveDescription& model = decision.rivals[k].model;
     const double known = chi_square(model, before);
     model = refitted(model, both);
-    // A fit that the run has freed from a valley explains no more of the run for explaining more of what was before.
+    // A fit that leaves a local minimum by the run explains earlier records better, too: that is not counted.
     decision.chi_square[k] = chi_square(model, both) - std::min(known, chi_square(model, before));
   });
   decision.dispersion = dispersion_of(decision.rivals, both);

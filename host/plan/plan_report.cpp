@@ -102,7 +102,7 @@ void add_considered(Report& report, const Plan& plan) {
 
 void write_plan_report(const Plan& plan, const std::string& model_name, const std::string& run_file,
                        const std::string& path) {
-  Report report("Plan for " + model_name, "The run that separates the explanations that are left");
+  Report report("Plan for " + model_name, "The run that tells the remaining explanations apart");
   report.verdict(verdict_block(plan, run_file));
   report.section("What to expect", "");
   add_pairs(report, plan);
