@@ -25,15 +25,6 @@ void print(const std::string& name, const host::RealAnswer& answer, std::size_t 
              host::status_name(verdict.status), fmt::join(verdict.effects, ", "),
              orders.empty() ? "" : fmt::format(" orders {:g}", fmt::join(orders, " ")),
              answer.not_there.empty() ? "" : fmt::format("; not there: {}", fmt::join(answer.not_there, ", ")));
-  if (answer.evidence) {
-    std::vector<std::string> named;
-    for (const host::CertainEffect& effect : answer.evidence->certain)
-      named.push_back(fmt::format("{}{} {:.1f} % ({:.1f} -> {:.1f} %)", fmt::join(effect.group, " or "),
-                                  effect.named ? "" : " (small)", 100.0 * effect.probability, 100.0 * effect.before,
-                                  100.0 * effect.after));
-    fmt::print("{:<{}}  by evidence: {}\n", "", width,
-               named.empty() ? "nothing certain" : fmt::format("{}", fmt::join(named, ", ")));
-  }
   std::fflush(stdout);
 }
 
@@ -46,17 +37,6 @@ nlohmann::json to_json(const std::string& name, const host::RealAnswer& answer) 
                              {"effects", diagnosis.verdict.effects},
                              {"alternatives", diagnosis.verdict.alternatives},
                              {"seconds", answer.seconds}};
-  if (answer.evidence) {
-    document["evidence"] = {{"nothing_more", answer.evidence->nothing},
-                            {"memory_log_odds", answer.evidence->memory_log_odds},
-                            {"certain", nlohmann::json::array()}};
-    for (const host::CertainEffect& effect : answer.evidence->certain)
-      document["evidence"]["certain"].push_back(
-          {{"kinds", effect.group},
-           {"probability", effect.probability},
-           {"named", effect.named},
-           {"relative_error", {{"before", effect.before}, {"after", effect.after}}}});
-  }
   if (diagnosis.screen)
     document["relative_error"] = {{"before", diagnosis.screen->base.validate},
                                   {"after", diagnosis.screen->best().validate}};

@@ -89,18 +89,11 @@ double share_in(const ErrorFigures& error, const std::string& name) {
   return channel == error.channels.end() ? 0.0 : channel->share.value_or(0.0);
 }
 
-/// Each step of a regression that is certain.
 void fill_by_effort(Diagnosis& diagnosis) {
   const EffortScreen& screen = *diagnosis.screen;
-  double before = screen.base.validate;
-  std::size_t known = 0;
-  for (const ScreenedModel& step : screen.chosen) {
-    const Kinds added(step.kinds.begin() + static_cast<std::ptrdiff_t>(known), step.kinds.end());
-    const double probability = probability_of(diagnosis, added);
-    if (probability >= kClaimed) diagnosis.verdict.found.push_back({added, probability, before, step.validate});
-    before = step.validate;
-    known = step.kinds.size();
-  }
+  for (const CertainEffect& effect : screen.certain)
+    if (effect.group.size() == 1)
+      diagnosis.verdict.found.push_back({effect.group, effect.probability, effect.before, effect.after});
 }
 
 /// One by one, as far as the search has fitted the models between.
@@ -156,6 +149,7 @@ void settle_status(Diagnosis& diagnosis) {
 
 std::vector<std::string> modelled_kinds(const Diagnosis& diagnosis) {
   const DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (diagnosis.by_effort && diagnosis.screen) return diagnosis.screen->best().kinds;
   if (verdict.status == Status::ambiguous) return {verdict.effects.front()};
   Kinds kinds = verdict.effects;
   for (const Kinds& group : verdict.alternatives) {

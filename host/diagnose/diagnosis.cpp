@@ -140,7 +140,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     return result;
   };
   const auto by_effort = [&](bool rough) {
-    std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, split, training, validation, screen, rough);
+    std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, split, screen, rough);
     if (diagnosis) {
       diagnosis->log = measured.log();
       diagnosis->rows = rows;

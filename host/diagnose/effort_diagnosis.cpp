@@ -9,7 +9,6 @@
 
 #include "host/diagnose/all_clear.hpp"
 #include "host/diagnose/certainty.hpp"
-#include "host/diagnose/probability.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/effort/free_curve_fit.hpp"
@@ -24,6 +23,8 @@ namespace {
 /// The best model of a made drive, whatever it lacks, leaves one to five times the sensors' noise; real machines leave
 /// ten to sixty.
 constexpr double kFarAboveNoise = 6.0;
+/// That one answer names; a reader looks at no more.
+constexpr std::size_t kMostEffects = 6;
 /// An effort is explained when this part of the error remains: nine tenths of its square are gone.
 constexpr double kExplainedPart = 0.316;
 
@@ -61,33 +62,32 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
     if (!screen.steps.empty() && !screen.steps.front().empty()) {
       const ScreenedModel& closest = screen.steps.front().front();
       verdict.explanation +=
-          fmt::format(" The closest, {}, leaves {:.1f} %{}.", described(closest, 0), 100.0 * closest.validate,
-                      screen.contradicted ? ", but with it the motion's prediction gets worse" : "");
+          fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest, 0), 100.0 * closest.validate);
     }
     verdict.next_experiment =
         "Repeat one motion ten times: what repeats a model can explain. Then jogs at several speeds over the whole "
         "travel, both ways.";
   } else {
     const std::string& first = screen.chosen.front().kinds.front();
-    verdict.status = Status::missing;
-    verdict.effects = screen.chosen.back().kinds;
     verdict.explanation += steps_in_words(screen);
     verdict.next_experiment = std::string(sim::find_effect(first)->separate_by) + ".";
     for (std::size_t step = 0; step < screen.chosen.size(); ++step) {
-      if (screen.tied[step].empty()) continue;
-      std::vector<std::string> group = {screen.chosen[step].kinds.back()};
+      const std::string& kind = screen.chosen[step].kinds.back();
+      if (screen.tied[step].empty()) {
+        verdict.effects.push_back(kind);
+        continue;
+      }
+      std::vector<std::string> group = {kind};
       group.insert(group.end(), screen.tied[step].begin(), screen.tied[step].end());
       if (group.back() == "backlash" && screen.hardening)
         verdict.explanation +=
             fmt::format(" Its frequency is {:.0f} % higher where it pulls {:.1f} times as much, as behind a gap.",
                         100.0 * (screen.hardening->frequency_ratio - 1.0), screen.hardening->pull_ratio);
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
-      if (screen.chosen.size() == 1) {
-        verdict.status = Status::ambiguous;
-        verdict.effects = group;
-      }
       verdict.alternatives.push_back(std::move(group));
     }
+    verdict.status = verdict.effects.empty() ? Status::ambiguous : Status::missing;
+    if (verdict.effects.empty()) verdict.effects = verdict.alternatives.front();
   }
   if (screen.repeatable)
     verdict.explanation += fmt::format(
@@ -102,32 +102,6 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
 
 /// Errors of the forward prediction that are so near to each other say nothing.
 constexpr double kHardly = 0.98;
-/// Over windows so short that the position shows a force before it adds up to a drift; a second mass, whose state no
-/// sensor shows at a restart, needs the usual ones.
-PreparedSets predicted_forward(const sim::DriveDescription& best, const std::vector<const Record*>& training,
-                               const std::vector<const Record*>& validation) {
-  const double window_s =
-      sim::Drive(best).has_second_mass() ? kWindow_s : std::min(kWindow_s, rough_window_s(training));
-  PreparedSets sets = split_sets(best, training, validation, window_s);
-  renew_floors(sets.training, best);
-  renew_floors(sets.validation, best);
-  return sets;
-}
-
-/// Whether effects that take hardly more than half of the squared effort make the motion's prediction worse: then they
-/// only stand for what is missing. What takes more is right whatever a late channel makes of the prediction.
-bool is_contradicted(const EffortScreen& screen, const std::vector<const Record*>& training,
-                     const std::vector<const Record*>& validation) {
-  constexpr double kSure = 0.5;  // of the error remains: three quarters of its square are gone
-  if (screen.chosen.empty() || screen.rows.steady || screen.best().validate < kSure * screen.base.validate)
-    return false;
-  const PreparedSets sets = predicted_forward(screen.best().model, training, validation);
-  const auto error = [&](const ScreenedModel& model) {
-    return error_of(sim::Drive(model.model), sets.validation).combined;
-  };
-  return error(screen.best()) > error(screen.base) / kHardly;
-}
-
 /// No form of a gap was fitted that could have its half of the spring's probability.
 void share_with_the_gap(const EffortScreen& screen, Diagnosis& diagnosis) {
   const auto holds_the_gap = [](const std::vector<std::string>& group) {
@@ -142,20 +116,39 @@ void share_with_the_gap(const EffortScreen& screen, Diagnosis& diagnosis) {
     }
 }
 
-/// The steps of a regression end where the verdict does.
-void keep_what_is_named(const Diagnosis& diagnosis, EffortScreen& screen) {
-  const std::vector<std::string> named = modelled_kinds(diagnosis);
-  while (!screen.chosen.empty() && !std::ranges::is_permutation(screen.chosen.back().kinds, named)) {
-    screen.chosen.pop_back();
-    screen.tied.pop_back();
+/// Every kind that was tried, with its probability: a later step's share what the steps before it hold, and what was
+/// chosen before the last step stands for its group.
+void assign_evidence(const EffortScreen& screen, Diagnosis& diagnosis) {
+  const std::size_t last = screen.chosen.size() - 1;  // beyond all where nothing was chosen
+  std::size_t whole = 0;
+  double held = 1.0, others = 0.0;
+  for (std::size_t step = 0; step < screen.steps.size(); ++step) {
+    double group = 0.0;
+    for (const ScreenedModel& tried : screen.steps[step]) {
+      diagnosis.candidates.push_back(judged_by_effort(screen, tried));
+      double& probability = diagnosis.candidates.back().probability;
+      const bool is_chosen = step < screen.chosen.size() && tried.kinds == screen.chosen[step].kinds;
+      const bool is_tied = step < screen.chosen.size() && std::ranges::count(screen.tied[step], tried.kinds.back()) > 0;
+      if (is_chosen || (is_tied && step != last))
+        group += tried.probability;
+      else
+        others += probability = held * tried.probability;
+      if (is_chosen) whole = diagnosis.candidates.size() - 1;
+    }
+    if (step < screen.chosen.size()) held *= group;
   }
-  if (!screen.chosen.empty() || named.empty()) return;
-  for (const std::vector<ScreenedModel>& step : screen.steps)
-    for (const ScreenedModel& tried : step)
-      if (screen.chosen.empty() && std::ranges::is_permutation(tried.kinds, named)) {
-        screen.chosen = {tried};
-        screen.tied = {{}};
-      }
+  DiagnosisVerdict& verdict = diagnosis.verdict;
+  if (screen.chosen.empty()) {
+    const double something = 1.0 / (1.0 + std::exp(-screen.memory_log_odds));
+    verdict.probability_nothing = (1.0 - others) * (1.0 - something);
+    verdict.probability_other = (1.0 - others) * something;
+    return;
+  }
+  double further = 0.0;
+  for (const JudgedCandidate& candidate : diagnosis.candidates)
+    if (candidate.kinds.size() > diagnosis.candidates[whole].kinds.size()) further += candidate.probability;
+  diagnosis.candidates[whole].probability = held - further;
+  verdict.probability_other = 1.0 - (held - further) - others;
 }
 
 EffortError effort_error(const EffortScreen& screen) {
@@ -199,38 +192,22 @@ bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
 }
 
 std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
-                                            const std::vector<const Record*>& training,
-                                            const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& seen, bool rough) {
   if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
-  auto screen = std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation, 3, sets.absent));
-  if (is_contradicted(*screen, training, validation)) {
-    screen->contradicted = true;
-    screen->chosen.clear();
-    screen->tied.clear();
-  }
+  auto screen =
+      std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation, kMostEffects, sets.absent));
   if (!screen->empty()) seen = screen;
   if (!effort_decides(*screen, sets.validation)) return {};
   Diagnosis diagnosis(sets);
   diagnosis.measure = Measure::effort;
   diagnosis.rough = diagnosis.by_effort = true;
   diagnosis.base = screen->base.model;
-  for (std::size_t step = 0; step < screen->steps.size(); ++step)
-    for (const ScreenedModel& tried : screen->steps[step]) {
-      diagnosis.candidates.push_back(judged_by_effort(*screen, tried));
-      // What was not worth its place on top of the verdict is no evidence for the whole, and what a further effect has
-      // overtaken is no rival of it.
-      if ((step >= screen->chosen.size() && step > 0) || step + 1 < screen->chosen.size())
-        diagnosis.candidates.back().luck = 1.0;
-    }
-  std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
   diagnosis.given_train = diagnosis.before_train = over_noise(*screen, screen->base, false);
   diagnosis.given_validate = diagnosis.before_validate = over_noise(*screen, screen->base, true);
   diagnosis.verdict = verdict_of(*screen, model);
-  assign_probabilities(diagnosis);
+  assign_evidence(*screen, diagnosis);
   share_with_the_gap(*screen, diagnosis);
-  settle_status(diagnosis);
-  keep_what_is_named(diagnosis, *screen);
+  std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
   diagnosis.best = screen->best().model;
   diagnosis.after_train = over_noise(*screen, screen->best(), false);
   diagnosis.after_validate = over_noise(*screen, screen->best(), true);

@@ -25,8 +25,6 @@ bool effort_decides(const EffortScreen& screen, const RecordSet& validation);
 /// regression saw, where it saw anything. `sets`: of these records, split_sets() of the model. `rough`: the search by
 /// motion has shown that it is not to judge. Throws as prepare_sets() does.
 std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
-                                            const std::vector<const Record*>& training,
-                                            const std::vector<const Record*>& validation,
                                             std::shared_ptr<const EffortScreen>& screen, bool rough = false);
 
 /// What the forward prediction says of the effects that the regression chose; a sentence, empty where none is due.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/certainty.hpp"
@@ -38,26 +37,8 @@ Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::stri
   return rung;
 }
 
-/// What was tried on top of the effects that a regression chose, and halves the squared error that they leave, on both
-/// sets and for certain: too little of the torque or force to be named, but not to be left to the controller. Null
-/// where there is none.
-const ScreenedModel* halves_the_rest(const EffortScreen& screen) {
-  constexpr double kHalf = 0.707;
-  constexpr double kLeastConfidence = 0.99;  // as for what is named (effort_screen.cpp)
-  if (screen.chosen.empty() || screen.steps.empty()) return nullptr;
-  const ScreenedModel& best = screen.best();
-  const ScreenedModel* found = nullptr;
-  for (const ScreenedModel& tried : screen.steps.back()) {
-    const bool on_top = tried.kinds.size() > best.kinds.size() &&
-                        std::ranges::equal(best.kinds, std::span(tried.kinds).first(best.kinds.size()));
-    if (!on_top || tried.confidence < kLeastConfidence) continue;
-    if (tried.train > kHalf * best.train || tried.validate > kHalf * best.validate) continue;
-    if (found == nullptr || tried.validate < found->validate) found = &tried;
-  }
-  return found;
-}
-
-/// The same of a search by motion, on top of what was added before.
+/// What a search by motion tried on top of what was added before, and halves the squared error that is left, on both
+/// sets and for certain: too little to be named, but not to be left to the controller. Null where there is none.
 const JudgedCandidate* halves_the_rest(const Diagnosis& diagnosis) {
   constexpr double kHalf = 0.707;
   const JudgedCandidate* found = nullptr;
@@ -89,7 +70,6 @@ void append_effort_ladder(const Diagnosis& diagnosis, Improvement& result) {
     result.model = step.model;
   };
   for (const ScreenedModel& step : screen.chosen) append(step);
-  if (const ScreenedModel* further = halves_the_rest(screen)) append(*further);
   result.stopped_because = "no further effect takes its part of the effort that is left";
 }
 
@@ -200,7 +180,10 @@ Addition addition_of(const EffortScreen& screen, const ScreenedModel& added, con
 /// The addition by plain least squares, where that is to judge and knows the effect.
 std::optional<Addition> add_by_effort(const sim::DriveDescription& model, const std::string& kind,
                                       const PreparedSets& sets) {
-  const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 1);
+  std::vector<std::string> others;
+  for (const sim::EffectInfo* effect : sim::catalogue())
+    if (effect->kind != kind) others.emplace_back(effect->kind);
+  const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 1, others);
   if (!effort_decides(screen, sets.validation) || screen.steps.empty()) return {};
   for (const ScreenedModel& tried : screen.steps.front()) {
     if (tried.kinds.size() != 1 || tried.kinds.front() != kind) continue;

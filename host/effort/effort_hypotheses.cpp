@@ -28,7 +28,7 @@ constexpr double kTails[] = {0.3, 1.0, 5.0, 25.0};
 constexpr Index kTailCount = 4;
 /// A base parameter is known to some three times its least-squares value before the measurement.
 constexpr double kBaseKnownTo = 3.0;
-/// When within a row a command or a current acts, in samples (the base's own shift is taken out before).
+/// When within a row a measured current acts, in samples (the base's own shift is taken out before).
 constexpr double kInstantKnownTo = 0.25;
 /// Kinds whose approximate evidence lies so far behind the best, in nats, are not fitted: e^-30 changes no odds.
 constexpr double kOutOfReach = 30.0;
@@ -38,30 +38,15 @@ constexpr std::size_t kStarts = 4;  // from which the form of one kind is refine
 
 double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
 
-/// The rows that train come first.
-Evidence of_training_rows(const EffortRows& rows, const Memory& memory, double least_noise) {
-  const auto count = static_cast<Index>(std::ranges::count(rows.judges, false));
-  std::vector<RowRun> runs = runs_of(rows);
-  std::erase_if(runs, [&](const RowRun& run) { return run.first >= count; });
-  Memory part = memory;
-  part.columns = memory.columns.topRows(count).eval();
-  return {rows.effort.head(count), std::move(runs), std::move(part), least_noise};
-}
-
 /// More rows say nothing new of a dozen parameters and cost time with the square of the memory's columns.
 constexpr std::size_t kMostRows = 2500;
-
-double longest_period_s(const EffortRows& rows) {
-  double longest_s = 0.0;
-  for (const EffortSignals& signals : rows.signals) longest_s = std::max(longest_s, signals.period_s);
-  return longest_s;
-}
 
 /// A form of an effect before it is fitted.
 struct Form {
   std::string kind;
   MatrixXd columns;  ///< of RMS 1
   VectorXd factors;  ///< that these columns were divided by
+  double log_unit;   ///< what the logs gain or lose where what is left counts in another unit
   std::function<EffortTerm()> term;
   std::vector<int> sign;
 };
@@ -73,15 +58,22 @@ struct Weighed {
 };
 
 /// The columns of a term at RMS 1; nothing where one of them vanishes.
-std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vector<int> sign,
+std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vector<int> sign, double acting,
                             std::function<EffortTerm()> term) {
-  Form form{std::move(kind), columns, VectorXd(columns.cols()), std::move(term), std::move(sign)};
+  const double log_unit = static_cast<double>(columns.rows()) * std::log(acting);
+  Form form{std::move(kind), columns, VectorXd(columns.cols()), log_unit, std::move(term), std::move(sign)};
   for (Index c = 0; c < columns.cols(); ++c) {
     form.factors(c) = rms(columns.col(c));
     if (!(form.factors(c) > 0.0) || !std::isfinite(form.factors(c))) return {};
     form.columns.col(c) /= form.factors(c);
   }
   return form;
+}
+
+double log_unit(const std::vector<EffortTerm>& terms, const Evidence& evidence) {
+  double sum = 0.0;
+  for (const EffortTerm& term : terms) sum += std::log(term.acting);
+  return static_cast<double>(evidence.rows().size()) * sum;
 }
 
 /// A few waves over the travel, or a few a turn.
@@ -117,8 +109,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
       thin_(thinned(rows, std::max<std::size_t>(1, (rows.size() + kMostRows / 2) / kMostRows))),
       coulomb_(coulomb),
       evidence_(thin_.rows.effort, runs_of(thin_.rows), effort_memory(thin_.rows, thin_.of(explained), coulomb),
-                std::max(rows.noise, 1e-9 * coulomb)),
-      training_(of_training_rows(thin_.rows, evidence_.memory(), std::max(rows.noise, 1e-9 * coulomb))) {
+                std::max(rows.noise, 1e-9 * coulomb)) {
   const auto rows_count = static_cast<Index>(thin_.rows.size());
   base_.columns.resize(rows_count, 0);
   std::vector<double> deviations;
@@ -164,7 +155,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   Known known = known_with(chosen);
   // When the torque or force acts is known to a part of a sample: a nuisance, unless a delay is what is missing.
   for (const EffortTerm& term : terms)
-    if (term.kind == "input_delay") known.add(thin_.of(term.columns.col(0)), kInstantKnownTo * longest_period_s(rows_));
+    if (term.kind == "input_delay" && rows_.unknown_instant_s > 0.0)
+      known.add(thin_.of(term.columns.col(0)), kInstantKnownTo * rows_.unknown_instant_s);
   NextEffects found;
   found.fit = evidence_.fit(known.columns, known.deviations);
   constexpr int kAgain = 3;  // the fixed point of the sizes may be slow
@@ -185,7 +177,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   const auto is_excluded = [&](const std::string& kind) { return std::ranges::find(excluded, kind) != excluded.end(); };
   for (const EffortTerm& term : terms) {
     if (is_excluded(term.kind)) continue;
-    std::optional<Form> form = form_of(term.kind, thin_.of(term.columns), term.sign, [&term] { return term; });
+    std::optional<Form> form =
+        form_of(term.kind, thin_.of(term.columns), term.sign, term.acting, [&term] { return term; });
     counts[term.kind] += 1.0;
     if (form) forms[term.kind].push_back(*std::move(form));
   }
@@ -205,7 +198,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       counts[kind] += static_cast<double>(waves.size());
       const VectorXd thin_weight = thin_.of(*weight);
       for (const Wave& wave : most_promising(waves, thin_.rows, thin_weight, left)) {
-        std::optional<Form> form = form_of(kind, wave_columns(thin_.rows, thin_weight, wave), {0, 0},
+        std::optional<Form> form = form_of(kind, wave_columns(thin_.rows, thin_weight, wave), {0, 0}, 1.0,
                                            [this, kind = std::string(kind), weight = *weight, wave] {
                                              return wave_term(model_, rows_, kind, weight, wave);
                                            });
@@ -237,7 +230,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       for (const Form& form : forms.at(kind.name)) {
         const VectorXd gains = evidence_.gains(without ? bare : now, form.columns, form.sign, scales);
         for (Index s = 0; s < kTailCount; ++s)
-          if (std::isfinite(gains(s))) ranked.push_back({&form, scales(s), gains(s)});
+          if (std::isfinite(gains(s))) ranked.push_back({&form, scales(s), gains(s) + form.log_unit});
       }
       std::ranges::stable_sort(ranked, std::greater(), &Weighed::log_gain);
       if (!ranked.empty()) kind.best = std::max(kind.best, ranked.front().log_gain);
@@ -277,7 +270,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     std::vector<double> gains;
     for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
     const double spread = trials[index].rank == 0 ? log_sum(gains) : 0.0;  // over the forms beside the best
-    const double log_odds = fit.log_evidence - now.log_evidence + spread -
+    const double log_odds = fit.log_evidence + weighed.form->log_unit - now.log_evidence + spread -
                             std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
     EffortTerm term = weighed.form->term();
     const std::optional<double> train = plain_fit(term);
@@ -319,18 +312,7 @@ VectorXd EffortHypotheses::weights(const EvidenceFit& fit) const {
 
 double EffortHypotheses::log_evidence(const std::vector<EffortTerm>& chosen) const {
   const Known known = known_with(chosen);
-  return evidence_.fit(known.columns, known.deviations).log_evidence;
-}
-
-double EffortHypotheses::training_log_evidence(const std::vector<EffortTerm>& chosen) const {
-  const Known known = known_with(chosen);
-  return training_.fit(known.columns.topRows(training_.rows().size()), known.deviations).log_evidence;
-}
-
-double EffortHypotheses::held_back_log_odds(const std::vector<EffortTerm>& chosen) const {
-  const std::vector<EffortTerm> without(chosen.begin(), chosen.end() - 1);
-  return log_evidence(chosen) - training_log_evidence(chosen) -
-         (log_evidence(without) - training_log_evidence(without));
+  return evidence_.fit(known.columns, known.deviations).log_evidence + log_unit(chosen, evidence_);
 }
 
 double EffortHypotheses::memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const {

@@ -45,10 +45,6 @@ class EffortHypotheses {
   /// ln p of the rows with these terms beside the base.
   double log_evidence(const std::vector<EffortTerm>& chosen) const;
 
-  /// ln of the odds for the last of these terms by the rows that judge, once the others have been seen: ln p(judging
-  /// rows | training rows, with it) less the same without it.
-  double held_back_log_odds(const std::vector<EffortTerm>& chosen) const;
-
   /// ln of the odds that a memory is needed beside the chosen terms: something depends on a coordinate.
   double memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const;
 
@@ -64,14 +60,13 @@ class EffortHypotheses {
     void add(const Eigen::VectorXd& column, double deviation);
   };
   Known known_with(const std::vector<EffortTerm>& chosen) const;
-  double training_log_evidence(const std::vector<EffortTerm>& chosen) const;
 
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
   ThinnedRows thin_;
   Known base_;
   double coulomb_;
-  Evidence evidence_, training_;  ///< of all rows, and of those that train
+  Evidence evidence_;
 };
 
 }  // namespace host

@@ -43,6 +43,12 @@ MatrixXd hats(const VectorXd& at, const std::vector<double>& knots) {
   return columns;
 }
 
+/// The part of the columns that others do not explain. A memory that can take what the model itself can explain hides
+/// it: M. Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
+MatrixXd beside(const MatrixXd& columns, const MatrixXd& others) {
+  return columns - others * others.colPivHouseholderQr().solve(columns);
+}
+
 class Builder {
  public:
   void add(std::string coordinate, const MatrixXd& columns) {
@@ -95,7 +101,10 @@ Memory effort_memory(const EffortRows& rows, const VectorXd& explained, double u
   const MatrixXd over_speed = hats(speed, knots);
   MatrixXd by_direction(over_speed.rows(), 2 * over_speed.cols());
   by_direction << forward.asDiagonal() * over_speed, backward.asDiagonal() * over_speed;
-  memory.add("speed", by_direction);
+  // Constant and viscous friction, equal or by direction.
+  MatrixXd plain(rows.w.size(), 4);
+  plain << forward, backward, rows.w, speed;
+  memory.add("speed", beside(by_direction, plain));
   if (rows.has_position && rows.x.maxCoeff() > rows.x.minCoeff()) {
     const MatrixXd over_position = hats(rows.x, even(rows.x.minCoeff(), rows.x.maxCoeff(), 12));
     memory.add("position", over_position);

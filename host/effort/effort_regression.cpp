@@ -68,7 +68,10 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
       }
     }
     if (worst < 0) break;
+    // The data want less than nothing of it: hardly any is left.
+    constexpr double kHardlyAny = 0.01;
     fixed[static_cast<std::size_t>(worst)] = true;
+    beliefs[static_cast<std::size_t>(worst)].value *= kHardlyAny;
     if (held != nullptr && static_cast<std::size_t>(worst) < base.size())
       held->push_back(fmt::format("{} would come out negative", base[static_cast<std::size_t>(worst)].kind));
   }
@@ -81,7 +84,9 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
     if (!term->write(theta.segment(at, term->columns.cols()), out.model)) return false;
     at += term->columns.cols();
   }
-  measure(out);
+  double acting = 1.0;
+  for (const EffortTerm* term : further) acting *= term->acting;
+  measure(out, acting);
   return true;
 }
 
@@ -155,11 +160,9 @@ double EffortRegression::effective_variance(const MatrixXd& phi, const VectorXd&
   return std::max(squares, sums) / std::max(train_.sum(), 1.0);
 }
 
-void EffortRegression::measure(ScreenedModel& model) const {
-  model.train = root_mean_square(rows_, model.residual, false) / effort_train_;
-  model.validate = root_mean_square(rows_, model.residual, true) / effort_validate_;
-  model.fast_train = root_mean_square(rows_, model.residual, false, true) / effort_train_;
-  model.fast_validate = root_mean_square(rows_, model.residual, true, true) / effort_validate_;
+void EffortRegression::measure(ScreenedModel& model, double acting) const {
+  model.train = root_mean_square(rows_, model.residual, false) / (acting * effort_train_);
+  model.validate = root_mean_square(rows_, model.residual, true) / (acting * effort_validate_);
 }
 
 SetError EffortRegression::by_block(const VectorXd& residual) const {

@@ -16,10 +16,11 @@ namespace host {
 struct ScreenedModel {
   std::vector<std::string> kinds;  ///< beyond the base, in the order in which they were chosen
   sim::DriveDescription model;
-  std::string words;                   ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
-  double train = 1.0, validate = 1.0;  ///< RMS residual over RMS effort of the rows; 1 is no better than no model
-  double fast_train = 1.0, fast_validate = 1.0;  ///< the same of the rows away from sticking and slipping
-  double confidence = 0.0;                       ///< against the model that it extends
+  std::string words;  ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
+  double train = 1.0,
+         validate = 1.0;     ///< RMS residual over RMS acting effort of the rows; 1 is no better than no model
+  double probability = 0.0;  ///< of the last kind, or of its group, among all that may follow and nothing
+  double confidence = 0.0;   ///< of the last kind against nothing more
   std::size_t factors = 0;
   Eigen::VectorXd residual;  ///< of every row, Nm or N
 };
@@ -55,7 +56,8 @@ class EffortRegression {
                         const std::vector<Prior>& beliefs, const std::vector<bool>& fixed, double variance) const;
   /// Variance of a row's residual as if rows were independent: rows of a block are alike, and count for fewer.
   double effective_variance(const Eigen::MatrixXd& phi, const Eigen::VectorXd& theta) const;
-  void measure(ScreenedModel& model) const;
+  /// `acting`: EffortTerm::acting of all terms together.
+  void measure(ScreenedModel& model, double acting) const;
   SetError by_block(const Eigen::VectorXd& residual) const;
 
   const sim::DriveDescription& model_;

@@ -16,9 +16,8 @@ namespace host {
 
 namespace {
 
-/// Below this part of a record's high speeds (95 %) an axis may stand: no force balance holds there. Below the second
-/// one it may stick and slip.
-constexpr double kSlidingShare = 0.01, kFastShare = 0.05;
+/// Below this part of a record's high speeds (95 %) an axis may stand: no force balance holds there.
+constexpr double kSlidingShare = 0.01;
 /// A speed that changes by less than this part of itself within a record is steady.
 constexpr double kSteadyShare = 0.3;
 /// So does an acceleration that needs less than this part of the effort.
@@ -83,8 +82,8 @@ struct Builder {
     const double rate_Hz = 1.0 / record.sample_period_s;
     const double size = root_mean_square(motor_effort(record, model.data));
     EffortSignals signals{
-        record.sample_period_s, cutoff_of(record, model.data, by_speed, inertia, size), {}, {}, {}, {},
-        columns[0].size()};
+        &record, record.sample_period_s, cutoff_of(record, model.data, by_speed, inertia, size), {}, {}, {},
+        {},      columns[0].size()};
     const auto low_pass = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, rate_Hz);
     const std::vector<double> speed = smooth_speed(record, model.data, signals.cutoff_Hz, by_speed);
     const std::vector<double> travel =
@@ -114,7 +113,6 @@ struct Builder {
         const double values[] = {record.t_s[k], travel[k], speed[k], signals.acceleration[k], effort[k]};
         for (std::size_t c = 0; c < 5; ++c) columns[c].push_back(values[c]);
         rows.judges.push_back(judges);
-        rows.fast.push_back(sizes[k] > kFastShare * high);
         rows.record.push_back(rows.signals.size());
         if (in_block++ % rows_a_block == 0) ++blocks;
         rows.block.push_back(blocks);
@@ -166,10 +164,8 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
       EffortRows rows = builder.finish();
       rows.first_stamp_s = first_stamp_s(training);
       rows.lead = model.data.lead;
-      for (const RecordSet* set : {&training, &validation})
-        for (const ComparedRecord& compared : set->records)
-          if (compared.prepared.record->u_V.empty())
-            rows.unknown_order_s = std::max(rows.unknown_order_s, compared.prepared.record->sample_period_s);
+      for (const EffortSignals& signals : rows.signals)
+        if (signals.record->u_V.empty()) rows.unknown_instant_s = std::max(rows.unknown_instant_s, signals.period_s);
       return rows;
     }
     stride *= 1 + builder.columns[0].size() / most_rows;
@@ -190,11 +186,11 @@ bool enough(const EffortRows& rows, bool judges) {
 
 }  // namespace
 
-double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges, bool fast_alone) {
+double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges) {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const auto row = static_cast<std::size_t>(k);
-    if (rows.judges[row] != judges || (fast_alone && !rows.fast[row])) continue;
+    if (rows.judges[row] != judges) continue;
     sum += values(k) * values(k);
     count += 1.0;
   }
@@ -248,7 +244,6 @@ ThinnedRows thinned(const EffortRows& rows, std::size_t stride) {
   thin.rows.judges.clear();
   thin.rows.block.clear();
   thin.rows.record.clear();
-  thin.rows.fast.clear();
   for (EffortSignals& signals : thin.rows.signals) {
     std::vector<std::size_t> kept;
     const std::size_t first = thin.from.size();
@@ -264,7 +259,6 @@ ThinnedRows thinned(const EffortRows& rows, std::size_t stride) {
     thin.rows.judges.push_back(rows.judges[row]);
     thin.rows.block.push_back(rows.block[row]);
     thin.rows.record.push_back(rows.record[row]);
-    thin.rows.fast.push_back(rows.fast[row]);
   }
   for (auto* values : {&thin.rows.t_s, &thin.rows.x, &thin.rows.w, &thin.rows.acceleration, &thin.rows.effort})
     *values = thin.of(*values);

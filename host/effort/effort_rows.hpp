@@ -10,6 +10,7 @@ namespace host {
 
 /// One record's signals at its own rate, low-passed without delay, and the rows of them that count.
 struct EffortSignals {
+  const Record* record = nullptr;  ///< outlives these
   double period_s = 0.0;
   double cutoff_Hz = 0.0;
   std::vector<double> speed;         ///< rad/s or m/s, every sample
@@ -23,7 +24,6 @@ struct EffortSignals {
 struct EffortRows {
   Eigen::VectorXd t_s, x, w, acceleration, effort;
   std::vector<bool> judges;         ///< a row of the validation set
-  std::vector<bool> fast;           ///< well away from sticking and slipping
   std::vector<std::size_t> block;   ///< rows of one block are half a second of one record, and alike
   std::vector<std::size_t> record;  ///< rising from 0; a record that serves both sets counts twice
   std::vector<EffortSignals> signals;
@@ -32,17 +32,17 @@ struct EffortRows {
   bool steady = true;         ///< the speed hardly changes within the records: no inertia can be found from them
   double lowest_cutoff_Hz = 0.0;
   double lead = 1.0;  ///< travel of one radian, mm; 1 of a linear drive
-  /// The longest period of the records whose effort was measured: nobody knows when within a row each channel was read.
-  /// A command is known to act from its row on.
-  double unknown_order_s = 0.0;
+  /// The longest period of the records whose effort was measured: nobody knows when within a row a current acts. A
+  /// command is known to act from its row on.
+  double unknown_instant_s = 0.0;
   double first_stamp_s = 0.0;  ///< of the training records
   double noise = 0.0;          ///< RMS effort that the sensor's own noise makes through the model's inertia, Nm or N
 
   std::size_t size() const { return judges.size(); }
 };
 
-/// Of one value a row, over the rows that judge or those that train; `fast_alone`: without those near sticking.
-double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges, bool fast_alone = false);
+/// Of one value a row, over the rows that judge or those that train.
+double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges);
 
 /// Travel since the motion last reversed, mm or m (rad or m/s where there is no position), one element a row.
 Eigen::VectorXd travel_since_reversal(const EffortRows& rows);

@@ -1,225 +1,445 @@
 #include "host/effort/effort_screen.hpp"
 
-#include <fmt/format.h>
-
-#include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <utility>
 
 #include "host/cancellation.hpp"
 #include "host/effort/closest_form.hpp"
-#include "host/effort/effort_regression.hpp"
-#include "host/exit_codes.hpp"
+#include "host/effort/effort_hypotheses.hpp"
+#include "host/effort/effort_waves.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/infer/posterior.hpp"
+#include "sim/drive.hpp"
 
 namespace host {
 
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+/// Further waves of a kind included; a bound on time.
+constexpr int kMostRounds = 16;
+/// A group of more kinds is no answer.
+constexpr std::size_t kLargestGroup = 4;
 
-/// An effect earns its place when it takes this part of the error, on training rows, and on the rows that judge.
-constexpr double kLeastTrainGain = 0.05, kLeastGain = 0.1;
-/// A further one must take half of the squared error that a model could take, which is what comes back when a motion is
-/// repeated, and all of it where none was: a machine's residual has many small causes.
-constexpr double kLeastFurtherPart = 0.5;
-/// And this part of the effort: below lies what no model of a machine is worth.
-constexpr double kLeastPart = 0.005;
-constexpr double kLeastConfidence = 0.99;
-/// Where the base leaves more than this part of the effort, what is missing is large: an effect must take half of the
-/// squared error there, or it stands for another one (a ripple for a current limit).
-constexpr double kBaseFails = 0.1;
-constexpr double kLeastGainWhereBaseFails = 0.29;
-/// A second mass bends to anything that lasts, a gap or a current limit too: it must take two thirds of the squared
-/// error, as it does where it is really there.
-constexpr double kLeastGainOfSpring = 0.42;
-/// What is left must stand so far above the sensors' noise: terms that smooth the motion take noise alone.
-constexpr double kAboveNoise = 2.0;
-/// Effects whose errors are so close are not told apart; the simpler one goes before.
-constexpr double kTie = 0.04;
+bool contains(const std::vector<std::string>& kinds, const std::string& kind) {
+  return std::ranges::find(kinds, kind) != kinds.end();
+}
 
-double product(const ScreenedModel& model) { return model.train * model.validate; }
+/// Fewest kinds that together are certain, most probable first; empty where "nothing more" is more probable than one of
+/// them, or too many are needed.
+std::vector<std::string> certain_group(const NextEffects& next, double& probability) {
+  std::vector<std::string> group;
+  probability = 0.0;
+  for (const NextEffect& effect : next.effects) {
+    if (probability >= kClaimed || effect.probability < next.nothing || group.size() == kLargestGroup) break;
+    group.push_back(effect.term.kind);
+    probability += effect.probability;
+  }
+  if (probability < kClaimed) group.clear();
+  return group;
+}
 
-/// What stands beside a search: the columns that are fitted anyway.
-MatrixXd columns_of(const EffortScreen& screen, const std::vector<EffortTerm>& base,
-                    const std::vector<EffortTerm>& chosen) {
-  MatrixXd columns(screen.rows.effort.size(), 0);
-  for (const auto* list : {&base, &chosen})
-    for (const EffortTerm& term : *list) {
-      if (list == &base && screen.rows.steady && term.kind == "inertia") continue;  // it is held
-      const Index width = columns.cols();
-      columns.conservativeResize(Eigen::NoChange, width + term.columns.cols());
-      columns.rightCols(term.columns.cols()) = term.columns;
+class Search {
+ public:
+  /// Keeps references.
+  Search(const sim::DriveDescription& model, EffortScreen& screen, EffortRegression& regression,
+         const std::vector<EffortTerm>& base, const std::vector<std::string>& absent)
+      : model_(model),
+        screen_(screen),
+        regression_(regression),
+        base_(base),
+        excluded_(absent),
+        may_have_a_gap_(!contains(absent, "backlash")) {}
+
+  void run(const EffortHypotheses& hypotheses, std::size_t most_effects) {
+    for (int round = 0; round < kMostRounds && screen_.chosen.size() < most_effects && step(hypotheses); ++round)
+      throw_if_cancelled();
+    drop_what_nothing_followed();
+    if (most_effects > 0) screen_.memory_log_odds = hypotheses.memory_log_odds(left_, chosen_);
+    drop_what_others_explain(hypotheses);
+  }
+
+ private:
+  /// The best model with a further term, fitted to the training rows; its kinds hold the term's once.
+  bool with(const EffortTerm& term, ScreenedModel& out) const {
+    std::vector<const EffortTerm*> further;
+    for (const EffortTerm& before : chosen_) further.push_back(&before);
+    further.push_back(&term);
+    if (!regression_.fit(base_, further, out)) return false;
+    const ScreenedModel& before = screen_.best();
+    out.words = term.words;
+    out.kinds = before.kinds;
+    if (!contains(out.kinds, term.kind)) out.kinds.push_back(term.kind);
+    return true;
+  }
+
+  /// The same with the form refined, from each start of its kind: the one that leaves least of the training rows.
+  bool with_closest(NextEffect& effect, ScreenedModel& out) const {
+    if (!with(effect.term, out)) return false;
+    if (!effect.term.neighbours) return true;
+    effect.term = closest_form(regression_, base_, chosen_, std::move(effect.term), out);
+    for (EffortTerm& start : effect.others) {
+      ScreenedModel tried;
+      if (!with(start, tried)) continue;
+      EffortTerm refined = closest_form(regression_, base_, chosen_, std::move(start), tried);
+      if (tried.train >= out.train) continue;
+      out = std::move(tried);
+      effect.term = std::move(refined);
     }
-  return columns;
-}
+    effect.others.clear();
+    return true;
+  }
 
-/// Everything that could come next on top of what was chosen.
-std::vector<EffortTerm> next_terms(const EffortScreen& screen, const sim::DriveDescription& given,
-                                   const std::vector<EffortTerm>& base, const std::vector<EffortTerm>& chosen,
-                                   const std::vector<std::string>& absent) {
-  sim::DriveDescription held = given;
-  for (const EffortTerm& term : chosen)
-    if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
-  const ScreenedModel& now = screen.best();
-  std::vector<EffortTerm> terms = further_terms(held, screen.rows, columns_of(screen, base, chosen),
-                                                screen.rows.effort - now.residual, now.residual);
-  std::erase_if(terms, [&](const EffortTerm& term) {
-    return std::ranges::find(now.kinds, term.kind) != now.kinds.end() ||
-           std::ranges::find(absent, term.kind) != absent.end();
-  });
-  return terms;
-}
+  /// Takes kinds out of what may come next; the others share their probability.
+  static void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
+    std::erase_if(next.effects, [&](const NextEffect& effect) { return contains(kinds, effect.term.kind); });
+    double sum = next.nothing;
+    for (const NextEffect& effect : next.effects) sum += effect.probability;
+    next.nothing = sum > 0.0 ? next.nothing / sum : 1.0;
+    for (NextEffect& effect : next.effects) effect.probability = sum > 0.0 ? effect.probability / sum : 0.0;
+  }
 
-struct Tried {
-  ScreenedModel model;
-  std::vector<const EffortTerm*> terms;  ///< on top of what was chosen
+  /// What every kind would leave, for the reader and for `add`.
+  std::vector<ScreenedModel> all_of(NextEffects& next) const {
+    // Where a form is refined, it is for those that may be asked for.
+    constexpr double kPossible = 1e-4;
+    std::vector<ScreenedModel> list;
+    for (NextEffect& effect : next.effects) {
+      ScreenedModel tried;
+      const bool closest = effect.probability > kPossible || next.effects.size() == 1;
+      if (!(closest ? with_closest(effect, tried) : with(effect.term, tried))) continue;
+      if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further waves of an effect that is there
+      tried.probability = effect.probability;
+      tried.confidence = 1.0 / (1.0 + std::exp(-effect.log_odds));
+      list.push_back(std::move(tried));
+    }
+    return list;
+  }
+
+  /// Motions that no fit has seen have the last word: they must lie nearer to a model that has the effect.
+  bool is_refuted(const ScreenedModel& taken) const { return taken.validate >= screen_.best().validate; }
+
+  /// Of a group, a kind behind the first that held-back motions refute: it is no rival. Null where there is none.
+  NextEffect* refuted_rival(const std::vector<std::string>& group, NextEffects& next) const {
+    for (std::size_t k = 1; k < group.size(); ++k) {
+      NextEffect& rival = effect_of(next, group[k]);
+      ScreenedModel taken;
+      if (!is_there(group[k]) && (!with_closest(rival, taken) || is_refuted(taken))) return &rival;
+    }
+    return nullptr;
+  }
+
+  /// The step is over: what was set aside is no rival any more.
+  void close_step(std::vector<ScreenedModel> list, const NextEffects& next) {
+    for (ScreenedModel& tried : list) {
+      const auto still = std::ranges::find(next.effects, tried.kinds.back(),
+                                           [](const NextEffect& effect) { return effect.term.kind; });
+      tried.probability = still == next.effects.end() ? 0.0 : still->probability;
+    }
+    screen_.steps.push_back(std::move(list));
+  }
+
+  /// Whether a fit takes enough of the squared error on validation rows: of what is left, and of what the base leaves.
+  bool is_worth_naming(double before, double after) const {
+    const double left = before * before, taken = left - after * after;
+    return taken >= kWorthOfLeft * left ||
+           (taken >= kWorthNaming * left && taken >= kWorthOfAll * std::pow(screen_.base.validate, 2));
+  }
+  bool is_worth_naming(const ScreenedModel& fitted) const {
+    return is_worth_naming(screen_.best().validate, fitted.validate);
+  }
+
+  NextEffects weigh(const EffortHypotheses& hypotheses) {
+    NextEffects next = hypotheses.next(chosen_, screen_.rows.effort - screen_.best().residual, excluded_,
+                                       [this](const EffortTerm& term) -> std::optional<double> {
+                                         ScreenedModel tried;
+                                         if (contains(refused_waves_, term.words) || !with(term, tried)) return {};
+                                         return tried.train;
+                                       });
+    left_ = next.fit;
+    regression_.weigh(hypotheses.weights(left_));
+    return next;
+  }
+
+  /// Adds the most probable effect that is certain, holds on validation rows and takes enough of the error; or those
+  /// that take enough together. False where there is none.
+  bool step(const EffortHypotheses& hypotheses) {
+    NextEffects all = weigh(hypotheses);
+    std::vector<ScreenedModel> list = all_of(all);
+    // What is there, but takes hardly anything, is no rival of what takes much.
+    std::vector<std::string> small;
+    for (const ScreenedModel& tried : list)
+      if (!is_worth_naming(tried)) small.push_back(tried.kinds.back());
+    NextEffects next = all;
+    take_out(next, small);
+    if (take_one(next, all, list)) {
+      to_be_followed_.clear();
+      return true;
+    }
+    screen_.nothing = next.nothing;
+    if (to_be_followed_.empty() && take_small_ones_together(all, list)) return true;
+    for (const SmallOne& one : small_ones(std::move(all))) screen_.certain.push_back(one.certain);
+    close_step(std::move(list), next);
+    return false;
+  }
+
+  /// Of what may come next; what is refuted is taken out of it and, for good, of `all`.
+  bool take_one(NextEffects& next, NextEffects& all, const std::vector<ScreenedModel>& list) {
+    while (true) {
+      double probability = 0.0;
+      std::vector<std::string> group = certain_group(next, probability);
+      if (group.empty()) return false;
+      if (const NextEffect* rival = refuted_rival(group, next)) {
+        const std::string refuted = rival->term.kind;
+        refuse(refuted, all);
+        take_out(next, {refuted});
+        continue;
+      }
+      // Where an effect that is there may have another wave, no second one is needed.
+      std::ranges::stable_partition(group, [&](const std::string& kind) { return is_there(kind); });
+      const std::string kind = group.front();
+      NextEffect& effect = effect_of(next, kind);
+      const std::string form = effect.term.words;
+      ScreenedModel taken;
+      if (!with_closest(effect, taken) || is_refuted(taken)) {
+        if (is_there(kind))
+          refuse_wave(form, next);
+        else
+          refuse(kind, all);
+        take_out(next, {kind});
+        continue;
+      }
+      if (!is_there(kind) && !is_worth_naming(taken)) {
+        take_out(next, {kind});
+        continue;
+      }
+      taken.probability = effect.probability;
+      taken.confidence = 1.0 / (1.0 + std::exp(-effect.log_odds));
+      if (effect.term.can_repeat) taken.words = words_of_waves(taken.model, kind);
+      // Of a group no second one follows: the first stands for all.
+      for (const std::string& other : group)
+        if (other != kind || !effect.term.can_repeat) excluded_.push_back(other);
+      if (is_there(kind))
+        take_further_wave(kind, std::move(taken));
+      else
+        take_effect(effect.term, group, probability, std::move(taken), list, next);
+      chosen_.push_back(std::move(effect.term));
+      return true;
+    }
+  }
+
+  bool is_there(const std::string& kind) const { return contains(screen_.best().kinds, kind); }
+
+  static NextEffect& effect_of(NextEffects& next, const std::string& kind) {
+    return *std::ranges::find(next.effects, kind, [](const NextEffect& other) { return other.term.kind; });
+  }
+
+  /// A wave that does not hold under one name is no other effect.
+  void refuse_wave(const std::string& form, NextEffects& next) {
+    refused_waves_.push_back(form);
+    std::vector<std::string> same;
+    for (const NextEffect& effect : next.effects)
+      if (effect.term.words == form) same.push_back(effect.term.kind);
+    take_out(next, same);
+  }
+
+  void refuse(const std::string& kind, NextEffects& all) {
+    excluded_.push_back(kind);
+    take_out(all, {kind});
+  }
+
+  void take_further_wave(const std::string& kind, ScreenedModel taken) {
+    std::ranges::find(screen_.certain, kind, [](const CertainEffect& found) { return found.group.front(); })->after =
+        taken.validate;
+    ScreenedModel& last = screen_.chosen.back();
+    if (last.kinds.back() != kind) taken.words = last.words;
+    taken.probability = last.probability;
+    taken.confidence = last.confidence;
+    last = std::move(taken);
+  }
+
+  void take_effect(const EffortTerm& term, const std::vector<std::string>& group, double probability,
+                   ScreenedModel taken, std::vector<ScreenedModel> list, const NextEffects& next) {
+    screen_.certain.push_back({group, probability, screen_.best().validate, taken.validate, true});
+    std::erase_if(list, [&](const ScreenedModel& tried) { return tried.kinds == taken.kinds; });
+    list.insert(list.begin(), taken);
+    close_step(std::move(list), next);
+    screen_.chosen.push_back(std::move(taken));
+    screen_.tied.emplace_back(group.begin() + 1, group.end());
+    look_for_a_gap(term);
+  }
+
+  struct SmallOne {
+    EffortTerm term;
+    CertainEffect certain;
+    double log_odds;
+  };
+
+  /// Effects that are certain beside all that was found, each of them too small to be named.
+  std::vector<SmallOne> small_ones(NextEffects all) {
+    std::vector<SmallOne> small;
+    while (true) {
+      double probability = 0.0;
+      const std::vector<std::string> group = certain_group(all, probability);
+      if (group.empty()) return small;
+      if (const NextEffect* rival = refuted_rival(group, all)) {
+        refuse(std::string(rival->term.kind), all);
+        continue;
+      }
+      NextEffect& effect = effect_of(all, group.front());
+      ScreenedModel taken;
+      if (!is_there(group.front()) && with_closest(effect, taken) && !is_refuted(taken))
+        small.push_back(
+            {effect.term, {group, probability, screen_.best().validate, taken.validate, false}, effect.log_odds});
+      take_out(all, group);
+    }
+  }
+
+  /// Takes the first of effects that hide each other: each takes too little to be named, all together they take enough.
+  bool take_small_ones_together(const NextEffects& all, const std::vector<ScreenedModel>& list) {
+    NextEffects no_waves = all;
+    // Waves after waves would take any shape over the travel: a first one must be worth its name by itself.
+    std::vector<std::string> waves;
+    for (const NextEffect& effect : all.effects)
+      if (effect.term.can_repeat) waves.push_back(effect.term.kind);
+    take_out(no_waves, waves);
+    std::vector<SmallOne> together = small_ones(std::move(no_waves));
+    const auto fitted = [&](std::size_t without, ScreenedModel& out) {
+      std::vector<const EffortTerm*> further;
+      for (const EffortTerm& term : chosen_) further.push_back(&term);
+      for (std::size_t k = 0; k < together.size(); ++k)
+        if (k != without) further.push_back(&together[k].term);
+      return regression_.fit(base_, further, out);
+    };
+    // The least one is dropped until each is needed.
+    for (bool dropped = true; dropped && together.size() > 1;) {
+      ScreenedModel with_all;
+      if (!fitted(together.size(), with_all)) return false;
+      double least = HUGE_VAL;
+      std::size_t smallest = 0;
+      for (std::size_t k = 0; k < together.size(); ++k) {
+        ScreenedModel without;
+        const double left = fitted(k, without) ? without.validate : 0.0;
+        if (left < least) smallest = k;
+        least = std::min(least, left);
+      }
+      dropped = !is_worth_naming(least, with_all.validate);
+      if (dropped) together.erase(together.begin() + static_cast<std::ptrdiff_t>(smallest));
+    }
+    if (together.size() < 2) return false;
+    // The others follow in the next steps, in the form that suits them beside the first.
+    SmallOne& first = together.front();
+    ScreenedModel taken;
+    if (!with(first.term, taken)) return false;
+    taken.probability = first.certain.probability;
+    taken.confidence = 1.0 / (1.0 + std::exp(-first.log_odds));
+    excluded_.insert(excluded_.end(), first.certain.group.begin(), first.certain.group.end());
+    take_effect(first.term, first.certain.group, first.certain.probability, std::move(taken), list, all);
+    chosen_.push_back(std::move(first.term));
+    to_be_followed_ = first.certain.group.front();
+    return true;
+  }
+
+  /// A spring that hardens as a gap does: the balance has no columns of a gap, and cannot tell which of them it is.
+  void look_for_a_gap(const EffortTerm& term) {
+    if (!term.at_frequency || !may_have_a_gap_) return;
+    screen_.hardening = spring_hardening(model_, screen_.rows, base_, chosen_, term);
+    if (screen_.hardening && screen_.hardening->shows_a_gap() && !contains(screen_.tied.back(), "backlash"))
+      screen_.tied.back().emplace_back("backlash");
+  }
+
+  /// The final model without a kind; nothing where that cannot be fitted.
+  std::optional<ScreenedModel> without(const std::string& kind, std::vector<EffortTerm>& others) const {
+    others = chosen_;
+    std::erase_if(others, [&](const EffortTerm& term) { return term.kind == kind; });
+    std::vector<const EffortTerm*> further;
+    for (const EffortTerm& term : others) further.push_back(&term);
+    ScreenedModel left;
+    if (!regression_.fit(base_, further, left)) return {};
+    const ScreenedModel& now = screen_.chosen.back();
+    left.kinds = now.kinds;
+    std::erase(left.kinds, kind);
+    left.words = now.words;
+    left.probability = now.probability;
+    left.confidence = now.confidence;
+    return left;
+  }
+
+  /// The steps that held a kind are none any more.
+  void drop(const std::string& kind, std::vector<EffortTerm> others, ScreenedModel left) {
+    const auto at = std::ranges::find(screen_.chosen.back().kinds, kind) - screen_.chosen.back().kinds.begin();
+    chosen_ = std::move(others);
+    screen_.chosen.erase(screen_.chosen.begin() + at);
+    screen_.tied.erase(screen_.tied.begin() + at);
+    screen_.steps.erase(screen_.steps.begin() + at);
+    if (!screen_.chosen.empty()) screen_.chosen.back() = std::move(left);
+  }
+
+  void drop_what_nothing_followed() {
+    if (to_be_followed_.empty()) return;
+    std::vector<EffortTerm> others;
+    std::optional<ScreenedModel> left = without(to_be_followed_, others);
+    if (!left) return;
+    std::ranges::find(screen_.certain, to_be_followed_, [](const CertainEffect& found) {
+      return found.group.front();
+    })->named = false;
+    drop(to_be_followed_, std::move(others), *std::move(left));
+  }
+
+  /// An effect that was found first may have stood for two that came later.
+  void drop_what_others_explain(const EffortHypotheses& hypotheses) {
+    for (std::size_t k = 0; screen_.chosen.size() > 1 && k + 1 < screen_.chosen.size();) {
+      const std::string kind = screen_.chosen.back().kinds[k];
+      std::vector<EffortTerm> others;
+      std::optional<ScreenedModel> left = without(kind, others);
+      if (!left || hypotheses.log_evidence(others) < hypotheses.log_evidence(chosen_)) {
+        ++k;
+        continue;
+      }
+      std::erase_if(screen_.certain, [&](const CertainEffect& effect) { return effect.group.front() == kind; });
+      drop(kind, std::move(others), *std::move(left));
+    }
+  }
+
+  const sim::DriveDescription& model_;
+  EffortScreen& screen_;
+  EffortRegression& regression_;
+  const std::vector<EffortTerm>& base_;
+  std::vector<EffortTerm> chosen_ = {};
+  std::vector<std::string> excluded_, refused_waves_ = {};
+  std::string to_be_followed_ = {};  ///< chosen for what it shows together with another, which is still to be found
+  bool may_have_a_gap_;
+  EvidenceFit left_ = {};
 };
 
-bool can_be_claimed(const Tried& tried) { return std::ranges::all_of(tried.terms, &EffortTerm::can_be_claimed); }
-
-/// Keeps the best form of each combination of kinds, by its error on the training rows.
-void keep(std::vector<Tried>& found, Tried tried) {
-  const auto same =
-      std::ranges::find_if(found, [&](const Tried& other) { return other.model.kinds == tried.model.kinds; });
-  if (same == found.end()) {
-    found.push_back(std::move(tried));
-  } else if (tried.model.train < same->model.train) {
-    *same = std::move(tried);
+/// Where the speed hardly changes, what is left of its changes follows the torque as much as it leads it: each record
+/// has one speed a direction, and no acceleration.
+void take_mean_speeds(EffortRows& rows) {
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<double> sums(rows.signals.size(), 0.0), counts(rows.signals.size(), 0.0);
+    const auto each = [&](auto use) {
+      for (Eigen::Index k = 0; k < rows.w.size(); ++k)
+        if (rows.w(k) * sign > 0.0) use(k, rows.record[static_cast<std::size_t>(k)]);
+    };
+    each([&](Eigen::Index k, std::size_t r) {
+      sums[r] += rows.w(k);
+      counts[r] += 1.0;
+    });
+    each([&](Eigen::Index k, std::size_t r) { rows.w(k) = sums[r] / counts[r]; });
   }
-}
-
-std::vector<Tried> try_all(const EffortRegression& regression, const EffortScreen& screen,
-                           const std::vector<EffortTerm>& base, const std::vector<EffortTerm>& chosen,
-                           const std::vector<std::vector<const EffortTerm*>>& combinations) {
-  const ScreenedModel& now = screen.best();
-  std::vector<Tried> found;
-  for (const std::vector<const EffortTerm*>& terms : combinations) {
-    throw_if_cancelled();
-    std::vector<const EffortTerm*> further;
-    for (const EffortTerm& before : chosen) further.push_back(&before);
-    further.insert(further.end(), terms.begin(), terms.end());
-    Tried tried{{}, terms};
-    if (!regression.fit(base, further, tried.model)) continue;
-    tried.model.kinds = now.kinds;
-    for (const EffortTerm* term : terms) tried.model.kinds.push_back(term->kind);
-    tried.model.words = terms.back()->words;
-    keep(found, std::move(tried));
-  }
-  // What differs in the last digits alone keeps the catalogue's order.
-  std::ranges::stable_sort(found, {}, [](const Tried& tried) { return std::round(1e6 * product(tried.model)); });
-  for (Tried& tried : found)
-    tried.model.confidence = can_be_claimed(tried) ? regression.confidence(now, tried.model) : 0.0;
-  return found;
-}
-
-std::vector<std::vector<const EffortTerm*>> one_by_one(const std::vector<EffortTerm>& terms) {
-  std::vector<std::vector<const EffortTerm*>> combinations;
-  for (const EffortTerm& term : terms) combinations.push_back({&term});
-  return combinations;
-}
-
-/// Two effects that hide each other when judged one at a time: a low-speed shape of friction and a delay, say.
-std::vector<std::vector<const EffortTerm*>> by_two(const std::vector<EffortTerm>& terms) {
-  const auto cheap = [](const EffortTerm& term) { return term.kind != "compliance" && term.columns.cols() <= 2; };
-  std::vector<std::vector<const EffortTerm*>> combinations;
-  for (auto first = terms.begin(); first != terms.end(); ++first)
-    for (auto second = std::next(first); second != terms.end(); ++second)
-      if (first->kind != second->kind && cheap(*first) && cheap(*second)) combinations.push_back({&*first, &*second});
-  return combinations;
-}
-
-bool earns_its_place(const ScreenedModel& after, const ScreenedModel& before, double least_gain) {
-  return after.validate < (1.0 - least_gain) * before.validate &&
-         after.train < (1.0 - kLeastTrainGain) * before.train &&
-         after.fast_validate < (1.0 - least_gain) * before.fast_validate &&
-         after.fast_train < (1.0 - kLeastTrainGain) * before.fast_train &&
-         before.validate - after.validate > kLeastPart && after.confidence >= kLeastConfidence;
-}
-
-/// The force balance over whole records, reversals included, which the rows leave out: RMS over the records of what the
-/// inverse model leaves. Empty where it has none.
-std::optional<double> balance_error(const sim::DriveDescription& model, const RecordSet& set) {
-  double square = 0.0;
-  try {
-    for (const ComparedRecord& compared : set.records)
-      square += std::pow(relative_error(model, *compared.prepared.record), 2);
-  } catch (const Failure&) {
-    return {};
-  }
-  return std::sqrt(square / static_cast<double>(set.records.size()));
-}
-
-/// Whether an effect takes its part at the reversals, where a delay and the shape of friction at low speed show most.
-/// Only of records of their own: blocks of one record share its balance.
-bool takes_its_part_at_reversals(const ScreenedModel& after, const ScreenedModel& before, double least_gain,
-                                 const RecordSet& training, const RecordSet& validation) {
-  const auto record_of = [](const ComparedRecord& compared) { return compared.prepared.record; };
-  if (std::ranges::find(validation.records, record_of(training.records.front()), record_of) != validation.records.end())
-    return false;
-  return std::ranges::all_of(std::array{&training, &validation}, [&](const RecordSet* set) {
-    const std::optional<double> from = balance_error(before.model, *set), to = balance_error(after.model, *set);
-    return from && to && *to < (1.0 - least_gain) * *from;
-  });
-}
-
-/// Blocks of half a second that judge.
-std::size_t judging_blocks(const EffortRows& rows) {
-  std::set<std::pair<std::size_t, std::size_t>> blocks;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (rows.judges[k]) blocks.emplace(rows.record[k], rows.block[k]);
-  return blocks.size();
-}
-
-/// What a further effect must take of the error, by what of its square comes back.
-double least_further_gain(const EffortScreen& screen) {
-  const std::optional<Repeatability> found = repeatability(screen.rows, screen.best().residual);
-  const double share = found ? found->share : 1.0;
-  return std::max(kLeastGain, 1.0 - std::sqrt(1.0 - kLeastFurtherPart * share));
-}
-
-bool near(const ScreenedModel& a, const ScreenedModel& best) {
-  return a.train <= (1.0 + kTie) * best.train && a.validate <= (1.0 + kTie) * best.validate;
-}
-
-/// An effect that was chosen first may have stood for two that came later: each is tried without.
-void drop_what_others_explain(const EffortRegression& regression, const std::vector<EffortTerm>& base,
-                              const RecordSet& training, const RecordSet& validation, std::vector<EffortTerm>& chosen,
-                              EffortScreen& screen) {
-  for (std::size_t k = 0; chosen.size() > 1 && k + 1 < chosen.size();) {
-    std::vector<const EffortTerm*> others;
-    for (std::size_t n = 0; n < chosen.size(); ++n)
-      if (n != k) others.push_back(&chosen[n]);
-    ScreenedModel without;
-    if (!regression.fit(base, others, without) || earns_its_place(screen.best(), without, kLeastGain) ||
-        takes_its_part_at_reversals(screen.best(), without, kLeastGain, training, validation)) {
-      ++k;
-      continue;
-    }
-    for (const EffortTerm* term : others) without.kinds.push_back(term->kind);
-    without.words = others.back()->words;
-    without.confidence = regression.confidence(screen.base, without);
-    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(k));
-    screen.chosen.back() = std::move(without);
-    // Steps that held it are none any more.
-    screen.chosen.erase(screen.chosen.begin(), screen.chosen.end() - 1);
-    screen.tied.erase(screen.tied.begin(), screen.tied.end() - 1);
-  }
+  rows.acceleration.setZero();
 }
 
 }  // namespace
 
 EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
-                           std::size_t most_steps, const std::vector<std::string>& absent) {
+                           std::size_t most_effects, const std::vector<std::string>& absent) {
   EffortScreen screen;
   if (model.find("inertia") == nullptr || !has_inverse(sim::Drive(model))) return screen;
   screen.rows = effort_rows(model, training, validation);
   if (screen.empty()) return screen;
-  const EffortRegression regression(model, screen.rows);
+  if (screen.rows.steady) take_mean_speeds(screen.rows);
+  EffortRegression regression(model, screen.rows);
   screen.effort_train = root_mean_square(screen.rows, screen.rows.effort, false);
   screen.effort_validate = root_mean_square(screen.rows, screen.rows.effort, true);
   screen.rows.effort -= standing_effort(model, screen.rows);
@@ -228,67 +448,13 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
       !regression.fit(base, {}, screen.base, &screen.held))
     return {};
   if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
-
-  // Of some hundred forms and pairs one suits a block or two by chance.
-  constexpr std::size_t kFewestToGoOn = 4;
-  const bool enough_to_go_on = judging_blocks(screen.rows) >= kFewestToGoOn;
-  std::vector<EffortTerm> chosen;
-  while (screen.chosen.size() < most_steps) {
-    if (screen.best().validate * screen.effort_validate < kAboveNoise * screen.rows.noise) break;
-    if (!chosen.empty() && !enough_to_go_on) break;
-    const std::vector<EffortTerm> terms = next_terms(screen, model, base, chosen, absent);
-    std::vector<Tried> found = try_all(regression, screen, base, chosen, one_by_one(terms));
-    screen.steps.emplace_back();
-    for (const Tried& tried : found) screen.steps.back().push_back(tried.model);
-    if (found.empty()) break;
-    const ScreenedModel before = screen.best();
-    const double further_gain = least_further_gain(screen);
-    const double first_gain = screen.base.validate > kBaseFails ? kLeastGainWhereBaseFails : kLeastGain;
-    const double least_gain = chosen.empty() ? first_gain : further_gain;
-    // Of those that are as good as the best one, the simplest.
-    std::erase_if(found, [&](const Tried& tried) {
-      return tried.model.kinds.back() == "compliance" && !earns_its_place(tried.model, before, kLeastGainOfSpring);
-    });
-    if (found.empty()) break;
-    const Tried* best = &found.front();
-    for (const Tried& tried : found) {
-      const bool simpler = can_be_claimed(tried) == can_be_claimed(*best) && tried.model.factors < best->model.factors;
-      if (near(tried.model, found.front().model) && (simpler || (can_be_claimed(tried) && !can_be_claimed(*best))))
-        best = &tried;
-    }
-    std::vector<Tried> pairs;
-    if (!earns_its_place(best->model, before, least_gain)) {
-      // Two at once must take as much as a further one.
-      pairs = try_all(regression, screen, base, chosen, by_two(terms));
-      if (pairs.empty()) break;
-      const ScreenedModel& pair = pairs.front().model;
-      const bool at_reversals = !chosen.empty() && earns_its_place(pair, before, kLeastGain) &&
-                                takes_its_part_at_reversals(pair, before, further_gain, training, validation);
-      if (!earns_its_place(pair, before, further_gain) && !at_reversals) break;
-      best = &pairs.front();
-      screen.steps.back().push_back(best->model);
-    }
-    std::vector<std::string> tied;
-    if (pairs.empty())
-      for (const Tried& other : found)
-        if (&other != best && can_be_claimed(other) && near(other.model, best->model) &&
-            other.model.factors <= best->model.factors)
-          tied.push_back(other.model.kinds.back());
-    screen.tied.push_back(std::move(tied));
-    ScreenedModel taken = best->model;
-    if (best->terms.size() == 1 && best->terms.front()->neighbours) {
-      EffortTerm closest = closest_form(regression, base, chosen, *best->terms.front(), taken);
-      if (closest.at_frequency && std::ranges::find(absent, "backlash") == absent.end()) {
-        screen.hardening = spring_hardening(model, screen.rows, base, chosen, closest);
-        if (screen.hardening && screen.hardening->shows_a_gap()) screen.tied.back().emplace_back("backlash");
-      }
-      chosen.push_back(std::move(closest));
-    } else
-      for (const EffortTerm* term : best->terms) chosen.push_back(*term);
-    *std::ranges::find(screen.steps.back(), taken.kinds, &ScreenedModel::kinds) = taken;
-    screen.chosen.push_back(std::move(taken));
-  }
-  drop_what_others_explain(regression, base, training, validation, chosen, screen);
+  // The level that usual sizes compare to; where nothing rubs, a twentieth of what the motor gives.
+  constexpr double kLeastLevel = 0.05;
+  const sim::Drive fitted(screen.base.model);
+  const double coulomb =
+      std::max(0.5 * (fitted.friction[0].coulomb + fitted.friction[1].coulomb), kLeastLevel * screen.effort_train);
+  const EffortHypotheses hypotheses(model, screen.rows, base, screen.rows.effort - screen.base.residual, coulomb);
+  Search(model, screen, regression, base, absent).run(hypotheses, most_effects);
   if (screen.chosen.empty()) {
     EffortRows swapped = screen.rows;
     swapped.judges.flip();

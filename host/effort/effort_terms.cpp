@@ -1,14 +1,11 @@
 #include "host/effort/effort_terms.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "host/effort/effort_compliance.hpp"
-#include "host/effort/effort_orders.hpp"
+#include "host/effort/effort_waves.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/identify/motion.hpp"
 #include "sim/catalogue.hpp"
@@ -86,40 +83,37 @@ EffortTerm stribeck_term(const sim::DriveDescription& model, const EffortRows& r
   return term;
 }
 
-/// Harmonics of one period in an entry, from two factors an order; `scale` turns the factors into its parameters.
-bool write_harmonics(std::string_view kind, const OrderChoice& choice, double scale, const VectorXd& factors,
-                     sim::DriveDescription& model) {
-  std::vector<sim::HarmonicTerm> terms;
-  for (std::size_t n = 0; n < choice.orders.size(); ++n)
-    terms.push_back(
-        {choice.orders[n], scale * factors(2 * static_cast<Index>(n)), scale * factors(2 * static_cast<Index>(n) + 1)});
-  sim::EffectEntry entry;
-  entry.kind = kind;
-  entry.parameters["period"] = choice.period;
-  sim::set_harmonics(entry, terms);
-  return append_within_bounds(model, std::move(entry));
-}
-
-void append_periodic(const sim::DriveDescription& model, const EffortRows& rows, std::string kind, const MatrixXd& base,
-                     const VectorXd& weight, const VectorXd& left, std::vector<EffortTerm>& terms) {
-  const bool friction = kind == "position_dependent_friction";
-  const OrderChoice choice =
-      choose_orders(model.data, rows, base, weight, left, friction ? Waves::any : Waves::short_ones);
-  if (choice.orders.empty()) return;
-  EffortTerm term{kind, order_columns(rows, weight, choice.period, choice.orders), {}, {}, {}};
-  term.sign.assign(2 * choice.orders.size(), 0);
-  term.write = [kind, choice](const VectorXd& factors, sim::DriveDescription& fitted) {
-    const double level = kind == "position_dependent_friction" ? coulomb_level(fitted) : -1.0;
-    return level != 0.0 && write_harmonics(kind, choice, 1.0 / level, factors, fitted);
+/// What a command asks for beyond the level that the amplifier gives: in proportion 1, or it is something else.
+EffortTerm current_limit_term(const sim::DriveDescription& model, const EffortRows& rows, double limit) {
+  VectorXd given(rows.w.size());
+  sim::DriveDescription standing = standing_part(model);
+  std::erase_if(standing.effects, [](const sim::EffectEntry& entry) { return entry.parameters.empty(); });  // chosen
+  const sim::Drive path(standing);
+  const double most_V = limit / model.data.effort_per_volt();
+  for (const EffortSignals& signals : rows.signals) {
+    Record limited;
+    limited.path = signals.record->path;
+    limited.sample_period_s = signals.record->sample_period_s;
+    limited.x = signals.record->x;
+    limited.u_V = signals.record->u_V;
+    for (double& u_V : limited.u_V) u_V = std::clamp(u_V, -most_V, most_V);
+    const std::vector<double> effort = delivered_effort(limited, model.data, signals.cutoff_Hz, true, &path).effort;
+    for (std::size_t k = 0; k < signals.kept.size(); ++k)
+      given(static_cast<Index>(signals.first_row + k)) = effort[signals.kept[k]];
+  }
+  EffortTerm term{"current_saturation", rows.effort - given, {1}, {}, {}};
+  term.acting = given.norm() / rows.effort.norm();
+  const double per_ampere = model.data.kind == sim::DriveKind::rotary ? model.data.torque_constant_Nm_per_A : 1.0;
+  term.write = [limit, per_ampere](const VectorXd& factors, sim::DriveDescription& fitted) {
+    constexpr double kNearly = 1.25;
+    return factors(0) > 1.0 / kNearly && factors(0) < kNearly &&
+           append(fitted, "current_saturation", {{"limit", limit / per_ampere}});
   };
-  term.words = fmt::format("{} {:g} of {:.5g} {}", choice.orders.size() == 1 ? "order" : "orders",
-                           fmt::join(choice.orders, ", "), choice.period,
-                           model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
-  // Friction that varies along the travel need not come back, but what a series of few waves leaves much of is
-  // something else.
-  constexpr double kNearlyAll = 0.1;
-  term.can_be_claimed = comes_back(choice, model.data, rows) || (friction && choice.left_validate < kNearlyAll);
-  terms.push_back(std::move(term));
+  term.neighbours = [model, &rows, limit](double part) {
+    return std::vector<EffortTerm>{current_limit_term(model, rows, limit * (1.0 + part)),
+                                   current_limit_term(model, rows, limit * (1.0 - part))};
+  };
+  return term;
 }
 
 }  // namespace
@@ -161,10 +155,14 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
       const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
       std::vector<double> orders;
       for (const sim::HarmonicTerm& term : harmonics) orders.push_back(term.order);
+      MatrixXd columns(rows.w.size(), 2 * static_cast<Index>(orders.size()));
+      for (std::size_t n = 0; n < orders.size(); ++n)
+        columns.middleCols(2 * static_cast<Index>(n), 2) =
+            wave_columns(rows, VectorXd::Constant(rows.w.size(), -1.0), {entry.at("period"), orders[n]});
       const auto index = static_cast<std::size_t>(&entry - model.effects.data());
       EffortTerm term{
           entry.kind,
-          order_columns(rows, VectorXd::Constant(rows.w.size(), -1.0), entry.at("period"), orders),
+          columns,
           std::vector<int>(2 * orders.size(), 0),
           [orders, index](const VectorXd& factors, sim::DriveDescription& fitted) {
             std::vector<sim::HarmonicTerm> found;
@@ -279,6 +277,13 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
                            [](double width, sim::DriveDescription& fitted) {
                              return append(fitted, "dac_dead_zone", {{"width", width}});
                            }));
+  const bool commanded =
+      std::ranges::none_of(rows.signals, [](const EffortSignals& signals) { return signals.record->u_V.empty(); });
+  if (commanded && may_have("current_saturation") && may_have("voltage_limit")) {
+    const double most = rows.effort.cwiseAbs().maxCoeff();
+    for (const double part : {0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95})
+      terms.push_back(current_limit_term(model, rows, part * most));
+  }
   if (may_have("thermal_friction_drift") && coulomb != nullptr) {
     const double duration_s = rows.t_s.maxCoeff() - rows.t_s.minCoeff();
     for (const double part : {0.2, 1.0}) {
@@ -324,19 +329,6 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
     };
     terms.push_back(std::move(term));
   }
-  return terms;
-}
-
-std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const EffortRows& rows, const MatrixXd& base,
-                                      const VectorXd& explained, const VectorXd& left) {
-  std::vector<EffortTerm> terms = shaped_terms(model, rows, explained);
-  if (!rows.has_position) return terms;
-  const VectorXd direction = sign_of(rows.w), one = VectorXd::Ones(rows.w.size());
-  append_periodic(model, rows, "cogging", base, one, left, terms);
-  if (model.find("torque_ripple") == nullptr)
-    append_periodic(model, rows, "torque_ripple", base, explained, left, terms);
-  if (model.find("position_dependent_friction") == nullptr && model.find("coulomb") != nullptr)
-    append_periodic(model, rows, "position_dependent_friction", base, direction, left, terms);
   return terms;
 }
 

@@ -17,14 +17,16 @@ struct EffortTerm {
   /// Turns a model with a fitted base into one that has the effect, by the columns' factors. False where these are out
   /// of the catalogue's bounds.
   std::function<bool(const Eigen::VectorXd& factors, sim::DriveDescription& model)> write;
-  std::string words;           ///< "orders 72, 18 of 6.283 mm"; may be empty
-  bool can_repeat = false;     ///< a drive may have several of it: waves of other periods
-  bool can_be_claimed = true;  ///< false: tells that something goes with the position, and no more
+  std::string words;        ///< "orders 72, 18 of 6.283 mm"; may be empty
+  bool can_repeat = false;  ///< a drive may have several of it: waves of other periods
   /// Forms whose shape differs by this part; empty where the forms that are tried lie close enough. It refers to the
   /// rows.
   std::function<std::vector<EffortTerm>(double part)> neighbours{};
   /// The same form with its frequency so many times as high; empty where it has none. It refers to the rows.
   std::function<EffortTerm(double factor)> at_frequency{};
+  /// RMS of the effort that acts with this effect, over that of the logged one. What is left is measured in that: where
+  /// nothing acts, nothing is left, and nothing is explained.
+  double acting = 1.0;
 };
 
 /// Adds an effect to a model; false where a parameter is out of the catalogue's bounds.
@@ -45,15 +47,9 @@ sim::DriveDescription standing_part(const sim::DriveDescription& model);
 Eigen::VectorXd standing_effort(const sim::DriveDescription& model, const EffortRows& rows);
 
 /// All forms of the effects that could be added to the model and leave a trace while the axis slides, but for waves
-/// over the travel. `explained`: as in further_terms().
+/// over the travel. `explained` is the effort by the terms so far: what is in proportion to the effort is taken in
+/// proportion to that, since the measured one would explain itself.
 std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const EffortRows& rows,
                                      const Eigen::VectorXd& explained);
-
-/// All forms of all effects that could be added to the model and leave a trace in the effort while the axis slides.
-/// `explained` is the effort by the terms so far: what is in proportion to the effort is taken in proportion to that,
-/// since the measured one would explain itself. `left` is what they leave.
-std::vector<EffortTerm> further_terms(const sim::DriveDescription& model, const EffortRows& rows,
-                                      const Eigen::MatrixXd& base, const Eigen::VectorXd& explained,
-                                      const Eigen::VectorXd& left);
 
 }  // namespace host

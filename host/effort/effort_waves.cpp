@@ -1,6 +1,7 @@
 #include "host/effort/effort_waves.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,19 +50,18 @@ bool write_wave(const std::string& kind, const Wave& wave, double cosine, double
   return append_within_bounds(model, std::move(entry));
 }
 
-/// Below this period waves pass faster than the filter lets through, or are made by the encoder's steps.
+}  // namespace
+
+double turn_of(const sim::DataSheet& data) {
+  return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
+}
+
 double shortest_wave(const sim::DataSheet& data, const EffortRows& rows) {
   std::vector<double> speeds(rows.w.size());
   std::ranges::transform(rows.w, speeds.begin(), [](double w) { return std::abs(w); });
   constexpr double kPassed = 0.8, kStepsAPeriod = 8.0;
   const double usual = median(std::move(speeds)) * data.lead;
   return std::max(usual / (kPassed * rows.lowest_cutoff_Hz), kStepsAPeriod * data.encoder_resolution);
-}
-
-}  // namespace
-
-double turn_of(const sim::DataSheet& data) {
-  return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
 }
 
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest) {
@@ -116,6 +116,19 @@ EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows,
     return around;
   };
   return term;
+}
+
+std::string words_of_waves(const sim::DriveDescription& model, const std::string& kind) {
+  std::vector<std::string> parts;
+  for (const sim::EffectEntry& entry : model.effects) {
+    if (entry.kind != kind) continue;
+    std::vector<double> orders;
+    for (const sim::HarmonicTerm& term : sim::harmonics_of(entry)) orders.push_back(term.order);
+    parts.push_back(fmt::format("{} {:g} of {:.5g} {}", orders.size() == 1 ? "order" : "orders",
+                                fmt::join(orders, ", "), entry.at("period"),
+                                model.data.kind == sim::DriveKind::rotary ? "mm" : "m"));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace host

@@ -19,6 +19,9 @@ struct Wave {
 /// Travel of one turn of the shaft, mm; 0 for a linear drive.
 double turn_of(const sim::DataSheet& data);
 
+/// Below this period, mm or m, waves pass faster than the filter lets through, or are made by the encoder's steps.
+double shortest_wave(const sim::DataSheet& data, const EffortRows& rows);
+
 /// All waves that rows of a drive can tell: orders of a shaft's turn, where the travel holds a quarter of one, and any
 /// period that comes back within the travel; `longest`: in travels, of the free ones.
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest);
@@ -29,5 +32,8 @@ Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weig
 /// A periodic effect of one wave. A model that has an entry of that kind and period gets one order more.
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
                      const Eigen::VectorXd& weight, const Wave& wave);
+
+/// All waves that a model holds of a kind: "orders 72, 18 of 6.283 mm".
+std::string words_of_waves(const sim::DriveDescription& model, const std::string& kind);
 
 }  // namespace host

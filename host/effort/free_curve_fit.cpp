@@ -5,9 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "host/effort/effort_orders.hpp"
+#include "host/effort/effort_waves.hpp"
+#include "host/evidence/period_search.hpp"
 #include "host/statistics.hpp"
 #include "sim/curve.hpp"
 
@@ -28,22 +28,71 @@ struct Coordinate {
   double period = 0.0;  ///< `at` goes from 0 to it and begins anew
 };
 
+using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
+/// A constant and a few orders of a period.
+MatrixXd orders_of(const EffortRows& rows, double period) {
+  constexpr Index kOrders = 6;
+  MatrixXd columns(rows.x.size(), 2 * kOrders + 1);
+  columns.col(0).setOnes();
+  for (Index n = 0; n < kOrders; ++n)
+    columns.middleCols(2 * n + 1, 2) =
+        wave_columns(rows, VectorXd::Ones(rows.x.size()), {period, static_cast<double>(n + 1)});
+  return columns;
+}
+
+/// Squared error on some rows of columns that were fitted to others.
+double left_elsewhere(const VectorXd& left, const MatrixXd& columns, const Mask& fitted, const Mask& judged) {
+  const VectorXd use = fitted.cast<double>();
+  const VectorXd factors =
+      MatrixXd(use.asDiagonal() * columns).completeOrthogonalDecomposition().solve(VectorXd(use.cwiseProduct(left)));
+  return judged.select(left - columns * factors, 0.0).matrix().squaredNorm();
+}
+
+/// Whether what a period shows in two thirds of the travel is there in the other third, whichever that is.
+bool comes_back(const EffortRows& rows, const VectorXd& left, double period) {
+  const MatrixXd columns = orders_of(rows, period);
+  const double first = rows.x.minCoeff(), third = (rows.x.maxCoeff() - first) / 3.0;
+  for (const double begin : {first, first + third, first + 2.0 * third}) {
+    const Mask other = rows.x.array() >= begin && rows.x.array() <= begin + third;
+    if (left_elsewhere(left, columns, !other, other) >= left_elsewhere(left, columns.leftCols(1), !other, other))
+      return false;
+  }
+  return true;
+}
+
 /// The shortest travel after which what the best model leaves comes back; nothing where it does not.
 std::optional<double> period_of(const EffortScreen& screen) {
-  EffortRows left = screen.rows;
-  left.effort = screen.best().residual;
-  const std::vector<EffortTerm> base = base_terms(screen.best().model, left);
-  MatrixXd columns(left.x.size(), 0);
-  for (const EffortTerm& term : base) {
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + term.columns.cols());
-    columns.rightCols(term.columns.cols()) = term.columns;
+  const EffortRows& rows = screen.rows;
+  const VectorXd& left = screen.best().residual;
+  TravelSignal signal;
+  for (Index k = 0; k < rows.x.size(); ++k) {
+    if (rows.judges[static_cast<std::size_t>(k)]) continue;
+    signal.x.push_back(rows.x(k));
+    signal.value.push_back(left(k));
+    signal.weight.push_back(1.0);
   }
-  const OrderChoice choice =
-      choose_orders(screen.base.model.data, left, columns, VectorXd::Ones(left.x.size()), left.effort);
-  if (choice.orders.empty() || !comes_back(choice, screen.base.model.data, left)) return {};
-  long common = 0;
-  for (const double order : choice.orders) common = std::gcd(common, std::lround(order));
-  return choice.period / static_cast<double>(common);
+  constexpr std::size_t kPeaks = 3;
+  constexpr double kPeriodsOfTravel = 3.0, kAlike = 1.02;
+  const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
+  const double shortest = shortest_wave(screen.base.model.data, rows);
+  std::vector<double> periods;
+  for (const PeriodPeak& peak : find_periods(signal, shortest, travel / kPeriodsOfTravel, kPeaks))
+    for (const double multiple : {1.0, 2.0, 3.0, 4.0})
+      if (multiple * peak.period < travel / 2.0) periods.push_back(multiple * peak.period);
+  if (const double turn = turn_of(screen.base.model.data); turn > 0.0 && turn < travel) periods.push_back(turn);
+  std::ranges::sort(periods);
+  std::optional<double> best;
+  const Mask judges =
+      Mask::NullaryExpr(left.size(), [&](Index k) { return bool{rows.judges[static_cast<std::size_t>(k)]}; });
+  double least = left_elsewhere(left, MatrixXd::Ones(left.size(), 1), !judges, judges);
+  for (const double period : periods) {
+    const double squares = left_elsewhere(left, orders_of(rows, period), !judges, judges);
+    if (kAlike * squares > least || !comes_back(rows, left, period)) continue;
+    least = squares;
+    best = period;
+  }
+  return best;
 }
 
 std::optional<Coordinate> coordinate_of(const EffortScreen& screen, std::string_view over) {

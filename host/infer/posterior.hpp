@@ -16,6 +16,8 @@ inline constexpr double kClaimed = 0.95;
 inline constexpr double kWorthNaming = 0.1;
 /// And of the squared error that the base leaves there: beside what was found first, a tenth of the error is not seen.
 inline constexpr double kWorthOfAll = 0.01;
+/// Unless it takes the larger part of what is left.
+inline constexpr double kWorthOfLeft = 0.5;
 /// Before the measurement, that nothing (more) is missing is as probable as that something is.
 inline constexpr double kNothingMore = 0.5;
 

@@ -62,7 +62,6 @@ RealAnswer ask(const RealMachine& machine, const ShareDone& progress) {
   const Measurements measured = MeasurementGate(model, {machine.accepted}).read(machine.train, machine.validate);
   RealAnswer answer;
   answer.diagnosis = diagnose(model, measured, progress);
-  answer.evidence = weigh_effects(model, answer.diagnosis.training, answer.diagnosis.validation);
   answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   answer.listed = is_listed(answer.diagnosis.verdict, machine.right);
   for (const std::string& kind : machine.must_not)

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/diagnose/diagnosis.hpp"
-#include "host/effort/effort_evidence.hpp"
 
 namespace host {
 
@@ -29,8 +27,6 @@ struct RealAnswer {
   double seconds = 0.0;
   bool listed = false;                 ///< the verdict is a right answer, or a group that holds one
   std::vector<std::string> not_there;  ///< claimed, though it is known not to be there
-
-  std::optional<EffortEvidence> evidence;  ///< what the force balance says by evidence alone; beside the verdict
 
   bool is_right() const { return listed && not_there.empty(); }
 };

@@ -33,7 +33,7 @@ std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record
                                             const std::vector<const host::Record*>& validate,
                                             std::shared_ptr<const host::EffortScreen>& seen) {
   const sim::DriveDescription model = motor();
-  return host::diagnose_by_effort(model, host::split_sets(model, train, validate), train, validate, seen);
+  return host::diagnose_by_effort(model, host::split_sets(model, train, validate), seen);
 }
 
 // A screen that stops at one order, counts orders over a wrong period or mistakes the sign leaves more.
@@ -91,7 +91,7 @@ TEST(EffortScreen, TakesWhatTheModelHasAsItStands) {
   const host::Record validate = record_of(slow_turning, dragging, 23.0, 36.0, 9);
   sim::DriveDescription model = motor();
   const auto left = [&] {
-    return host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model))
+    return host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model), 6)
         .base.validate;
   };
   const double without = left();
@@ -193,7 +193,7 @@ TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
   const host::Record sweep = limited_record(swings, 8.0), there = to({0.0, 14.0, -6.0, 8.0, 0.0, 15.0});
   const host::Record validate = to({0.0, -9.0, 7.0, 16.0, 0.0, -5.0});
   const host::EffortScreen screen =
-      host::screen_effort(model, host::compare_on({&sweep, &there}, model), host::compare_on({&validate}, model));
+      host::screen_effort(model, host::compare_on({&sweep, &there}, model), host::compare_on({&validate}, model), 6);
   ASSERT_FALSE(screen.empty());
   EXPECT_GT(screen.base.validate, 0.1);
   EXPECT_TRUE(screen.chosen.empty()) << screen.chosen.front().kinds.front();
@@ -210,12 +210,12 @@ TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
                  18.0 * slow * slow * std::cos(slow * t_s) + wave * std::cos(wave * t_s)};
   };
   const auto preload = [](const Point& at) {
-    return std::copysign(0.4 * kCoulomb * std::sin(kTurn * at.x / kLength + 1.0), at.w);
+    return std::copysign(0.4 * kCoulomb, at.w) * std::sin(kTurn * at.x / kLength + 1.0);
   };
   const host::Record train = record_of(wide, preload, 0.0, 40.0, 11);
   const host::Record validate = record_of(wide, preload, 51.0, 80.0, 12);
   const host::EffortScreen screen =
-      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()));
+      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()), 6);
   ASSERT_EQ(screen.chosen.size(), 1U);
   EXPECT_THAT(screen.chosen.front().kinds, ElementsAre("position_dependent_friction"));
   EXPECT_THAT(screen.tied.front(), IsEmpty()) << "so long a wave is no ripple of a motor";
@@ -292,7 +292,7 @@ TEST(EffortScreen, FindsThePeriodToAThousandth) {
   const host::Record validate = record_of(slow_turning, ripple, 23.0, 36.0, 14);
   sim::DriveDescription slide = motor();
   const host::EffortScreen screen =
-      host::screen_effort(slide, host::compare_on({&train}, slide), host::compare_on({&validate}, slide));
+      host::screen_effort(slide, host::compare_on({&train}, slide), host::compare_on({&validate}, slide), 6);
   ASSERT_FALSE(screen.chosen.empty());
   EXPECT_THAT(screen.chosen.front().kinds, ElementsAre("cogging"));
   EXPECT_NEAR(screen.best().model.find("cogging")->at("period"), kPitch, 1e-3 * kPitch);
@@ -304,7 +304,7 @@ TEST(EffortScreen, ClaimsNothingWhereNothingIsMissing) {
   const host::Record train = record_of(slow_turning, nothing, 0.0, 20.0, 3);
   const host::Record validate = record_of(slow_turning, nothing, 23.0, 36.0, 4);
   const host::EffortScreen screen =
-      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()));
+      host::screen_effort(motor(), host::compare_on({&train}, motor()), host::compare_on({&validate}, motor()), 6);
   ASSERT_FALSE(screen.empty());
   EXPECT_TRUE(screen.chosen.empty());
   EXPECT_LT(screen.base.validate, 0.05);

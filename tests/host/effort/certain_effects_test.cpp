@@ -1,0 +1,60 @@
+// Records written down in closed form (made_effort.hpp).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host/compare/comparison.hpp"
+#include "host/effort/effort_screen.hpp"
+#include "tests/host/effort/made_effort.hpp"
+
+namespace {
+
+using testing::Contains;
+using testing::IsEmpty;
+
+template <typename Further>
+host::EffortScreen screened(Further further) {
+  const host::Record train = record_of(slow_turning, further, 0.0, 20.0, 1);
+  const host::Record validate = record_of(slow_turning, further, 31.0, 45.0, 2);
+  const sim::DriveDescription model = motor();
+  host::EffortScreen screen =
+      host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model), 6);
+  EXPECT_FALSE(screen.empty());
+  return screen;
+}
+
+std::vector<std::string> named(const host::EffortScreen& screen) { return screen.best().kinds; }
+
+}  // namespace
+
+TEST(CertainEffects, ClaimsNothingWhereNothingIsMissing) {
+  const host::EffortScreen found = screened([](const Point&) { return 0.0; });
+  EXPECT_THAT(named(found), IsEmpty());
+  EXPECT_GT(found.nothing, 0.5);
+}
+
+TEST(CertainEffects, NamesCoggingOfTwoOrders) {
+  const host::EffortScreen found =
+      screened([](const Point& point) { return 0.01 * std::cos(7.0 * point.x) + 0.005 * std::sin(12.0 * point.x); });
+  ASSERT_THAT(named(found), Contains("cogging"));
+  EXPECT_EQ(found.certain.front().group, std::vector<std::string>{"cogging"});
+  EXPECT_GE(found.certain.front().probability, 0.95);
+  const sim::EffectEntry& cogging = *found.best().model.find("cogging");
+  EXPECT_NEAR(cogging.at("period"), kTurn, 0.01);
+  EXPECT_NEAR(std::abs(cogging.at("cosine_7")), 0.01, 0.001);
+  EXPECT_NEAR(std::abs(cogging.at("sine_12")), 0.005, 0.001);
+}
+
+TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
+  const host::EffortScreen found = screened([](const Point&) { return 0.008; });
+  ASSERT_FALSE(found.certain.empty());
+  EXPECT_THAT(found.certain.front().group, Contains("constant_torque"));
+  EXPECT_THAT(found.certain.front().group, Contains("dac_offset"));
+  EXPECT_LT(found.certain.front().after, 0.5 * found.certain.front().before);
+}
+
+TEST(CertainEffects, GivesABumpThatNoEffectIsToTheMemory) {
+  const host::EffortScreen found =
+      screened([](const Point& point) { return 0.015 * std::exp(-0.5 * std::pow(point.x - 3.0, 2)); });
+  EXPECT_THAT(named(found), IsEmpty());
+  EXPECT_GT(found.memory_log_odds, 10.0);
+}
