@@ -175,6 +175,7 @@ FrictionIdentification identify_friction(const Measurements& measured, const sim
   if (symmetric) warn_of_unequal_directions(result);
   warn_of_other_effects(result);
   std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
+  for (sim::EffectEntry& entry : result.model.effects) keep_within_bounds(entry, model.data.kind, result.warnings);
   return result;
 }
 

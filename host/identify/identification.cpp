@@ -93,15 +93,7 @@ void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& esti
           "directions, {} = {:.4g}; the rest is probably weight (constant_torque) or an offset (dac_offset)",
           key("positive"), key("negative"), key("level"), std::max(0.0, level.value)));
     }
-    for (auto& [id, value] : entry.parameters) {
-      const sim::ParameterInfo& parameter = *info.parameter(id);
-      const double bound = std::clamp(value, parameter.lower, parameter.upper);
-      if (value == bound) continue;
-      warnings.push_back(fmt::format("the model has {} = {:g}, the nearest that a drive can have",
-                                     parameter.key(model.data.kind), bound));
-      value = bound;
-      entry.ci95.erase(id);
-    }
+    keep_within_bounds(entry, model.data.kind, warnings);
   }
 }
 

@@ -138,6 +138,20 @@ std::vector<std::string> messages_of(const std::vector<Doubt>& doubts) {
   return messages;
 }
 
+void keep_within_bounds(sim::EffectEntry& entry, sim::DriveKind kind, std::vector<std::string>& warnings) {
+  const sim::EffectInfo& info = *sim::find_effect(entry.kind);
+  for (auto& [id, value] : entry.parameters) {
+    const sim::ParameterInfo* const parameter = info.parameter(id);
+    if (parameter == nullptr) continue;  // a numbered one: of either sign
+    const double bound = std::clamp(value, parameter->lower, parameter->upper);
+    if (value == bound) continue;
+    warnings.push_back(
+        fmt::format("the model has {} = {:g}, the nearest that a drive can have", parameter->key(kind), bound));
+    value = bound;
+    entry.ci95.erase(id);
+  }
+}
+
 void require_plausible(const sim::DriveDescription& model, const std::vector<std::string>& accepted) {
   for (const Doubt& doubt : doubts_of(model)) {
     if (!doubt.refuses || std::ranges::find(accepted, doubt.effect) != accepted.end()) continue;

@@ -22,6 +22,10 @@ std::vector<Doubt> doubts_of(const sim::DriveDescription& model);
 /// Their messages, for the warnings of a command.
 std::vector<std::string> messages_of(const std::vector<Doubt>& doubts);
 
+/// Moves what lies outside its physical bounds onto them, without its interval, and says so: no reader of a model takes
+/// such a value.
+void keep_within_bounds(sim::EffectEntry& entry, sim::DriveKind kind, std::vector<std::string>& warnings);
+
 /// Throws Failure(refused) with the first doubt that refuses, unless `accepted` names its effect.
 void require_plausible(const sim::DriveDescription& model, const std::vector<std::string>& accepted);
 

@@ -6,6 +6,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/identify/paper_drives.hpp"
+#include "host/model/model_file.hpp"
 
 namespace {
 
@@ -78,6 +79,16 @@ TEST(Plausibility, WhoKnowsBetterMayAcceptAnEffect) {
     EXPECT_EQ(failure.code, host::ExitCode::refused);
     EXPECT_THAT(failure.what(), HasSubstr("--accept coulomb"));
   }
+}
+
+// A friction curve of a weak log had a model written that no command read.
+TEST(Plausibility, WhatNoReaderTakesIsMovedOntoItsBound) {
+  sim::DriveDescription model = with("viscous", "B", -0.01, {-0.02, 0.005});
+  EXPECT_THROW((void)host::parse_model(host::format_model(model), "weak.toml"), host::Failure);
+  std::vector<std::string> warnings;
+  for (sim::EffectEntry& entry : model.effects) host::keep_within_bounds(entry, model.data.kind, warnings);
+  EXPECT_EQ(host::parse_model(host::format_model(model), "weak.toml").find("viscous")->at("B"), 0.0);
+  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("B_Nm_s_per_rad = 0")));
 }
 
 }  // namespace
