@@ -196,7 +196,7 @@ class Search {
         continue;
       }
       // Where an effect that is there may have another wave, no second one is needed.
-      std::ranges::stable_partition(group, [&](const std::string& kind) { return is_there(kind); });
+      std::stable_partition(group.begin(), group.end(), [&](const std::string& kind) { return is_there(kind); });
       const std::string kind = group.front();
       NextEffect& effect = effect_of(next, kind);
       const std::string form = effect.term.words;
