@@ -5,6 +5,7 @@
 #include "host/compare/comparison.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "tests/host/effort/made_effort.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
 
@@ -33,6 +34,7 @@ TEST(CertainEffects, ClaimsNothingWhereNothingIsMissing) {
 }
 
 TEST(CertainEffects, NamesCoggingOfTwoOrders) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::EffortScreen found =
       screened([](const Point& point) { return 0.01 * std::cos(7.0 * point.x) + 0.005 * std::sin(12.0 * point.x); });
   ASSERT_THAT(named(found), Contains("cogging"));
@@ -53,6 +55,7 @@ TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
 }
 
 TEST(CertainEffects, GivesABumpThatNoEffectIsToTheMemory) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::EffortScreen found =
       screened([](const Point& point) { return 0.015 * std::exp(-0.5 * std::pow(point.x - 3.0, 2)); });
   EXPECT_THAT(named(found), IsEmpty());

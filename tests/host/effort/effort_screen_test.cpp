@@ -202,6 +202,7 @@ TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
 // The friction of a screw whose preload varies: not once and a half over the travel, so that it never comes back. A
 // period that is a few per cent off leaves a quarter of it.
 TEST(EffortScreen, ClaimsFrictionThatVariesOverLessThanTwoWaves) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kLength = 30.0;
   const auto wide = [](double t_s) {
     const double slow = kTurn * 0.043, wave = kTurn * 0.31;
@@ -284,6 +285,7 @@ TEST(EffortScreen, FindsTheAntiresonanceBetweenTheFormsTriedFirst) {
 
 // A pitch that nobody knows, seen over a dozen periods.
 TEST(EffortScreen, FindsThePeriodToAThousandth) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   constexpr double kPitch = 2.3;
   const auto ripple = [](const Point& at) {
     return 0.012 * std::sin(kTurn * at.x / kPitch) + 0.006 * std::cos(2.0 * kTurn * at.x / kPitch);
@@ -300,6 +302,7 @@ TEST(EffortScreen, FindsThePeriodToAThousandth) {
 
 // What the effort is in proportion to must not be explained by the effort itself.
 TEST(EffortScreen, ClaimsNothingWhereNothingIsMissing) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto nothing = [](const Point&) { return 0.0; };
   const host::Record train = record_of(slow_turning, nothing, 0.0, 20.0, 3);
   const host::Record validate = record_of(slow_turning, nothing, 23.0, 36.0, 4);
