@@ -10,6 +10,7 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/device/board_report.hpp"
 #include "host/device/motion.hpp"
 #include "host/exit_codes.hpp"
 #include "host/parameters/parameter_names.hpp"
@@ -33,11 +34,6 @@ constexpr std::array<const char*, 4> kHomingModes{"none", "switch", "index", "bo
 double position_of(host::BoardClient& board, std::uint8_t axis, const firmware::ParameterValues& values) {
   const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
   return static_cast<double>(board.status().axis.at(axis).counts()) * resolution;
-}
-
-/// A linear drive's lead is 1.
-const char* unit_of(std::uint8_t axis, const firmware::ParameterValues& values) {
-  return values.axis(axis).get<"drive.lead">() == 1.0F ? "m" : "mm";
 }
 
 void report(const MotionArguments& arguments, const char* what, nlohmann::json document) {
@@ -82,10 +78,10 @@ void jog(const MotionArguments& arguments) {
   report(arguments, "jog", {{"axis", arguments.axis}, {"from", before}, {"to", after}});
   if (!talks(arguments)) return;
   if (arguments.dry_run)
-    fmt::print("would jog {} at {:g} {}/s for {:g} s\n", arguments.axis, arguments.value, unit_of(axis, values),
-               arguments.duration_s);
+    fmt::print("would jog {} at {:g} {}/s for {:g} s\n", arguments.axis, arguments.value,
+               host::travel_unit(axis, values), arguments.duration_s);
   else
-    fmt::print("{} went from {:.4f} to {:.4f} {}{}\n", arguments.axis, before, after, unit_of(axis, values),
+    fmt::print("{} went from {:.4f} to {:.4f} {}{}\n", arguments.axis, before, after, host::travel_unit(axis, values),
                interrupted() ? " (interrupted)" : "");
 }
 
@@ -125,7 +121,7 @@ void move(const MotionArguments& arguments) {
   if (!talks(arguments)) return;
   fmt::print("{} {} {:.4f} {unit} from {:.4f} {unit}{}\n", arguments.axis,
              arguments.dry_run ? "would move to" : "is at", arguments.dry_run ? target : after, before,
-             interrupted() ? " (interrupted)" : "", fmt::arg("unit", unit_of(axis, values)));
+             interrupted() ? " (interrupted)" : "", fmt::arg("unit", host::travel_unit(axis, values)));
 }
 
 void add_take_over(CLI::App& command, MotionArguments& arguments) {
@@ -179,7 +175,7 @@ void home(const MotionArguments& arguments) {
   else
     fmt::print("{} {}{}, at {:.4f} {}{}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)",
                arguments.here ? std::string(" where it stands") : fmt::format(" by {}", kHomingModes.at(mode)), at,
-               unit_of(axis, values), sets ? "; `axistool save` keeps its mode" : "");
+               host::travel_unit(axis, values), sets ? "; `axistool save` keeps its mode" : "");
 }
 
 }  // namespace

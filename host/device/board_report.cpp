@@ -30,12 +30,16 @@ const char* fault_name(std::uint8_t fault) {
   return firmware::fault_info(static_cast<firmware::AxisFault>(fault)).name;
 }
 
+const char* travel_unit(std::size_t axis, const firmware::ParameterValues& values) {
+  return values.axis(axis).get<"drive.lead">() == 1.0F ? "m" : "mm";
+}
+
 std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,
                                          const firmware::ParameterValues* values) {
   if (values == nullptr || axis >= values->axes() || !values->axis(axis).get<"drive.fitted">()) return {};
   const auto drive = values->axis(axis);
   const double resolution = static_cast<double>(drive.get<"drive.encoder_resolution">());
-  return AxisPlace{static_cast<double>(counts) * resolution, drive.get<"drive.lead">() == 1.0F ? "m" : "mm"};
+  return AxisPlace{static_cast<double>(counts) * resolution, travel_unit(axis, *values)};
 }
 
 std::string state_text(const firmware::AxisStatus& axis) {

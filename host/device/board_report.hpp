@@ -13,9 +13,12 @@ std::string state_text(const firmware::AxisStatus& axis);
 std::string store_text(std::uint8_t store_state);
 std::string reset_text(std::uint8_t reset_cause);
 
+/// mm, or m of a linear drive: its lead is 1.
+const char* travel_unit(std::size_t axis, const firmware::ParameterValues& values);
+
 struct AxisPlace {
   double value;
-  const char* unit;  ///< mm, or m of a linear drive: its lead is 1
+  const char* unit;  ///< travel_unit()
 };
 /// Nothing where the board's table of parameters is not known, or the axis is not fitted.
 std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,

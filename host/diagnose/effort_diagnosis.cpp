@@ -12,6 +12,7 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/effort/free_curve_fit.hpp"
+#include "host/infer/posterior.hpp"
 #include "host/record/columns.hpp"
 #include "host/report/text_format.hpp"
 #include "sim/catalogue.hpp"
@@ -139,7 +140,7 @@ void assign_evidence(const EffortScreen& screen, Diagnosis& diagnosis) {
   }
   DiagnosisVerdict& verdict = diagnosis.verdict;
   if (screen.chosen.empty()) {
-    const double something = 1.0 / (1.0 + std::exp(-screen.memory_log_odds));
+    const double something = logistic(screen.memory_log_odds);
     verdict.probability_nothing = (1.0 - others) * (1.0 - something);
     verdict.probability_other = (1.0 - others) * something;
     return;

@@ -5,12 +5,11 @@
 #include <vector>
 
 #include "host/diagnose/claim.hpp"
+#include "host/infer/posterior.hpp"
 
 namespace host {
 
 namespace {
-
-double logistic(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
 /// Log of the error, over both sets alike, with what a candidate's complexity costs. Errors below the floor are the
 /// floor's own uncertainty.

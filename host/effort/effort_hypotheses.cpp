@@ -45,7 +45,6 @@ constexpr std::size_t kMostRows = 2500;
 struct Form {
   std::string kind;
   MatrixXd columns;  ///< of RMS 1
-  VectorXd factors;  ///< that these columns were divided by
   double log_unit;   ///< what the logs gain or lose where what is left counts in another unit
   std::function<EffortTerm()> term;
   std::vector<int> sign;
@@ -61,11 +60,11 @@ struct Weighed {
 std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vector<int> sign, double acting,
                             std::function<EffortTerm()> term) {
   const double log_unit = static_cast<double>(columns.rows()) * std::log(acting);
-  Form form{std::move(kind), columns, VectorXd(columns.cols()), log_unit, std::move(term), std::move(sign)};
+  Form form{std::move(kind), columns, log_unit, std::move(term), std::move(sign)};
   for (Index c = 0; c < columns.cols(); ++c) {
-    form.factors(c) = rms(columns.col(c));
-    if (!(form.factors(c) > 0.0) || !std::isfinite(form.factors(c))) return {};
-    form.columns.col(c) /= form.factors(c);
+    const double size = rms(columns.col(c));
+    if (!(size > 0.0) || !std::isfinite(size)) return {};
+    form.columns.col(c) /= size;
   }
   return form;
 }

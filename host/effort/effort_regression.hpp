@@ -17,8 +17,8 @@ struct ScreenedModel {
   std::vector<std::string> kinds;  ///< beyond the base, in the order in which they were chosen
   sim::DriveDescription model;
   std::string words;  ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
-  double train = 1.0,
-         validate = 1.0;     ///< RMS residual over RMS acting effort of the rows; 1 is no better than no model
+  /// RMS residual over RMS acting effort of the rows; 1 is no better than no model.
+  double train = 1.0, validate = 1.0;
   double probability = 0.0;  ///< of the last kind, or of its group, among all that may follow and nothing
   double confidence = 0.0;   ///< of the last kind against nothing more
   std::size_t factors = 0;

@@ -60,10 +60,15 @@ class Search {
   }
 
  private:
+  static std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms) {
+    std::vector<const EffortTerm*> pointers;
+    for (const EffortTerm& term : terms) pointers.push_back(&term);
+    return pointers;
+  }
+
   /// The best model with a further term, fitted to the training rows; its kinds hold the term's once.
   bool with(const EffortTerm& term, ScreenedModel& out) const {
-    std::vector<const EffortTerm*> further;
-    for (const EffortTerm& before : chosen_) further.push_back(&before);
+    std::vector<const EffortTerm*> further = pointers_to(chosen_);
     further.push_back(&term);
     if (!regression_.fit(base_, further, out)) return false;
     const ScreenedModel& before = screen_.best();
@@ -110,7 +115,7 @@ class Search {
       if (!(closest ? with_closest(effect, tried) : with(effect.term, tried))) continue;
       if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further waves of an effect that is there
       tried.probability = effect.probability;
-      tried.confidence = 1.0 / (1.0 + std::exp(-effect.log_odds));
+      tried.confidence = logistic(effect.log_odds);
       list.push_back(std::move(tried));
     }
     return list;
@@ -214,16 +219,13 @@ class Search {
         continue;
       }
       taken.probability = effect.probability;
-      taken.confidence = 1.0 / (1.0 + std::exp(-effect.log_odds));
+      taken.confidence = logistic(effect.log_odds);
       if (effect.term.can_repeat) taken.words = words_of_waves(taken.model, kind);
-      // Of a group no second one follows: the first stands for all.
-      for (const std::string& other : group)
-        if (other != kind || !effect.term.can_repeat) excluded_.push_back(other);
       if (is_there(kind))
         take_further_wave(kind, std::move(taken));
       else
         take_effect(effect.term, group, probability, std::move(taken), list, next);
-      chosen_.push_back(std::move(effect.term));
+      keep(std::move(effect.term), group);
       return true;
     }
   }
@@ -248,6 +250,13 @@ class Search {
     take_out(all, {kind});
   }
 
+  /// Of a group no second one follows: the first stands for all, and may have further waves.
+  void keep(EffortTerm term, const std::vector<std::string>& group) {
+    for (const std::string& other : group)
+      if (other != term.kind || !term.can_repeat) excluded_.push_back(other);
+    chosen_.push_back(std::move(term));
+  }
+
   void take_further_wave(const std::string& kind, ScreenedModel taken) {
     std::ranges::find(screen_.certain, kind, [](const CertainEffect& found) { return found.group.front(); })->after =
         taken.validate;
@@ -260,7 +269,7 @@ class Search {
 
   void take_effect(const EffortTerm& term, const std::vector<std::string>& group, double probability,
                    ScreenedModel taken, std::vector<ScreenedModel> list, const NextEffects& next) {
-    screen_.certain.push_back({group, probability, screen_.best().validate, taken.validate, true});
+    screen_.certain.push_back({group, probability, screen_.best().validate, taken.validate});
     std::erase_if(list, [&](const ScreenedModel& tried) { return tried.kinds == taken.kinds; });
     list.insert(list.begin(), taken);
     close_step(std::move(list), next);
@@ -289,8 +298,7 @@ class Search {
       NextEffect& effect = effect_of(all, group.front());
       ScreenedModel taken;
       if (!is_there(group.front()) && with_closest(effect, taken) && !is_refuted(taken))
-        small.push_back(
-            {effect.term, {group, probability, screen_.best().validate, taken.validate, false}, effect.log_odds});
+        small.push_back({effect.term, {group, probability, screen_.best().validate, taken.validate}, effect.log_odds});
       take_out(all, group);
     }
   }
@@ -305,8 +313,7 @@ class Search {
     take_out(no_waves, waves);
     std::vector<SmallOne> together = small_ones(std::move(no_waves));
     const auto fitted = [&](std::size_t without, ScreenedModel& out) {
-      std::vector<const EffortTerm*> further;
-      for (const EffortTerm& term : chosen_) further.push_back(&term);
+      std::vector<const EffortTerm*> further = pointers_to(chosen_);
       for (std::size_t k = 0; k < together.size(); ++k)
         if (k != without) further.push_back(&together[k].term);
       return regression_.fit(base_, further, out);
@@ -332,10 +339,9 @@ class Search {
     ScreenedModel taken;
     if (!with(first.term, taken)) return false;
     taken.probability = first.certain.probability;
-    taken.confidence = 1.0 / (1.0 + std::exp(-first.log_odds));
-    excluded_.insert(excluded_.end(), first.certain.group.begin(), first.certain.group.end());
+    taken.confidence = logistic(first.log_odds);
     take_effect(first.term, first.certain.group, first.certain.probability, std::move(taken), list, all);
-    chosen_.push_back(std::move(first.term));
+    keep(std::move(first.term), first.certain.group);
     to_be_followed_ = first.certain.group.front();
     return true;
   }
@@ -352,10 +358,8 @@ class Search {
   std::optional<ScreenedModel> without(const std::string& kind, std::vector<EffortTerm>& others) const {
     others = chosen_;
     std::erase_if(others, [&](const EffortTerm& term) { return term.kind == kind; });
-    std::vector<const EffortTerm*> further;
-    for (const EffortTerm& term : others) further.push_back(&term);
     ScreenedModel left;
-    if (!regression_.fit(base_, further, left)) return {};
+    if (!regression_.fit(base_, pointers_to(others), left)) return {};
     const ScreenedModel& now = screen_.chosen.back();
     left.kinds = now.kinds;
     std::erase(left.kinds, kind);
@@ -380,9 +384,6 @@ class Search {
     std::vector<EffortTerm> others;
     std::optional<ScreenedModel> left = without(to_be_followed_, others);
     if (!left) return;
-    std::ranges::find(screen_.certain, to_be_followed_, [](const CertainEffect& found) {
-      return found.group.front();
-    })->named = false;
     drop(to_be_followed_, std::move(others), *std::move(left));
   }
 

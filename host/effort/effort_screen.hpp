@@ -19,7 +19,6 @@ struct CertainEffect {
   std::vector<std::string> group;    ///< one kind, or those that these data cannot tell apart, most probable first
   double probability = 0.0;          ///< of the group
   double before = 1.0, after = 1.0;  ///< RMS residual over RMS torque or force of the validation rows
-  bool named = false;                ///< takes at least kWorthNaming of the squared error there
 };
 
 struct EffortScreen {

@@ -277,8 +277,7 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
                            [](double width, sim::DriveDescription& fitted) {
                              return append(fitted, "dac_dead_zone", {{"width", width}});
                            }));
-  const bool commanded =
-      std::ranges::none_of(rows.signals, [](const EffortSignals& signals) { return signals.record->u_V.empty(); });
+  const bool commanded = rows.unknown_instant_s == 0.0;
   if (commanded && may_have("current_saturation") && may_have("voltage_limit")) {
     const double most = rows.effort.cwiseAbs().maxCoeff();
     for (const double part : {0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95})

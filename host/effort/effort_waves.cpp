@@ -33,6 +33,11 @@ double coulomb_level(const sim::DriveDescription& model) {
   return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
 }
 
+std::string words_of(const std::vector<double>& orders, double period, sim::DriveKind kind) {
+  return fmt::format("{} {:g} of {:.5g} {}", orders.size() == 1 ? "order" : "orders", fmt::join(orders, ", "), period,
+                     kind == sim::DriveKind::rotary ? "mm" : "m");
+}
+
 /// Adds a wave to the entry of its kind and period, or a new entry.
 bool write_wave(const std::string& kind, const Wave& wave, double cosine, double sine, sim::DriveDescription& model) {
   for (sim::EffectEntry& entry : model.effects) {
@@ -103,8 +108,7 @@ EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows,
     return level != 0.0 && write_wave(kind, wave, factors(0) / level, factors(1) / level, fitted);
   };
   term.can_repeat = true;
-  term.words = fmt::format("order {:g} of {:.5g} {}", wave.order, wave.period,
-                           model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
+  term.words = words_of({wave.order}, wave.period, model.data.kind);
   if (wave.period == turn_of(model.data)) return term;
   term.neighbours = [&model, &rows, kind, weight, wave](double part) {
     constexpr double kWaves = 8.0;  // the largest part is a quarter of a wave over the travel
@@ -124,9 +128,7 @@ std::string words_of_waves(const sim::DriveDescription& model, const std::string
     if (entry.kind != kind) continue;
     std::vector<double> orders;
     for (const sim::HarmonicTerm& term : sim::harmonics_of(entry)) orders.push_back(term.order);
-    parts.push_back(fmt::format("{} {:g} of {:.5g} {}", orders.size() == 1 ? "order" : "orders",
-                                fmt::join(orders, ", "), entry.at("period"),
-                                model.data.kind == sim::DriveKind::rotary ? "mm" : "m"));
+    parts.push_back(words_of(orders, entry.at("period"), model.data.kind));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
 }

@@ -21,6 +21,9 @@ inline constexpr double kWorthOfLeft = 0.5;
 /// Before the measurement, that nothing (more) is missing is as probable as that something is.
 inline constexpr double kNothingMore = 0.5;
 
+/// Probability of what has these log odds, nats.
+inline double logistic(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
 /// ln(sum(exp(values))).
 inline double log_sum(const std::vector<double>& values) {
   const double most = *std::ranges::max_element(values);
