@@ -246,6 +246,7 @@ TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
                                       {Refusal::position_friction, "position_friction.period"},
                                       {Refusal::backlash, "backlash.gap"},
                                       {Refusal::backlash_crossing, "backlash.crossing_time"},
+                                      {Refusal::pitch_crossing, "pitch.crossing_time"},
                                       {Refusal::homing, "homing.velocity"},
                                       {Refusal::amplifier_ready, "amplifier.ready_time"},
                                       {Refusal::brake_feedback, "brake.fitted"},
@@ -349,6 +350,8 @@ TEST(ParameterTable, IdsAreFrozen) {
       {225, "backlash.gap"},
       {226, "backlash.crossing_time"},
       {227, "backlash.wind_up"},
+      {288, "pitch.on"},
+      {289, "pitch.crossing_time"},
   };
   for (const auto& [id, name] : kReleased)
     for (const firmware::ParameterInfo& row : firmware::kParameters)
