@@ -315,6 +315,8 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     while_stalled([this] { return fault_log_.write(); });
   }
+  /// After start().
+  void log_end_of_last_run(const LoggedFault& ended) { fault_log_.note(ended); }
   bool logged_fault(std::size_t age, FaultLogPayload& payload) { return fault_log_.read(age, payload); }
 
   bool is_in_motion() {
