@@ -325,23 +325,27 @@ class Search {
     return true;
   }
 
-  /// Two effects may hide each other: beside either of them alone, what is left wanders as it did before. Beside the
-  /// one of the closest two, is another certain?
+  /// Two effects may hide each other: beside either of them alone, what is left wanders as it did before. Of the two
+  /// that leave least, each of which takes enough beside the other: given one, is another certain?
   bool take_one_of_two(const EffortHypotheses& hypotheses, const NextEffects& all,
                        const std::vector<ScreenedModel>& list) {
+    std::vector<ScreenedModel> alone(all.effects.size());
+    for (std::size_t k = 0; k < alone.size(); ++k)
+      if (!with(all.effects[k].term, alone[k])) alone[k].validate = 0.0;  // nothing takes anything beside it
     const NextEffect* beside = nullptr;
     double least = HUGE_VAL;
-    for (std::size_t a = 0; a < all.effects.size(); ++a)
+    for (std::size_t a = 0; a < alone.size(); ++a)
       for (std::size_t b = 0; b < a; ++b) {
         throw_if_cancelled();
         std::vector<const EffortTerm*> further = pointers_to(chosen_);
         further.push_back(&all.effects[a].term);
         further.push_back(&all.effects[b].term);
         ScreenedModel both;
-        if (!regression_.fit(base_, further, both) || both.train >= least || !is_worth_naming(both)) continue;
+        if (!regression_.fit(base_, further, both) || both.train >= least || !is_worth_naming(both) ||
+            !is_worth_naming(alone[a].validate, both.validate) || !is_worth_naming(alone[b].validate, both.validate))
+          continue;
         least = both.train;
-        beside =
-            plain_error(all.effects[a].term) > plain_error(all.effects[b].term) ? &all.effects[a] : &all.effects[b];
+        beside = &all.effects[alone[a].train > alone[b].train ? a : b];
       }
     if (beside == nullptr) return false;
     std::vector<EffortTerm> chosen = chosen_;
