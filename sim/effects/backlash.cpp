@@ -48,7 +48,8 @@ const EffectInfo backlash{
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}},
-                   load_friction_parameter()},
+                   load_friction_parameter(),
+                   load_viscous_parameter()},
     .shows =
         "After a reversal the motor runs free for a fixed travel, then hits the load: torque falls short, then peaks. "
         "The travel is the same at any speed",

@@ -18,11 +18,9 @@ const EffectInfo compliance{
     .kind = "compliance",
     .title = "A second mass on a spring",
     .equation =
-        "J1 dw1/dt = T - s - (1 - p) T_f, J2 dw2/dt = s - p T_f, s = k d + c dd/dt; 1: motor, 2: load behind the "
-        "spring, "
-        "d: twist, T_f: friction at the speed of its side, p: its part on the load, 1 unless given; k, c from "
-        "resonance "
-        "and damping",
+        "J1 dw1/dt = T - s - (1 - p) T_d - (1 - q) T_v, J2 dw2/dt = s - p T_d - q T_v, s = k d + c dd/dt; 1: motor, "
+        "2: load behind the spring, d: twist, T_d, T_v: dry and viscous friction at the speed of its side, p, q: their "
+        "parts on the load, 1 and p unless given; k, c from resonance and damping",
     .stage = Stage::mechanics,
     .parameters = {{.id = "resonance",
                     .rotary_key = "resonance_Hz",
@@ -45,7 +43,8 @@ const EffectInfo compliance{
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}},
-                   load_friction_parameter()},
+                   load_friction_parameter(),
+                   load_viscous_parameter()},
     .shows =
         "Residual rings at one frequency after each change of torque, the same at any speed. Below the resonance both "
         "inertias act, above it the motor's alone",
