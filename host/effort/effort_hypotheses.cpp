@@ -84,12 +84,16 @@ bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
   return wave.order * travel / wave.period <= kMostWaves || (wave.period == turn && wave.order <= kMostOrders);
 }
 
-/// Of many waves, those whose plain gain is largest; `rest` counts the others.
-std::vector<Wave> most_promising(std::vector<Wave> waves, const EffortRows& rows, const VectorXd& weight,
-                                 const VectorXd& left) {
+/// What stands in the list for what the catalogue has no name for.
+constexpr const char* kNoName = "";
+
+using WaveColumns = std::function<MatrixXd(const Wave&)>;
+
+/// Of many waves, those whose plain gain is largest.
+std::vector<Wave> most_promising(std::vector<Wave> waves, const WaveColumns& columns_of, const VectorXd& left) {
   std::vector<std::pair<double, Wave>> ranked;
   for (const Wave& wave : waves) {
-    const MatrixXd columns = wave_columns(rows, weight, wave);
+    const MatrixXd columns = columns_of(wave);
     const Eigen::Matrix2d moments = columns.transpose() * columns;
     const Eigen::Vector2d pull = columns.transpose() * left;
     ranked.emplace_back(-pull.dot(moments.ldlt().solve(pull)), wave);
@@ -192,24 +196,46 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     const VectorXd one = VectorXd::Ones(rows_.w.size());
     const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
     const VectorXd left = thin_.of(rows_.effort - explained);
+    const double turn = turn_of(model_.data);
+    const auto weigh_waves = [&](const std::string& kind, const std::vector<Wave>& waves, const WaveColumns& columns_of,
+                                 const std::function<EffortTerm(const Wave&)>& term_of) {
+      counts[kind] += static_cast<double>(waves.size());
+      for (const Wave& wave : most_promising(waves, columns_of, left)) {
+        std::optional<Form> form =
+            form_of(kind, columns_of(wave), {0, 0}, 1.0, [term_of, wave] { return term_of(wave); });
+        if (form) forms[kind].push_back(*std::move(form));
+      }
+    };
+    const auto slow_waves = [&](double longest) {
+      std::vector<Wave> waves = waves_over(model_.data, rows_, longest);
+      std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
+      return waves;
+    };
+    if (!rows_.steady)
+      weigh_waves(
+          kNoName, slow_waves(1.0), [this](const Wave& wave) { return varying_inertia_columns(thin_.rows, wave); },
+          [this](const Wave& wave) {
+            return EffortTerm{kNoName,
+                              varying_inertia_columns(rows_, wave),
+                              {0, 0},
+                              [](const VectorXd&, sim::DriveDescription&) { return true; },
+                              {}};
+          });
     for (const auto& [kind, weight, longest] : {std::tuple<std::string, const VectorXd*, double>{"cogging", &one, 1.0},
                                                 {"torque_ripple", &explained, 1.0},
                                                 {"position_dependent_friction", &direction, 2.0}}) {
       if (is_excluded(kind) || (kind == "position_dependent_friction" && held.find("coulomb") == nullptr)) continue;
-      std::vector<Wave> waves = waves_over(model_.data, rows_, longest);
-      const double turn = turn_of(model_.data);
       // Friction varies slowly along the travel, or with the pitch of the screw.
-      if (kind == "position_dependent_friction")
-        std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
-      counts[kind] += static_cast<double>(waves.size());
-      const VectorXd thin_weight = thin_.of(*weight);
-      for (const Wave& wave : most_promising(waves, thin_.rows, thin_weight, left)) {
-        std::optional<Form> form = form_of(kind, wave_columns(thin_.rows, thin_weight, wave), {0, 0}, 1.0,
-                                           [this, kind = std::string(kind), weight = *weight, wave] {
-                                             return wave_term(model_, rows_, kind, weight, wave);
-                                           });
-        if (form) forms[kind].push_back(*std::move(form));
-      }
+      const std::vector<Wave> waves =
+          kind == "position_dependent_friction" ? slow_waves(longest) : waves_over(model_.data, rows_, longest);
+      weigh_waves(
+          kind, waves,
+          [this, thin_weight = thin_.of(*weight)](const Wave& wave) {
+            return wave_columns(thin_.rows, thin_weight, wave);
+          },
+          [this, kind = kind, weight = *weight](const Wave& wave) {
+            return wave_term(model_, rows_, kind, weight, wave);
+          });
     }
   }
 
@@ -301,6 +327,10 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   found.nothing = probabilities.front();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     std::vector<Fitted>& fitted = kinds[k].fitted;
+    if (kinds[k].name == kNoName) {
+      found.nothing += probabilities[k + 1];
+      continue;
+    }
     NextEffect effect{std::move(fitted.front().term), {}, fitted.front().log_odds, probabilities[k + 1]};
     std::ranges::stable_sort(fitted.begin() + 1, fitted.end(), {}, &Fitted::train);
     if (effect.term.neighbours)
