@@ -234,9 +234,10 @@ std::string hal_lines(const PortableModel& model, const std::string& component) 
   const double per_volt = model.data.effort_per_volt();
   return fmt::format(
       "# For joint {1}, whose loop is pid.{2}: change these names where yours differ. halcompile --install {0}.comp;\n"
-      "# then, in the machine's .hal file, behind addf motion-controller and in front of the addf of the PID:\n"
+      "# then, in the machine's .hal file, behind the addf of the PID (vel-cmd and acc-cmd are of the coming period):\n"
       "#   source {0}.hal\n"
-      "# The PID adds its bias to its output. Set its FF1 and FF2 to 0: friction and inertia come from here.\n"
+      "# The PID adds its bias to its output. Friction and inertia come from here: set its FF1 to 0, and its FF2 to\n"
+      "# -Dgain times the servo period in s (its D takes the command one period ahead of the error's).\n"
       "loadrt {0}\naddf {3}.0 servo-thread\n"
       "setp {3}.0.scale {4:.9g}  # units of the amplifier's command for 1 {5}\n"
       "net {2}-pos-cmd joint.{1}.motor-pos-cmd => {3}.0.position\n"
