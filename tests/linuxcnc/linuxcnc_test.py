@@ -143,7 +143,7 @@ def furnish() -> None:
         shutil.copy(script, "/mnt")
     shutil.copy(os.environ["AXISTOOL"], "/mnt/axistool")
     shutil.copytree(MODULES, "/mnt/modules")
-    subprocess.run(["mount", "--move", "/mnt", "/tmp"], check=True)
+    subprocess.run(["mount", "--bind", "/mnt", "/tmp"], check=True)
     subprocess.run(["mount", "--bind", "/tmp/modules", str(MODULES)], check=True)
     os.chdir("/tmp")
     os.environ.update(HOME="/tmp", PATH=f"/tmp:{os.environ['PATH']}", LC_ALL="C.UTF-8")
