@@ -90,6 +90,13 @@ test-usb: firmware ## Boards on Linux' own USB and GPIO stack, in an emulated PC
 	ninja -C $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) --tests-regex '^guest/'
 
+.PHONY: test-linuxcnc
+test-linuxcnc: ## LinuxCNC drives machines with a hidden effect, before and after the exported component (installs LinuxCNC)
+	$(NEED) build test linuxcnc
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	ctest --test-dir $(BUILD) --no-tests=error --verbose --tests-regex '^linuxcnc$$'
+
 .PHONY: firmware
 firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images), with size and stack report
 	$(NEED) firmware

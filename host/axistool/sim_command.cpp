@@ -5,12 +5,14 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/external_plant/external_plant.hpp"
+#include "host/external_plant/plant_server.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
 #include "host/open_board.hpp"
@@ -31,7 +33,7 @@ struct SimArguments {
   std::string serial_number = "SIMULATED";
   std::uint64_t seed = 1;
   double patience_s = 10.0;
-  bool forget = false, usb = false;
+  bool forget = false, usb = false, as_plant = false;
   std::string printed;
 };
 
@@ -88,6 +90,13 @@ void print_drive(const SimArguments& arguments) {
 void run(SimArguments arguments) {
   if (!arguments.printed.empty()) {
     print_drive(arguments);
+    return;
+  }
+  if (arguments.as_plant) {
+    std::vector<sim::DriveDescription> drives;
+    for (std::size_t axis = 0; axis < arguments.axes; ++axis)
+      drives.push_back(drive(arguments.models[axis], axis).drive);
+    host::serve_plant(drives, arguments.seed, std::cin, std::cout);
     return;
   }
   if (arguments.socket.empty()) arguments.socket = host::default_socket_path();
@@ -149,6 +158,12 @@ void add_sim(CLI::App& app) {
       ->check(CLI::Range(0.01, 600.0))
       ->capture_default_str()
       ->needs(plant);
+  command
+      ->add_flag("--as-plant", arguments->as_plant,
+                 "no board: the drives alone, as another controller's machine (axis-plant/1 on standard input, output)")
+      ->excludes(plant)
+      ->excludes(usb)
+      ->excludes(socket);
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();
@@ -162,6 +177,7 @@ void add_sim(CLI::App& app) {
       "  axistool sim --print-drive x > x-drive.toml\n"
       "  sudo axistool sim --usb --serial BENCH-1 &\n"
       "  axistool sim --x my-model.toml --forget --socket /tmp/board.socket\n"
+      "  axistool sim --axes 1 --x my-model.toml --as-plant\n"
       "  axistool sim --axes 1 --x data-sheet.toml --plant 'python3 05-own-plant.py' --forget");
   command->callback([arguments] { run(*arguments); });
 }
