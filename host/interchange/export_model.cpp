@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "host/compare/effort_prediction.hpp"
-#include "host/exit_codes.hpp"
 #include "host/identify/inverse_model.hpp"
 
 namespace host {
@@ -116,13 +115,12 @@ Export export_model(const sim::DriveDescription& model, ExportTarget target, con
   }
   if (target == ExportTarget::mjcf || target == ExportTarget::urdf)
     note_levels(measured, formulas, record, exported.not_expressed);
-  const std::vector<std::string> notes = notes_of(model, exported.to, exported, record);
+  std::vector<std::string> notes = notes_of(model, exported.to, exported, record);
   const std::filesystem::path file(path);
   const std::string component = identifier(file.stem().string());
   if (target == ExportTarget::linuxcnc && file.filename() != component + ".comp")
-    throw Failure(ExitCode::usage, fmt::format("{}: halcompile takes a file that is named as its component, letters, "
-                                               "digits and _: {}.comp",
-                                               path, component));
+    notes.push_back(
+        fmt::format("halcompile takes a file that is named as its component: name this one {}.comp.", component));
   switch (target) {
     case ExportTarget::mjcf:
       exported.files.push_back({path, mjcf_joint(formulas, notes)});
