@@ -26,7 +26,8 @@ namespace host {
 
 namespace {
 
-/// A machine is rough when half of the windows of the best model lie this far above their floors.
+/// A machine is limited by model error (rough) if half of the best model's windows lie this far above their noise
+/// floors.
 constexpr double kRoughError = 10.0;
 
 }  // namespace
@@ -58,7 +59,7 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
 
 namespace {
 
-/// By a search over the effects, on sets of `model` whose base is fitted.
+/// Diagnosis by a search over the effects, on sets whose base is fitted.
 Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& model, const FigureRows& rows,
                              const ShareDone& progress) {
   Diagnosis result(std::move(sets));
@@ -81,7 +82,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   return result;
 }
 
-/// Whether the motion shows an effect that the regression of the effort could not have seen.
+/// Whether the motion shows an effect that the force-balance regression cannot see.
 bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   const DiagnosisVerdict& verdict = by_motion.verdict;
   if (by_motion.rough || verdict.effects.empty()) return false;
@@ -92,8 +93,8 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   return std::ranges::none_of(verdict.effects, seen);
 }
 
-/// Whether the motion may tell what the effects that the effort shows leave: it is left with more than noise, but no
-/// rough machine.
+/// Whether the motion can explain the rest after the regression's effects: more than noise remains, but the machine is
+/// not limited by model error.
 bool may_be_completed(const Diagnosis& by_effort, const RecordSet& validation) {
   return by_effort.after_validate > kExplained && !is_rough(error_of(sim::Drive(by_effort.best), validation));
 }
@@ -104,14 +105,14 @@ bool completes(const Diagnosis& by_motion) {
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
 }
 
-/// Whether the motion names anything that the force balance does not, which knows its rivals better.
+/// Whether the motion names an effect that the regression, which compares rivals better, does not.
 bool names_more(const Diagnosis& by_motion, const Diagnosis& by_effort) {
   const std::vector<std::string>& known = by_effort.verdict.effects;
   return std::ranges::any_of(by_motion.verdict.effects,
                              [&](const std::string& kind) { return std::ranges::find(known, kind) == known.end(); });
 }
 
-/// Whether an effect changes when the motor's effort acts.
+/// Whether an effect changes the timing of the motor torque.
 bool acts_late(const sim::EffectInfo& effect) {
   if (effect.stage != sim::Stage::command) return false;
   sim::EffectEntry entry{.kind = std::string(effect.kind), .parameters = {}, .ci95 = {}, .from = {}};
@@ -150,7 +151,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     return diagnosis;
   };
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
-  // Where the motion is not explained, what the effort shows is.
+  // If the motion is not explained, use the regression's answer.
   const auto unless_unexplained = [&](Diagnosis by_motion) {
     const bool explains = by_motion.verdict.status != Status::unexplained || !only_in_the_effort;
     return explains ? std::move(by_motion) : *std::move(only_in_the_effort);
@@ -163,7 +164,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       const bool tells = !screen->chosen.empty();
       if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
         return *std::move(diagnosis);
-      // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
+      // Effects invisible to the regression in sliding motion, such as a current limit, show in the motion.
       over_long_windows = search(with_base_fitted(split));
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
                                    : goes_beyond(*over_long_windows, *screen);
