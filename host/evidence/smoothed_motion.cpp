@@ -120,8 +120,8 @@ std::vector<double> command_volts(const Record& record, const sim::DataSheet& da
                                   : 0.0;
   if (record.i_A.empty())
     throw Failure(ExitCode::bad_input, record.path +
-                                           ": no effort was recorded (u_V or i_A), which this needs; axistool compare "
-                                           "tells of the tracking error");
+                                           ": the record has no command or current (u_V or i_A), which this needs; "
+                                           "axistool compare shows the tracking error");
   if (gain_A_per_V <= 0.0)
     throw Failure(ExitCode::bad_input, record.path +
                                            ": no column u_V, and i_A needs amplifier_gain_A_per_V (a linear drive: "

@@ -98,7 +98,7 @@ void apply(const Log& log, std::span<const ToolColumn> known, std::vector<Channe
     }
 }
 
-/// Older ODrive firmware counts: 8192 a turn leave no doubt.
+/// Older ODrive firmware uses counts, recognised by 8192 per turn.
 bool are_counts(const Log& log) {
   constexpr double kMoreThanTurns = 3000.0;
   for (const LogColumn& column : log.columns)
@@ -116,7 +116,7 @@ std::string axis_of_signal(std::string_view name) {
   return letter ? words.front() : "";
 }
 
-/// Pins of HAL: what a loop is given, what comes back, and what it puts out.
+/// Pins of HAL: reference, feedback and output of a loop.
 void apply_hal(const Log& log, std::vector<ChannelName>& names) {
   for (std::size_t k = 0; k < log.columns.size(); ++k) {
     const std::string text = log.columns[k].name + " " + log.columns[k].kind;

@@ -1,4 +1,4 @@
-// Somebody else's log as it lies in a file: named or numbered columns, of whatever length.
+// A foreign log as read from a file: named or numbered columns of any length.
 #pragma once
 
 #include <limits>
