@@ -67,17 +67,16 @@ void describe_observer(AxisDesign& design, double sample_period_s) {
   }
 }
 
-/// Gains that are numbers, and an observer that settles.
+/// Checks that gains are finite and the observer is stable.
 void require_usable(const AxisDesign& design) {
   const bool settles = std::ranges::all_of(design.observer_poles, [](const auto& z) { return std::abs(z) < 1.0; });
   if (settles && design.Kobs.allFinite() && design.Kc.allFinite()) return;
-  throw Failure(
-      ExitCode::refused,
-      fmt::format("no usable design: {}; give variances and a bandwidth that belong to one machine (--rwd {:g} "
-                  "V², --rx {:g}, --ru {:g} V², --fc {:g} Hz, --zeta {:g})",
-                  settles ? "gains that are no numbers" : "the observer would not settle",
-                  design.used.disturbance_variance, design.used.position_variance.value_or(0.0),
-                  design.used.command_variance.value_or(0.0), design.used.bandwidth_Hz, design.used.damping));
+  throw Failure(ExitCode::refused,
+                fmt::format("no usable design: {}; give variances and a bandwidth that suit this machine (--rwd {:g} "
+                            "V², --rx {:g}, --ru {:g} V², --fc {:g} Hz, --zeta {:g})",
+                            settles ? "the gains are not finite" : "the observer would be unstable",
+                            design.used.disturbance_variance, design.used.position_variance.value_or(0.0),
+                            design.used.command_variance.value_or(0.0), design.used.bandwidth_Hz, design.used.damping));
 }
 
 }  // namespace

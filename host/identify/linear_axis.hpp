@@ -1,4 +1,4 @@
-// The rigid axis without friction, continuous and sampled: what every design and every estimate starts from.
+// The rigid axis without friction, continuous and sampled: basis of every design and estimate.
 #pragma once
 
 #include <Eigen/Dense>

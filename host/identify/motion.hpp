@@ -74,8 +74,8 @@ std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& dat
 /// the acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
 double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data, bool by_speed = false);
 
-/// A position whose time stamps jitter, or of coarse steps, differentiates badly, but a tachometer has errors of its
-/// own: the speed channel is taken where it leaves clearly less, at most this part of what the position leaves.
+/// The derivative of a position with jitter or coarse resolution is noisy, but a tachometer has its own errors. The
+/// speed channel is used if its residual is at most this share of the position's.
 inline constexpr double kClearlyBetterBySpeed = 0.8;
 
 /// Rows that prepare_motion() leaves out at each end: two differences, each of which needs both neighbours.
