@@ -49,7 +49,7 @@ struct PlaneRecord {
 void require_finite(const Record& record, const std::vector<double>& values, const std::string& what) {
   for (std::size_t k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]))
-      fail(record, "row {} of {} is no number; correct it, or cut the record before this row", k + 1, what);
+      fail(record, "row {} of {} is not a number; correct it, or cut the record before this row", k + 1, what);
 }
 
 void take_ballbar(const Record& record, PlaneRecord& plane) {
@@ -99,7 +99,7 @@ std::vector<PlaneRecord> planes_of(const std::vector<Record>& records) {
   std::vector<PlaneRecord> planes;
   std::vector<const Record*> x, y;
   for (const Record& record : records) {
-    if (!record.has_position()) fail(record, "has no position: a circle is seen in x_mm and y_mm");
+    if (!record.has_position()) fail(record, "has no position: a circle needs x_mm and y_mm");
     if (column(record, "y_mm") != nullptr)
       planes.push_back(one_record(record));
     else if (record.drive == "x" || record.drive == "y")
@@ -254,10 +254,9 @@ std::vector<CirclePass> circle_passes(const std::vector<Record>& records) {
       passes.push_back(pass_of(plane, circle, angle, stretch));
   }
   if (passes.empty())
-    throw Failure(
-        ExitCode::refused,
-        "no turn of a circle at a steady feed in these records: command full circles (G2, G3), better two turns "
-        "than one, which speeds up and slows down");
+    throw Failure(ExitCode::refused,
+                  "no turn of a circle at a steady feed in these records: command full circles (G2, G3), preferably "
+                  "two turns, because a single one accelerates and decelerates");
   if (passes.size() > kMostPasses)
     throw Failure(ExitCode::usage,
                   fmt::format("{} stretches of circles: give at most {} at once; both directions at two "
