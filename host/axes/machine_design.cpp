@@ -103,9 +103,10 @@ AxisLoop loop_of(const sim::DriveDescription& model, const sim::DriveDescription
   AxisLoop loop{model, design_axis(controlled, options), filters, {}};
   const LoopMargins margins = quick_margins(drive, AxisController(designed_parameters(model, loop.design, filters)));
   if (!margins.is_stable)
-    throw Failure(ExitCode::refused, fmt::format("axis {} would oscillate with poles at {:.4g} Hz; nothing was "
-                                                 "written. --margin 0.5 finds the highest bandwidth stable on all axes",
-                                                 model.name, bandwidth_Hz));
+    throw Failure(ExitCode::refused,
+                  fmt::format("axis {} would oscillate with poles at {:.4g} Hz; nothing was written. --margin 0.5 "
+                              "finds the highest bandwidth with this modulus margin on all axes",
+                              model.name, bandwidth_Hz));
   if (margins.modulus) loop.modulus = margins.modulus->value;
   return loop;
 }

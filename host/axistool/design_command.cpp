@@ -232,7 +232,7 @@ void run(const DesignArguments& arguments) {
   if (loop && loop->after.margins && !loop->after.margins->is_stable)
     throw host::Failure(host::ExitCode::refused,
                         "the measured drive would oscillate with this controller; nothing was written. --margin 0.5 "
-                        "finds the highest stable bandwidth");
+                        "finds the highest bandwidth with this modulus margin");
   if (!arguments.output.empty()) {
     host::write_file_atomically(arguments.output, host::design_toml(model, design, filters));
   }

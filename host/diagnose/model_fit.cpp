@@ -30,7 +30,7 @@ class WindowResiduals : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(vector.size()));
   }
 
-  /// Parameters arrive in units of their scales. Nothing comes of it once the fit is cancelled.
+  /// Parameters arrive in units of their scales. Returns false once the fit is cancelled.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const auto columns = static_cast<Eigen::Index>(vector_.size());
     const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], columns);

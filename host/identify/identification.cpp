@@ -271,8 +271,8 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   if (result.beside_travel)
     result.warnings.push_back(
         "most of the torque or force beyond inertia and friction depends on position (gravity on an arm, a spring, "
-        "cogging). A curve along the travel removed it before the fit; it is not in the model. axistool diagnose finds "
-        "its cause");
+        "cogging). A curve along the travel accounts for it in the fit, but is not in the model. axistool diagnose "
+        "finds the cause");
   std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
   keep_to_the_physics(result.model, result.estimate, result.warnings);
   warn_of_tachometer(result, corrected);

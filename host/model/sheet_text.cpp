@@ -46,7 +46,7 @@ std::string sheet_text(const SheetValues& values) {
       rotary ? "kind = \"rotary\"" : "kind = \"linear\"", rotary ? "turning" : "linear");
   if (rotary) {
     text += field("torque_constant_Nm_per_A", values.motor_constant);
-    // A log of the current holds what the motor got: the amplifier's gain does not enter.
+    // A log of the current gives the motor current directly: the amplifier's gain is not needed.
     if (!values.by_current) text += field("amplifier_gain_A_per_V");
     text += field("lead_mm_per_rad", lead(values));
   } else {

@@ -211,10 +211,12 @@ class Understander {
       if (share && *share > 0.5)
         efforts += fmt::format("{}{} ({:.0f} %)", efforts.empty() ? "" : ", ", found_.channels[k].name, 100.0 * *share);
     }
-    found_.asks.push_back(
-        fmt::format("'{}' may be the speed of the position '{}' (its integral){}: give --map x_mm=…",
-                    found_.channels[speed].name, found_.channels[position].name,
-                    efforts.empty() ? "" : fmt::format("; the motion explains as an effort would be {}", efforts)));
+    found_.asks.push_back(fmt::format(
+        "'{}' may be the speed of the position '{}' (its integral){}: give --map x_mm=…", found_.channels[speed].name,
+        found_.channels[position].name,
+        efforts.empty()
+            ? ""
+            : fmt::format("; possible torque, force or current, by the share that the motion explains: {}", efforts)));
     found_.channels[position].why =
         fmt::format("may be a position: '{}' is its derivative", found_.channels[speed].name);
     found_.channels[speed].why = fmt::format("may be a speed: the derivative of '{}'", found_.channels[position].name);

@@ -56,8 +56,8 @@ const EffectInfo backlash{
     .along = {"travel_since_reversal", "current"},
     .confused_with = {"compliance", "presliding", "input_delay"},
     .separate_by =
-        "Encoders on motor and table. Reversals under a bias load close the gap: backlash disappears, presliding or "
-        "wind-up remains",
+        "Encoders on motor and table. Reversals under a bias load, which closes the gap: backlash disappears, and a "
+        "gradual recovery indicates presliding or wind-up",
     .origin =
         "Worn nut, key, coupling, gear or rack: up to 20 um in a ball screw, 10 to 200 um in racks and worm gears "
         "(textbook)",

@@ -160,7 +160,8 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {245, axis, "homing.position", real, "mm", "m", -1e6F, 1e6F, 0, while_disabled, "of home"},
 
     {246, axis, "amplifier.ready_input", toggle, "", "", 0, 1, 0, while_disabled,
-     "the amplifier's ready contact is wired: the loop closes when it closes, and opens when it opens"},
+     "the amplifier's ready contact is wired: the loop closes when the amplifier reports ready, and opens when it no "
+     "longer does"},
     {247, axis, "amplifier.ready_time", real, "s", "s", 0, 10, 0, while_disabled,
      "from the enable until the amplifier drives; with the ready input the time-out for this"},
 
