@@ -248,7 +248,8 @@ TEST(ReadModel, OneFormForBothDirectionsOrOneForEach) {
 }
 
 TEST(ReadModel, WrongTypes) {
-  EXPECT_THAT(message_of("0.00765", "\"0.00765\""), AllOf(HasSubstr("line 20"), HasSubstr("J_kg_m2: a number")));
+  EXPECT_THAT(message_of("0.00765", "\"0.00765\""),
+              AllOf(HasSubstr("line 20"), HasSubstr("J_kg_m2: expected a number")));
   EXPECT_THAT(message_of("0.00765", "nan"), AllOf(HasSubstr("line 20"), HasSubstr("finite")));
   EXPECT_THAT(message_of("\"rotary\"", "1"), AllOf(HasSubstr("line 5"), HasSubstr("kind: expected a text in quotes")));
   EXPECT_THAT(message_of("\"rotary\"", "\"round\""),
