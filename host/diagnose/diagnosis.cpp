@@ -95,7 +95,8 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
 /// Whether the motion may tell what the effects that the effort shows leave: it is left with more than noise, but no
 /// rough machine.
 bool may_be_completed(const Diagnosis& by_effort, const RecordSet& validation) {
-  return by_effort.after_validate > kExplained && !is_rough(error_of(sim::Drive(by_effort.best), validation));
+  const SetError left = error_of(sim::Drive(by_effort.best), validation);
+  return left.combined > kExplained && !is_rough(left);
 }
 
 /// Down to the noise.
@@ -104,11 +105,40 @@ bool completes(const Diagnosis& by_motion) {
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
 }
 
-/// Whether the motion names anything that the force balance does not, which knows its rivals better.
-bool names_more(const Diagnosis& by_motion, const Diagnosis& by_effort) {
-  const std::vector<std::string>& known = by_effort.verdict.effects;
-  return std::ranges::any_of(by_motion.verdict.effects,
+/// Whether one names anything that the other does not.
+bool names_more(const Diagnosis& one, const Diagnosis& other) {
+  const std::vector<std::string>& known = other.verdict.effects;
+  return std::ranges::any_of(one.verdict.effects,
                              [&](const std::string& kind) { return std::ranges::find(known, kind) == known.end(); });
+}
+
+/// Whether the force balance holds all that the motion names, and more, where the motion is left with more than noise.
+bool goes_further(const Diagnosis& by_effort, const Diagnosis& by_motion) {
+  const auto holds = [&](const std::string& kind) {
+    const auto has_it = [&](const std::vector<std::string>& list) { return std::ranges::count(list, kind) > 0; };
+    return has_it(by_effort.verdict.effects) || std::ranges::any_of(by_effort.verdict.alternatives, has_it);
+  };
+  return by_motion.after_validate > kExplained && names_more(by_effort, by_motion) &&
+         std::ranges::all_of(by_motion.verdict.effects, holds);
+}
+
+/// One answer of what the force balance holds and of what the motion shows beyond it, in terms of the motion.
+Diagnosis together(Diagnosis by_effort, Diagnosis further) {
+  const auto put_first = [](auto& list, const auto& first) { list.insert(list.begin(), first.begin(), first.end()); };
+  const std::vector<std::string> known = by_effort.verdict.effects;
+  further.base = std::move(by_effort.base);
+  const sim::Drive base(further.base);
+  further.before_train = error_of(base, further.training).combined;
+  further.before_validate = error_of(base, further.validation).combined;
+  for (JudgedCandidate& candidate : further.candidates) {
+    put_first(candidate.kinds, known);
+    candidate.before = further.before_validate;
+  }
+  put_first(further.verdict.effects, known);
+  put_first(further.verdict.alternatives, by_effort.verdict.alternatives);
+  further.verdict.parameters = std::move(by_effort.verdict.parameters);
+  further.verdict.explanation = by_effort.verdict.explanation + " Beyond that: " + further.verdict.explanation;
+  return further;
 }
 
 /// Whether an effect changes when the motor's effort acts.
@@ -133,9 +163,9 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   split.absent = absent;
   const FigureRows rows = before != nullptr ? before->rows : figure_rows(given, measured, &split);
   std::shared_ptr<const EffortScreen> screen;
-  const auto search = [&](PreparedSets sets) {
+  const auto search = [&](PreparedSets sets, const sim::DriveDescription& from) {
     sets.absent = absent;
-    Diagnosis result = diagnose_by_search(std::move(sets), model, rows, progress);
+    Diagnosis result = diagnose_by_search(std::move(sets), from, rows, progress);
     result.log = measured.log();
     result.screen = screen;
     return result;
@@ -152,8 +182,9 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
   // Where the motion is not explained, what the effort shows is.
   const auto unless_unexplained = [&](Diagnosis by_motion) {
-    const bool explains = by_motion.verdict.status != Status::unexplained || !only_in_the_effort;
-    return explains ? std::move(by_motion) : *std::move(only_in_the_effort);
+    const bool explains = by_motion.verdict.status != Status::unexplained &&
+                          !(only_in_the_effort && goes_further(*only_in_the_effort, by_motion));
+    return explains || !only_in_the_effort ? std::move(by_motion) : *std::move(only_in_the_effort);
   };
   if (before == nullptr) {
     std::optional<Diagnosis> diagnosis = by_effort(false);
@@ -164,14 +195,20 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
         return *std::move(diagnosis);
       // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
-      over_long_windows = search(with_base_fitted(split));
+      over_long_windows = search(with_base_fitted(split), model);
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
                                    : goes_beyond(*over_long_windows, *screen);
-      return *std::move(is_better ? over_long_windows : diagnosis);
+      if (is_better) return *std::move(over_long_windows);
+      if (!tells || diagnosis->verdict.status != Status::missing) return *std::move(diagnosis);
+      PreparedSets on_top = split;
+      on_top.base = diagnosis->best;
+      Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis->best);
+      const bool adds = !further.rough && further.verdict.status == Status::missing;
+      return adds ? together(*std::move(diagnosis), std::move(further)) : *std::move(diagnosis);
     }
   }
   if (!by_short_windows) {
-    over_long_windows = search(with_base_fitted(split));
+    over_long_windows = search(with_base_fitted(split), model);
     if (!over_long_windows->rough) return unless_unexplained(*std::move(over_long_windows));
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) return *std::move(diagnosis);
@@ -179,12 +216,12 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
       rough_measure(model, training, validation) == Measure::effort) {
-    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort));
+    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort), model);
     const Status status = result.verdict.status;
     if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
   }
   if (short_s < kWindow_s || !over_long_windows)
-    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s))));
+    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s)), model));
   return unless_unexplained(*std::move(over_long_windows));
 }
 
