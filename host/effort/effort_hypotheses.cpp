@@ -84,9 +84,6 @@ bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
   return wave.order * travel / wave.period <= kMostWaves || (wave.period == turn && wave.order <= kMostOrders);
 }
 
-/// What stands in the list for what the catalogue has no name for.
-constexpr const char* kNoName = "";
-
 using WaveColumns = std::function<MatrixXd(const Wave&)>;
 
 /// Of many waves, those whose plain gain is largest.
@@ -211,7 +208,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
       return waves;
     };
-    if (!rows_.steady)
+    if (!rows_.steady && !is_excluded(kNoName))
       weigh_waves(
           kNoName, slow_waves(1.0), [this](const Wave& wave) { return varying_inertia_columns(thin_.rows, wave); },
           [this](const Wave& wave) {
@@ -327,10 +324,6 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   found.nothing = probabilities.front();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     std::vector<Fitted>& fitted = kinds[k].fitted;
-    if (kinds[k].name == kNoName) {
-      found.nothing += probabilities[k + 1];
-      continue;
-    }
     NextEffect effect{std::move(fitted.front().term), {}, fitted.front().log_odds, probabilities[k + 1]};
     std::ranges::stable_sort(fitted.begin() + 1, fitted.end(), {}, &Fitted::train);
     if (effect.term.neighbours)
