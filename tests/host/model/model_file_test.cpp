@@ -395,7 +395,7 @@ TEST(ReadModel, ACurveThatIsNone) {
   const std::string text = std::string(kPaperX) + kCurve;
   EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"weather\"")), HasSubstr("position"));
   EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0, 0.0]")), HasSubstr("above"));
-  EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0]")), HasSubstr("as many"));
+  EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0]")), HasSubstr("same length"));
   EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"phase\"")), HasSubstr("must equal the first"));
 }
 

@@ -216,7 +216,7 @@ TEST_F(BadRecord, NoCommandWhileTheAxisSpeedsUp) {
                 r.w_rad_s = 0.02 * k;
                 r.x_mm = std::round(0.00001 * kLead * k * k * 1000.0) / 1000.0;
               })),
-              AllOf(HasSubstr("column u_V: dead channel"), HasSubstr("speeds up")));
+              AllOf(HasSubstr("column u_V: dead channel"), HasSubstr("accelerates")));
 }
 
 TEST_F(BadRecord, ConstantChannelsThatAreLegal) {
