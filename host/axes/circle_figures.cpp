@@ -56,7 +56,7 @@ std::array<double, 2> range(const std::vector<const Curve*>& curves) {
   return found;
 }
 
-/// A ballbar is not mounted at the nominal centre: its eccentricity is none of the machine's.
+/// A ballbar is not mounted at the nominal centre: its eccentricity is not an error of the machine.
 bool is_about_nominal(const CirclePass& pass) { return pass.outer_um.empty() && pass.has_reference; }
 
 }  // namespace

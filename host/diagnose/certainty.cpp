@@ -18,10 +18,6 @@ using Kinds = std::vector<std::string>;
 
 bool holds(const Kinds& all, const std::string& kind) { return std::ranges::find(all, kind) != all.end(); }
 
-bool holds_all(const Kinds& all, const Kinds& kinds) {
-  return std::ranges::all_of(kinds, [&](const std::string& kind) { return holds(all, kind); });
-}
-
 double probability_of_any(const Diagnosis& diagnosis, const Kinds& group) {
   double sum = 0.0;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
@@ -120,6 +116,10 @@ void fill_by_motion(Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+bool holds_all(const std::vector<std::string>& all, const std::vector<std::string>& kinds) {
+  return std::ranges::all_of(kinds, [&](const std::string& kind) { return holds(all, kind); });
+}
 
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds) {
   double sum = 0.0;

@@ -14,6 +14,8 @@ namespace host {
 inline constexpr double kNamed = 0.5;
 /// Largest group of rivals: one further measurement can separate this many.
 inline constexpr std::size_t kLargestGroup = 4;
+/// Whether a list of kinds has each of these.
+bool holds_all(const std::vector<std::string>& all, const std::vector<std::string>& kinds);
 /// Of all these effects together, whatever else is there besides: of all candidates that hold them.
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds);
 

@@ -108,27 +108,26 @@ bool completes(const Diagnosis& by_motion) {
 
 /// Whether one names an effect that the other does not.
 bool names_more(const Diagnosis& one, const Diagnosis& other) {
-  const std::vector<std::string>& known = other.verdict.effects;
-  return std::ranges::any_of(one.verdict.effects,
-                             [&](const std::string& kind) { return std::ranges::find(known, kind) == known.end(); });
+  return !holds_all(other.verdict.effects, one.verdict.effects);
 }
 
 /// Whether the regression names all effects of the motion and more, and the motion's residual exceeds noise.
 bool goes_further(const Diagnosis& by_effort, const Diagnosis& by_motion) {
-  const auto holds = [&](const std::string& kind) {
-    const auto has_it = [&](const std::vector<std::string>& list) { return std::ranges::count(list, kind) > 0; };
-    return has_it(by_effort.verdict.effects) || std::ranges::any_of(by_effort.verdict.alternatives, has_it);
-  };
+  std::vector<std::string> known = by_effort.verdict.effects;
+  for (const std::vector<std::string>& group : by_effort.verdict.alternatives)
+    known.insert(known.end(), group.begin(), group.end());
   return by_motion.after_validate > kExplained && names_more(by_effort, by_motion) &&
-         std::ranges::all_of(by_motion.verdict.effects, holds);
+         holds_all(known, by_motion.verdict.effects);
 }
 
 /// One diagnosis from the regression's effects and the further ones of the motion, by the motion's errors.
-Diagnosis together(Diagnosis by_effort, Diagnosis further) {
+Diagnosis together(const sim::DriveDescription& given, Diagnosis by_effort, Diagnosis further) {
   const auto put_first = [](auto& list, const auto& first) { list.insert(list.begin(), first.begin(), first.end()); };
   const std::vector<std::string> known = by_effort.verdict.effects;
   further.base = std::move(by_effort.base);
-  const sim::Drive base(further.base);
+  const sim::Drive base(further.base), as_given(given);
+  further.given_train = error_of(as_given, further.training).combined;
+  further.given_validate = error_of(as_given, further.validation).combined;
   further.before_train = error_of(base, further.training).combined;
   further.before_validate = error_of(base, further.validation).combined;
   for (JudgedCandidate& candidate : further.candidates) {
@@ -183,9 +182,10 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
   // If the motion is not explained, use the regression's answer.
   const auto unless_unexplained = [&](Diagnosis by_motion) {
-    const bool explains = by_motion.verdict.status != Status::unexplained &&
-                          !(only_in_the_effort && goes_further(*only_in_the_effort, by_motion));
-    return explains || !only_in_the_effort ? std::move(by_motion) : *std::move(only_in_the_effort);
+    if (!only_in_the_effort) return by_motion;
+    const bool explains =
+        by_motion.verdict.status != Status::unexplained && !goes_further(*only_in_the_effort, by_motion);
+    return explains ? std::move(by_motion) : *std::move(only_in_the_effort);
   };
   if (before == nullptr) {
     std::optional<Diagnosis> diagnosis = by_effort(false);
@@ -205,7 +205,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       on_top.base = diagnosis->best;
       Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis->best);
       const bool adds = !further.rough && further.verdict.status == Status::missing;
-      return adds ? together(*std::move(diagnosis), std::move(further)) : *std::move(diagnosis);
+      return adds ? together(model, *std::move(diagnosis), std::move(further)) : *std::move(diagnosis);
     }
   }
   if (!by_short_windows) {

@@ -241,7 +241,7 @@ std::string said_by_the_motion(const Diagnosis& diagnosis) {
   const char* said = after < kHalfOfTheSquare * before ? "decreases, which confirms it"
                      : after < kHardly * before        ? "falls a little"
                      : after > before / kHardly
-                         ? "increases, which contradicts this effect; record more motion that excites it"
+                         ? "increases, which does not confirm this effect; record more motion that excites it"
                          : "does not change";
   return fmt::format(" The error of the prediction from the command {} ({:.3g} -> {:.3g} times the noise floor).", said,
                      before, after);

@@ -88,7 +88,7 @@ class Search {
   /// Motions that no fit has seen have the last word: they must lie nearer to a model that has the effect.
   bool is_refuted(const ScreenedModel& taken) const { return taken.validate >= screen_.best().validate; }
 
-  /// Of a group, a kind behind the first that held-back motions refute: it is no rival. Null where there is none.
+  /// Of a group, a kind behind the first that held-back motions refute: it is not a rival. Null if every kind holds.
   NextEffect* refuted_rival(const std::vector<std::string>& group, NextEffects& next) const {
     for (std::size_t k = 1; k < group.size(); ++k) {
       NextEffect& rival = effect_of(next, group[k]);
@@ -138,10 +138,10 @@ class Search {
     if (unnamed == next.effects.end()) return;
     const auto named = std::ranges::find_if_not(next.effects, is_unnamed);
     ScreenedModel without_name, with_name;
-    const bool holds = with(unnamed->term, without_name) && is_worth_naming(without_name);
-    const bool beaten =
-        named != next.effects.end() && with_closest(*named, with_name) && with_name.validate <= without_name.validate;
-    if (holds && !beaten)
+    const bool stands = with(unnamed->term, without_name) && is_worth_naming(without_name) &&
+                        !(named != next.effects.end() && with_closest(*named, with_name) &&
+                          with_name.validate <= without_name.validate);
+    if (stands)
       leave_unnamed(next);
     else
       take_out(next, {kNoName});

@@ -33,7 +33,8 @@ struct PlantGreeting {
   double period_s = 0.0;
 };
 
-/// Reads the first line. Throws Failure(protocol) where it is none: 1 to 64 axes, a period above 0 and up to 1 s.
+/// Reads the first line. Throws Failure(protocol) unless it is a greeting: 1 to 64 axes, a period above 0 and up to 1
+/// s.
 PlantGreeting parse_plant_greeting(std::string_view line);
 
 /// Reads the line of a period: an axis each, a voltage, or nothing where the drive is disabled. Throws

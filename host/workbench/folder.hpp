@@ -33,7 +33,7 @@ class Folder {
   /// Models, records and logs, sorted; at most some thousand. What lies outside is left out, links to it too.
   std::vector<FolderFile> files() const;
 
-  /// `name`, where it is a file of the folder. Throws Failure: usage for a name that is none, permission where links
+  /// `name`, where it is a file of the folder. Throws Failure: usage for any other name, permission where links
   /// lead out of the folder, bad_input where there is no such file.
   std::string existing(const std::string& name) const;
 
