@@ -20,8 +20,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
-
 class DeviceCommands : public testing::Test {
  protected:
   std::string file(const char* name) const { return folder_.path(name); }

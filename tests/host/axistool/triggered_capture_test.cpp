@@ -15,8 +15,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
-
 class BoardTrigger : public testing::Test {
  protected:
   std::string file(const char* name) const { return folder_.path(name); }
