@@ -269,44 +269,64 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   std::size_t in_reach = kinds.size();
   while (in_reach > kMostFitted && kinds[in_reach - 1].best < kinds.front().best - kOutOfReach) --in_reach;
 
+  // The best forms of each kind by either ranking: first each kind's best, then the others, which end early where they
+  // are out of reach.
   struct Trial {
-    std::size_t kind, rank;
-    bool without;
+    std::size_t kind;
+    const Weighed* weighed;
+    double spread = 0.0;  ///< by the forms beside the best of a ranking, nats
   };
-  std::vector<Trial> trials;
-  for (std::size_t k = 0; k < in_reach; ++k)
-    for (const bool without : {false, true}) {
-      std::vector<const Form*> tried;
-      const std::vector<Weighed>& ranked = kinds[k].ranked[without ? 1 : 0];
-      for (std::size_t rank = 0; rank < ranked.size() && tried.size() < kFormsFitted; ++rank) {
-        if (std::ranges::find(tried, ranked[rank].form) != tried.end()) continue;
-        tried.push_back(ranked[rank].form);
-        trials.push_back({k, rank, without});
+  std::vector<Trial> leaders, others;
+  for (std::size_t k = 0; k < in_reach; ++k) {
+    for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
+      std::vector<const Form*> of_ranking;
+      for (const Weighed& weighed : ranked) {
+        if (of_ranking.size() == kFormsFitted) break;
+        if (std::ranges::find(of_ranking, weighed.form) != of_ranking.end()) continue;
+        of_ranking.push_back(weighed.form);
+        const bool leads = of_ranking.size() == 1;
+        std::vector<double> gains;
+        for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
+        const Trial trial{k, &weighed, leads ? log_sum(gains) : 0.0};
+        const auto is_same = [&](const Trial& other) {
+          return other.weighed->form == weighed.form && other.weighed->scale == weighed.scale;
+        };
+        const auto leader = std::ranges::find_if(leaders, is_same);
+        if (leads && leader != leaders.end()) {
+          leader->spread = std::max(leader->spread, trial.spread);
+        } else if (leads) {
+          leaders.push_back(trial);
+        } else if (leader == leaders.end() && std::ranges::none_of(others, is_same)) {
+          others.push_back(trial);
+        }
       }
     }
-  for_each_in_parallel(trials.size(), [&](std::size_t index) {
-    const std::size_t k = trials[index].kind;
-    const std::vector<Weighed>& ranked = kinds[k].ranked[trials[index].without ? 1 : 0];
-    const Weighed& weighed = ranked[trials[index].rank];
-    const Index width = weighed.form->columns.cols();
-    MatrixXd columns(known.columns.rows(), known.columns.cols() + width);
-    columns << known.columns, weighed.form->columns;
-    VectorXd deviations(known.deviations.size() + width);
-    deviations << known.deviations, VectorXd::Constant(width, weighed.scale);
-    const EvidenceFit fit = evidence_.fit_from(now, columns, deviations);
-    for (Index c = 0; c < width; ++c)
-      if (weighed.form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
-    std::vector<double> gains;
-    for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
-    const double spread = trials[index].rank == 0 ? log_sum(gains) : 0.0;  // over the forms beside the best
-    const double log_odds = fit.log_evidence + weighed.form->log_unit - now.log_evidence + spread -
-                            std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
-    EffortTerm term = weighed.form->term();
-    const std::optional<double> train = plain_fit(term);
-    if (!train) return;
-    const std::lock_guard lock(better);
-    kinds[k].fitted.push_back({log_odds, *train, std::move(term)});
-  });
+  }
+  const auto fit_trials = [&](const std::vector<Trial>& trials, double give_up) {
+    std::vector<double> reached(trials.size(), -HUGE_VAL);
+    for_each_in_parallel(trials.size(), [&](std::size_t index) {
+      const auto& [k, weighed, spread] = trials[index];
+      const Index width = weighed->form->columns.cols();
+      MatrixXd columns(known.columns.rows(), known.columns.cols() + width);
+      columns << known.columns, weighed->form->columns;
+      VectorXd deviations(known.deviations.size() + width);
+      deviations << known.deviations, VectorXd::Constant(width, weighed->scale);
+      const EvidenceFit fit = evidence_.fit_from(now, columns, deviations, give_up - weighed->form->log_unit);
+      for (Index c = 0; c < width; ++c)
+        if (weighed->form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
+      reached[index] = fit.log_evidence + weighed->form->log_unit;
+      const double log_odds = reached[index] - now.log_evidence + spread -
+                              std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
+      EffortTerm term = weighed->form->term();
+      const std::optional<double> train = plain_fit(term);
+      if (!train) return;
+      const std::lock_guard lock(better);
+      kinds[k].fitted.push_back({log_odds, *train, std::move(term)});
+    });
+    return trials.empty() ? -HUGE_VAL : *std::ranges::max_element(reached);
+  };
+  const double best = std::max(now.log_evidence, fit_trials(leaders, -HUGE_VAL));
+  fit_trials(others, best - 2.0 * kOutOfReach);
   // What was out of reach stands in the list by its approximate gain.
   for (std::size_t k = in_reach; k < kinds.size(); ++k)
     for (const std::vector<Weighed>& ranked : kinds[k].ranked) {

@@ -20,7 +20,7 @@ constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
 /// Where a fit that looks for a large memory begins.
 constexpr double kLargeSize = 0.1;
 constexpr double kMostCorrelation = 0.98;
-constexpr int kMostRounds = 12, kSizesARound = 8;
+constexpr int kMostRounds = 12, kRoundsToSettle = 3, kSizesARound = 8;
 /// Nats by which a round must still gain.
 constexpr double kSettled = 0.02;
 
@@ -141,7 +141,8 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
     fit.log_evidence = log_evidence;
     fit.weights = unit_weights / square;
     fit.noise = std::sqrt(square);
-    if (std::abs(log_evidence - before) < kSettled || round + 1 == kMostRounds) break;
+    const bool is_behind = round + 1 >= kRoundsToSettle && log_evidence < start.give_up;
+    if (std::abs(log_evidence - before) < kSettled || is_behind || round + 1 == kMostRounds) break;
     before = log_evidence;
     const VectorXd left = y_ - all * factors;
     double product = 0.0, squares = 1e-300;
@@ -164,9 +165,12 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) c
   return large.log_evidence > small.log_evidence ? large : small;
 }
 
-EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations) const {
-  EvidenceFit same = fit(columns, deviations, {.correlation = before.correlation, .sizes = before.sizes});
-  EvidenceFit small = fit(columns, deviations, {.correlation = before.correlation, .sizes = no_memory()});
+EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
+                               double give_up) const {
+  EvidenceStart start{.correlation = before.correlation, .sizes = before.sizes, .give_up = give_up};
+  EvidenceFit same = fit(columns, deviations, start);
+  start.sizes = no_memory();
+  EvidenceFit small = fit(columns, deviations, start);
   return same.log_evidence > small.log_evidence ? same : small;
 }
 

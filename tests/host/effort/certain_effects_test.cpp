@@ -52,6 +52,7 @@ TEST(CertainEffects, NamesCoggingOfTwoOrders) {
 }
 
 TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::EffortScreen found = screened([](const Point&) { return 0.008; });
   ASSERT_FALSE(found.certain.empty());
   EXPECT_THAT(found.certain.front().group, Contains("constant_torque"));
