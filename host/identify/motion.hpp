@@ -12,12 +12,12 @@ namespace host {
 
 /// How the signals are prepared. Two recipes, chosen by the dead band:
 /// * dead band > 0: only samples count that slide for sure, that is whose speed stays beyond the dead band as far as
-/// the
-///   filter reaches. The command is taken in the middle of its hold. No decimation.
+///   the filter reaches. The command is taken in the middle of its hold. No decimation.
 /// * dead band 0: every sample counts, as in published inverse-model identification (parallel filtering): all signals,
 ///   the sign of the speed included, pass the same steep filter and are decimated. The command counts at its sample.
 struct MotionOptions {
-  std::optional<double> deadband;         ///< rad/s or m/s; default 0.5 rad/s (the paper, p. 1499), linear 0
+  /// rad/s or m/s; default 0.5 rad/s (the paper, p. 1499), or a tenth of the top speed where that is less; linear 0
+  std::optional<double> deadband;
   std::optional<double> cutoff_Hz;        ///< default: choose_cutoff
   std::optional<std::size_t> decimation;  ///< default 1 with a dead band, else sample rate / cut-off
   /// Whose command path stands between command and motor (converter, delay, torque constant along the travel); none: a
