@@ -8,7 +8,7 @@ option(AXIS_UNITY "Compile the sources of a folder together" OFF)
 # AXIS_UNITY_SOURCES of a folder. A source with definitions of its own, or with SKIP_UNITY_BUILD_INCLUSION, stays by itself.
 # Folders of AXIS_HOT_FOLDERS compute, as sources by themselves do: -O2. The others read, write and wait, and -O1 compiles
 # them in two thirds of the time.
-set(AXIS_UNITY_SOURCES 20)
+set(AXIS_UNITY_SOURCES 30)
 set(AXIS_HOT_FOLDERS sim effects compare diagnose effort infer simulated_board)
 function(axis_unity OUT)
   if(NOT AXIS_UNITY)
