@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/statistics.hpp"
 
@@ -126,14 +127,14 @@ struct Circle {
 Circle fit_circle(const std::vector<double>& x, const std::vector<double>& y, const std::vector<std::size_t>& keep) {
   const double x0 = x[keep.front()], y0 = y[keep.front()];
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(3);
   for (const std::size_t k : keep) {
     const double dx = x[k] - x0, dy = y[k] - y0;
     const Eigen::Vector3d row(dx, dy, 1.0);
     gram += row * row.transpose();
     pull += row * (dx * dx + dy * dy);
   }
-  const Eigen::Vector3d found = gram.ldlt().solve(pull);
+  const Eigen::VectorXd found = symmetric_solution(gram, pull);
   const double cx = found(0) / 2.0, cy = found(1) / 2.0;
   return {x0 + cx, y0 + cy, std::sqrt(std::max(0.0, found(2) + cx * cx + cy * cy))};
 }

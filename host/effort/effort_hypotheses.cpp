@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/dense_solutions.hpp"
 #include "host/effort/effort_memory.hpp"
 #include "host/effort/effort_waves.hpp"
 #include "host/effort/second_mass_terms.hpp"
@@ -91,9 +92,8 @@ std::vector<Wave> most_promising(std::vector<Wave> waves, const WaveColumns& col
   std::vector<std::pair<double, Wave>> ranked;
   for (const Wave& wave : waves) {
     const MatrixXd columns = columns_of(wave);
-    const Eigen::Matrix2d moments = columns.transpose() * columns;
-    const Eigen::Vector2d pull = columns.transpose() * left;
-    ranked.emplace_back(-pull.dot(moments.ldlt().solve(pull)), wave);
+    const VectorXd pull = columns.transpose() * left;
+    ranked.emplace_back(-pull.dot(symmetric_solution(gram(columns), pull)), wave);
   }
   std::ranges::stable_sort(ranked, {}, &std::pair<double, Wave>::first);
   ranked.resize(std::min(ranked.size(), kMostWavesWeighed));
@@ -124,7 +124,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
     all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
     all.rightCols(term.columns.cols()) = thin_.of(term.columns);
   }
-  const VectorXd factors = all.completeOrthogonalDecomposition().solve(thin_.rows.effort);
+  const VectorXd factors = least_norm_solution(all, thin_.rows.effort);
   for (Index c = 0; c < all.cols(); ++c)
     deviations.push_back(kBaseKnownTo *
                          std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/dense_matrix.hpp"
 #include "host/identify/least_squares.hpp"
@@ -168,9 +169,9 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
   const Layout& layout = best.layout;
   const double degrees = std::max(1.0, static_cast<double>(points.size()) - static_cast<double>(layout.size()));
   const double excess = std::max(1.0, best.cost / degrees);  // scatter beyond the points' own errors widens
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(best.jacobian, Eigen::ComputeThinV);
-  const Eigen::VectorXd singular = svd.singularValues().cwiseMax(1e-12 * svd.singularValues()(0));
-  const Eigen::MatrixXd root = svd.matrixV() * singular.cwiseInverse().asDiagonal();
+  const RightSingular svd = right_singular(best.jacobian);
+  const Eigen::VectorXd singular = svd.values.cwiseMax(1e-12 * svd.values(0));
+  const Eigen::MatrixXd root = svd.vectors * singular.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd covariance = excess * root * root.transpose();
   const double quantile = student_t_95(degrees);
   const auto half_of = [&](const Eigen::VectorXd& gradient) {

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "host/dense_solutions.hpp"
+
 namespace host {
 
 using Eigen::Index;
@@ -185,13 +187,13 @@ VectorXd Evidence::gains(const EvidenceFit& fit, const MatrixXd& further, const 
     if (sign[static_cast<std::size_t>(c)] > 0 && pull(c) < 0.0) return VectorXd::Constant(scales.size(), -HUGE_VAL);
   // Along the axes of their own information; what lies in the span of the known columns adds nothing.
   constexpr double kOwnPart = 1e-9;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(own);
-  const VectorXd along = axes.eigenvectors().transpose() * pull;
+  const SymmetricSpectrum axes = symmetric_spectrum(own);
+  const VectorXd along = axes.vectors.transpose() * pull;
   const double least = kOwnPart * (weighed.cwiseProduct(white)).sum();
   VectorXd gains = VectorXd::Zero(scales.size());
   for (Index a = 0; a < along.size(); ++a) {
-    if (!(axes.eigenvalues()(a) > least)) continue;
-    const Eigen::ArrayXd square = scales.array().square(), grown = 1.0 + square * axes.eigenvalues()(a);
+    if (!(axes.values(a) > least)) continue;
+    const Eigen::ArrayXd square = scales.array().square(), grown = 1.0 + square * axes.values(a);
     gains.array() += 0.5 * (square * along(a) * along(a) / grown - grown.log());
   }
   return gains;

@@ -11,7 +11,7 @@
 // Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989) 881-896, whose data want 4 degrees.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/dense_matrix.hpp"
 #include "host/identify/least_squares.hpp"
@@ -164,7 +165,7 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, Late late,
   if (!problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse))
     throw Failure(ExitCode::refused, "no drive fits the response: the fit diverges");
   const Eigen::MatrixXd jacobian = dense_matrix(sparse);
-  found.covariance = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  found.covariance = pseudo_inverse(gram(jacobian));
   return found;
 }
 
