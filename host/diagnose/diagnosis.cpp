@@ -196,12 +196,11 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
         return *std::move(diagnosis);
       // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
-      if (!tells || diagnosis->verdict.status != Status::missing) {
-        over_long_windows = search(with_base_fitted(split), model);
-        const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
-                                     : goes_beyond(*over_long_windows, *screen);
-        return is_better ? *std::move(over_long_windows) : *std::move(diagnosis);
-      }
+      over_long_windows = search(with_base_fitted(split), model);
+      const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
+                                   : goes_beyond(*over_long_windows, *screen);
+      if (is_better) return *std::move(over_long_windows);
+      if (!tells || diagnosis->verdict.status != Status::missing) return *std::move(diagnosis);
       PreparedSets on_top = split;
       on_top.base = diagnosis->best;
       Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis->best);

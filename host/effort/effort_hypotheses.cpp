@@ -269,8 +269,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   std::size_t in_reach = kinds.size();
   while (in_reach > kMostFitted && kinds[in_reach - 1].best < kinds.front().best - kOutOfReach) --in_reach;
 
-  // The best forms of each kind by either ranking: first each kind's best, then the others, which end early where they
-  // are out of reach.
+  // The best forms of each kind by either ranking: first those that lead one, then the others, which end early where
+  // the best of their kind is out of reach. The margin is for what rounds may still change.
   struct Trial {
     std::size_t kind;
     const Weighed* weighed;
@@ -302,8 +302,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       }
     }
   }
-  const auto fit_trials = [&](const std::vector<Trial>& trials, double give_up) {
-    std::vector<double> reached(trials.size(), -HUGE_VAL);
+  const auto fit_trials = [&](const std::vector<Trial>& trials, const std::vector<double>& give_up) {
+    std::vector<double> reached(in_reach, -HUGE_VAL);
     for_each_in_parallel(trials.size(), [&](std::size_t index) {
       const auto& [k, weighed, spread] = trials[index];
       const Index width = weighed->form->columns.cols();
@@ -311,22 +311,22 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       columns << known.columns, weighed->form->columns;
       VectorXd deviations(known.deviations.size() + width);
       deviations << known.deviations, VectorXd::Constant(width, weighed->scale);
-      const EvidenceFit fit = evidence_.fit_from(now, columns, deviations, give_up - weighed->form->log_unit);
+      const EvidenceFit fit = evidence_.fit_from(now, columns, deviations, give_up[k] - weighed->form->log_unit);
       for (Index c = 0; c < width; ++c)
         if (weighed->form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
-      reached[index] = fit.log_evidence + weighed->form->log_unit;
-      const double log_odds = reached[index] - now.log_evidence + spread -
+      const double log_evidence = fit.log_evidence + weighed->form->log_unit;
+      const double log_odds = log_evidence - now.log_evidence + spread -
                               std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
       EffortTerm term = weighed->form->term();
       const std::optional<double> train = plain_fit(term);
       if (!train) return;
       const std::lock_guard lock(better);
+      reached[k] = std::max(reached[k], log_evidence - 2.0 * kOutOfReach);
       kinds[k].fitted.push_back({log_odds, *train, std::move(term)});
     });
-    return trials.empty() ? -HUGE_VAL : *std::ranges::max_element(reached);
+    return reached;
   };
-  const double best = std::max(now.log_evidence, fit_trials(leaders, -HUGE_VAL));
-  fit_trials(others, best - 2.0 * kOutOfReach);
+  fit_trials(others, fit_trials(leaders, std::vector<double>(in_reach, -HUGE_VAL)));
   // What was out of reach stands in the list by its approximate gain.
   for (std::size_t k = in_reach; k < kinds.size(); ++k)
     for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
