@@ -9,7 +9,7 @@ SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null
 # Configures the build tree $1 with the options $2. A new tree for programs compiles a folder's sources together, which is
 # faster; UNITY=OFF, for work on single files, each by itself; a tree stays as it is unless UNITY is given.
 configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages \
-  $(if $(filter %/firmware,$1),,$(addprefix -DAXIS_UNITY=,$(or $(UNITY),$(if $(wildcard $1/CMakeCache.txt),,ON)))) $2
+  $(if $(filter $(BUILD) $(CHECKED),$1),$(addprefix -DAXIS_UNITY=,$(or $(UNITY),$(if $(wildcard $1/CMakeCache.txt),,ON)))) $2
 
 # Builds the microcontroller's images, then checks and reports their size, stack and symbols.
 define firmware

@@ -77,8 +77,8 @@ def bundle(tree: Path) -> int:
 
 
 def main(wheel: Path, folder: Path) -> int:
-    glibc = os.confstr("CS_GNU_LIBC_VERSION").split()[1].split(".")
-    platform = f"manylinux_{glibc[0]}_{glibc[1]}_{os.uname().machine}"
+    glibc = (os.confstr("CS_GNU_LIBC_VERSION") or "").removeprefix("glibc ")
+    platform = f"manylinux_{glibc.replace('.', '_')}_{os.uname().machine}"
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         run(sys.executable, "-m", "wheel", "unpack", "--dest", scratch, wheel)
