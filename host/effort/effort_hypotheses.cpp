@@ -285,9 +285,12 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
         if (std::ranges::find(of_ranking, weighed.form) != of_ranking.end()) continue;
         of_ranking.push_back(weighed.form);
         const bool leads = of_ranking.size() == 1;
-        std::vector<double> gains;
-        for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
-        const Trial trial{k, &weighed, leads ? log_sum(gains) : 0.0};
+        Trial trial{k, &weighed};
+        if (leads) {
+          std::vector<double> gains;
+          for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
+          trial.spread = log_sum(gains);
+        }
         const auto is_same = [&](const Trial& other) {
           return other.weighed->form == weighed.form && other.weighed->scale == weighed.scale;
         };

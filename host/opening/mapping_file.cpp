@@ -7,25 +7,6 @@
 
 namespace host {
 
-namespace {
-
-/// A TOML string of any text: the basic one, with what it must escape.
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      out += fmt::format("\\{}", c);
-    else if (byte < 0x20 || byte == 0x7F)
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
-    else
-      out += c;
-  }
-  return out + "\"";
-}
-
-}  // namespace
-
 std::string format_mapping_file(const std::vector<MappedAxis>& axes) {
   std::string text =
       "# How the channels of a controller's log become the columns of a record: axistool open LOG --map THIS_FILE\n"

@@ -12,12 +12,11 @@ namespace {
 
 using firmware::kLoggedFaults;
 using firmware::LoggedFault;
+using hal::pc::kTornStates;
 using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Log = firmware::FaultLog<SimulatedFlash>;
-
-using hal::pc::kTornStates;
 
 /// Sectors of 96 entries: after a copy of 64 there is room for some 30 more.
 SimulatedFlash blank_flash() { return SimulatedFlash(4, 96 * 32, 4); }

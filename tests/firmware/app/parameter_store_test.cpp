@@ -19,12 +19,11 @@ using firmware::StoreState;
 using firmware_test::paper_values;
 using firmware_test::place_named;
 using firmware_test::set;
+using hal::pc::kTornStates;
 using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Store = firmware::ParameterStore<SimulatedFlash>;
-
-using hal::pc::kTornStates;
 
 /// Sectors as small as they may be: what lies beyond the set matters to nothing.
 SimulatedFlash blank_flash() { return SimulatedFlash(2, 2048, 4); }

@@ -14,13 +14,12 @@ using firmware::ParameterValues;
 using firmware::PitchPoint;
 using firmware::SaveResult;
 using firmware::StoreState;
+using hal::pc::kTornStates;
 using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Store = firmware::ParameterStore<SimulatedFlash>;
 using Points = std::vector<PitchPoint>;
-
-using hal::pc::kTornStates;
 
 Points points(int count, int seed) {
   Points list;
