@@ -20,7 +20,8 @@ namespace hal {
 /// microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells the
 /// watchdog that the processor is about to stand still for as long as the erase of a sector may last; `end_stall`
 /// makes it quick again. `restart` starts the program anew, and may return before it does. `axis(index)` is there for
-/// every index below `kAxes`.
+/// every index below `kAxes`. A board whose program can be updated also has `image_flash()`: a Flash of three sectors,
+/// the place where programs run and two slots.
 template <typename T>
 concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
   typename T::AxisType;

@@ -26,6 +26,7 @@ void add_design(CLI::App& app);
 void add_effects(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_flash(CLI::App& app);
+void add_update(CLI::App& app);
 void add_info(CLI::App& app);
 void add_list(CLI::App& app);
 void add_get_params(CLI::App& app);

@@ -5,6 +5,12 @@
 
 namespace firmware {
 
+enum class BootResult : std::uint8_t {
+  nothing,   ///< no whole image lies in the program's place
+  program,   ///< one does
+  on_trial,  ///< likewise, and it has not reported yet that it is healthy
+};
+
 /// The newest image that has not failed runs. It is copied into the program's place unless it is there; a slot is never
 /// changed but for its marks, so a power cut at any moment is mended by doing all of this again. An image that was
 /// never started is marked as tried first: unless that run reports that it is healthy, the older image returns at the
@@ -14,19 +20,20 @@ class BootChoice {
  public:
   explicit constexpr BootChoice(Flash& flash) : flash_(flash), slots_(flash) {}
 
-  /// True where a whole image lies in the program's place now.
-  bool prepare() {
-    if (slots_.is_program_flashed() && slots_.is_whole(kProgram)) return true;
+  BootResult prepare() {
+    if (slots_.is_program_flashed() && slots_.is_whole(kProgram)) return BootResult::program;
     std::array<bool, Slots::kSlots> is_out{};
     for (std::size_t tries = 0; tries < Slots::kSlots; ++tries) {
       const auto slot = newest(is_out);
       if (!slot) break;
       if (is_in_place(*slot) || copy(*slot)) {
-        if (slots_.state(*slot) != SlotState::offered || slots_.mark_tried(*slot)) return true;
+        if (slots_.state(*slot) == SlotState::healthy) return BootResult::program;
+        if (slots_.mark_tried(*slot)) return BootResult::on_trial;
       }
       is_out[*slot - Slots::kFirstSlot] = true;
     }
-    return slots_.is_whole(kProgram);  // better than nothing, whatever became of its slot
+    // Better than nothing, whatever became of its slot.
+    return slots_.is_whole(kProgram) ? BootResult::program : BootResult::nothing;
   }
 
  private:

@@ -18,6 +18,7 @@ class ImageUpdate {
   constexpr ImageUpdate(Flash& flash, const ImageHeader& own) : flash_(flash), slots_(flash), own_(own) {}
 
   const ImageSlots<Flash>& slots() const { return slots_; }
+  const ImageHeader& own() const { return own_; }
 
   /// The program that runs was started for the first time, and an older image would return.
   bool is_on_trial() const {

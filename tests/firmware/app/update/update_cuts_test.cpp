@@ -44,7 +44,7 @@ struct Board {
 
   bool boot() {
     running.reset();
-    if (!firmware::BootChoice(flash).prepare()) return false;
+    if (firmware::BootChoice(flash).prepare() == firmware::BootResult::nothing) return false;
     const Slots slots(flash);
     const auto memory = slots.memory(Slots::kProgram).first(slots.header(Slots::kProgram).image_size);
     running.emplace(memory.begin(), memory.end());
