@@ -1,4 +1,4 @@
-// Flash sectors that the program writes: for parameters (the first two) and the fault log (the next two), or for images.
+// Flash sectors that the program writes: for parameters (the first two) and the fault log (the next two), or images.
 #pragma once
 
 #include <concepts>

@@ -103,6 +103,14 @@ TEST_F(UpdateCommand, RefusesWithTheCauseAndWritesNothing) {
   EXPECT_EQ(run("update").exit_code, 2);
 }
 
+TEST_F(UpdateCommand, FlashTakesNoImageWithoutBootCode) {
+  const ProgramRun bare = run_axistool("flash --dry-run " + folder_.write("bare.bin", image_text("axis-f405")));
+  EXPECT_EQ(bare.exit_code, 9) << bare.output;
+  EXPECT_THAT(bare.output, HasSubstr("without the boot code"));
+  const ProgramRun whole = run_axistool("flash --dry-run " + folder_.write("whole.bin", flash_text("axis-f405")));
+  EXPECT_EQ(whole.exit_code, 0) << whole.output;
+}
+
 TEST_F(UpdateCommand, IsRefusedWhileAnAxisIsEnabled) {
   ASSERT_EQ(run_axistool("design " + kCase + "/model.toml -o " + file("params.toml")).exit_code, 0);
   ASSERT_EQ(run("set-params " + file("params.toml")).exit_code, 0);
