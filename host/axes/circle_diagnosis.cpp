@@ -1,11 +1,14 @@
 #include "host/axes/circle_diagnosis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "host/axes/circle_figures.hpp"
 #include "host/dense_solutions.hpp"
+#include "host/exit_codes.hpp"
 #include "host/infer/evidence.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/statistics.hpp"
@@ -395,7 +398,9 @@ CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes) {
   return diagnosis;
 }
 
-void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model) {
+void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model, const std::string& path) {
+  if (model.name != "x" && model.name != "y")
+    throw Failure(ExitCode::usage, fmt::format("{}: expected a model of axis x or y, not of \"{}\"", path, model.name));
   if (model.data.kind != sim::DriveKind::rotary) return;
   for (auto* const list : {&diagnosis.causes, &diagnosis.minor})
     for (CircleFinding& found : *list)

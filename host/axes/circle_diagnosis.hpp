@@ -46,8 +46,9 @@ struct CircleDiagnosis {
 
 CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes);
 
-/// Says periods of the model's axis in turns of its motor, too.
-void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model);
+/// Also gives the periods of the model's axis in turns of its motor. Throws Failure(usage), naming `path`, for a model
+/// of another axis than x or y.
+void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model, const std::string& path);
 
 /// Radial deviation that a cause makes along a pass, um, at its samples.
 std::vector<double> share_along(const CircleFinding& finding, const CirclePass& pass);

@@ -21,6 +21,9 @@ enum class FrictionMethod {
 
 std::string_view method_name(FrictionMethod method);  ///< "joint", "paper"
 
+/// By its name. Throws Failure(usage) with the names that there are.
+FrictionMethod friction_method_named(std::string_view name);
+
 struct FrictionIdentification {
   FrictionMethod method{};
   sim::DriveDescription model;  ///< as given, with viscous, coulomb and stribeck from the fit

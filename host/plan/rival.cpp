@@ -145,6 +145,21 @@ std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const
   return rivals;
 }
 
+std::vector<Rival> rivals_for(const sim::DriveDescription& model, const Measurements& measured,
+                              const std::vector<const Record*>& records,
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress) {
+  if (!kinds.empty()) return fit_rivals(model, records, kinds, progress);
+  const Diagnosis diagnosis = diagnose(model, measured, progress);
+  std::vector<Rival> rivals = rivals_of(diagnosis, records);
+  if (rivals.empty())
+    throw Failure(ExitCode::answer_is_no,
+                  fmt::format("nothing is left to separate: the verdict on these records is {}{}{}. --rivals A,B plans "
+                              "a run for two explanations anyway",
+                              status_name(diagnosis.verdict.status), diagnosis.verdict.effects.empty() ? "" : ": ",
+                              fmt::join(diagnosis.verdict.effects, " + ")));
+  return rivals;
+}
+
 RecordSet common_ground(const std::vector<const Record*>& records, const std::vector<Rival>& rivals, double window_s) {
   RecordSet set = compare_on(records, rivals.front().model, window_s);
   double common = set.common_square;

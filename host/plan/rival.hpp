@@ -31,6 +31,13 @@ std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vec
 /// Fitted to `records`, all that it saw. Empty where its verdict is another.
 std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const Record*>& records);
 
+/// The rivals that a plan separates: `kinds` fitted to `records`, all that were measured; without `kinds`, those that a
+/// diagnosis leaves.
+/// Throws Failure(answer_is_no) where a diagnosis leaves none, and what fit_rivals() and diagnose() throw.
+std::vector<Rival> rivals_for(const sim::DriveDescription& model, const Measurements& measured,
+                              const std::vector<const Record*>& records,
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress = {});
+
 /// Records prepared for comparing rivals: a window's floors are the largest that any of the rivals has there, since a
 /// floor of its own would let a model that amplifies errors explain anything.
 RecordSet common_ground(const std::vector<const Record*>& records, const std::vector<Rival>& rivals,
