@@ -63,8 +63,11 @@ class Model:
         raise KeyError(kind)
 
     def _repr_html_(self) -> str:
-        rows = [(effect["kind"], key, value) for effect in self.document.get("effect", [])
-                for key, value in effect.items() if isinstance(value, float)]
+        rows = []
+        for effect in self.document.get("effect", []):
+            rows += [(effect["kind"], key, value) for key, value in effect.items() if isinstance(value, float)]
+            rows += [(effect["kind"], f"{key}, order {one['order']}", value) for one in effect.get("harmonics", [])
+                     for key, value in one.items() if isinstance(value, float)]
         return html_table(["effect", "parameter", "value"], rows, self.name)
 
 
