@@ -27,7 +27,7 @@ double follows(const std::vector<double>& path, const std::vector<double>& rate)
 
 struct AffineFit {
   double factor = 0.0;
-  double left = 1.0;   ///< part of the variance that is left
+  double left = 1.0;   ///< unexplained part of the variance
   double worst = 1.0;  ///< largest residual over the channel's range
 };
 
@@ -98,7 +98,7 @@ std::optional<ScaledCopy> scaled_copy(const Record& record) {
 
 bool speed_is_differenced(const Record& record, const sim::DataSheet& data) {
   if (!record.has_position() || !record.has_speed() || record.size() < 4) return false;
-  constexpr double kSame = 1e-3;  // of one encoder step a sample: a tachometer's noise is no multiple of the step
+  constexpr double kSame = 1e-3;  // of one encoder step per sample: tachometer noise is not a multiple of the step
   const double unit = encoder_step(record, data) / (data.lead * record.sample_period_s);
   if (!(unit > 0.0)) return false;
   const auto departs = [&](std::size_t back, std::size_t ahead) {

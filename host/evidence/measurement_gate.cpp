@@ -21,7 +21,8 @@ namespace host {
 
 namespace {
 
-/// Rows that judge and train at once, in parts of the record that judges, beyond which the judgement means nothing.
+/// Number of rows in both training and validation records, as parts of the validation record, above which validation is
+/// meaningless.
 constexpr double kMostInCommon = 0.1;
 
 void require_known(const std::vector<std::string>& accepted) {
