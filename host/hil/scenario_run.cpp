@@ -41,7 +41,7 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
   return {axis.drive, parameters, axis.wiring};
 }
 
-/// Programs in place of drives: axes that name the same one share it.
+/// Programs that replace drives: axes with the same one share it.
 void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxisCount>& axes) {
   constexpr std::chrono::seconds kPatience{10};
   std::map<std::string, std::vector<std::size_t>> served;
