@@ -1,4 +1,4 @@
-// Which board, in words, and the way to it.
+// Opens a board by its name: usb:SERIAL, sim, socket:PATH.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// A library that is loaded while the program runs.
+// A library that is loaded at run time.
 #pragma once
 
 #include <dlfcn.h>

@@ -24,7 +24,7 @@ struct CirclePass {
   bool has_reference = false;
   std::vector<double> t_s, angle_rad;  ///< from +X, counter-clockwise, as the encoders stand
   std::vector<double> encoder_um;      ///< radial deviation of the encoders
-  std::vector<double> outer_um;        ///< of the outer sensor; empty where there is none
+  std::vector<double> outer_um;        ///< of the outer sensor; empty without one
 
   double turn_rad_s() const { return feed_mm_s / radius_mm; }
   double direction() const { return is_ccw ? 1.0 : -1.0; }

@@ -1,4 +1,4 @@
-// What each cause of a bad circle leaves in the radial deviation: columns of one linear model.
+// Signature of each cause in the radial deviation: columns of one linear model.
 #pragma once
 
 #include <Eigen/Core>
@@ -63,7 +63,7 @@ struct CircleCause {
   Eigen::VectorXd deviations;  ///< of the factors before the measurement, um
   double log_prior = 0.0;
   std::optional<double> period_mm, frequency_Hz;
-  /// What a factor of 1 um is in the cause's own unit: ms, um/m, ppm; empty where um it is.
+  /// Value of a factor of 1 um in the cause's own unit: ms, um/m, ppm; empty if that unit is um.
   double amount_per_um = 1.0;
   std::string amount_unit = "um";
 };
@@ -91,7 +91,7 @@ CircleCause best_wave(const CircleRows& rows, const Eigen::VectorXd& left, WaveK
 /// The same near the wave that is there.
 CircleCause nearby_wave(const CircleRows& rows, const Eigen::VectorXd& left, const CircleCause& wave);
 
-/// Kinds that these sensors and passes cannot see or tell apart, with the reason and what would show them.
+/// Kinds that these sensors and passes do not show or separate, with the reason and the remedy.
 struct Unseen {
   std::string kind, why;
 };

@@ -1,4 +1,5 @@
-// What two axes that follow differently make of lines and circles: the linear part, from their frequency responses.
+// Contour errors of lines and circles when two axes follow differently: the linear part, from their frequency
+// responses.
 #pragma once
 
 #include <complex>
@@ -24,7 +25,7 @@ std::complex<double> following(const ServoAxis& axis, double f_Hz);
 struct FeedContour {
   double feed_mm_s = 0.0;
   double line_45_um = 0.0;  ///< largest distance from a line at 45 degrees, with its acceleration and deceleration
-  double ellipse_um = 0.0;  ///< difference of the half axes of what becomes of a circle
+  double ellipse_um = 0.0;  ///< difference between the half axes of the ellipse that a circle becomes
 };
 
 inline constexpr double kForecastRadius_mm = 35.0;  // the paper's circle, p. 1508

@@ -24,7 +24,7 @@ namespace host {
 struct CommissionHoming {
   firmware::HomingMode mode = firmware::HomingMode::none;
   double position = 0.0;     ///< of the place that is found, mm (m)
-  bool is_backward = false;  ///< the switch lies to the negative side
+  bool is_backward = false;  ///< the switch is on the negative side
 };
 
 struct CommissionOptions {
@@ -36,7 +36,7 @@ struct CommissionOptions {
   ExcitationLimits box;
   double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of delays yet
   double modulus = 0.5;        ///< margin up to which the measured response lets the bandwidth rise
-  std::optional<CommissionHoming> homing = {};  ///< empty: what the board's own homing.mode says
+  std::optional<CommissionHoming> homing = {};  ///< empty: the board's own homing.mode
   bool save = false;                            ///< the better set, in the board's flash
 };
 
@@ -66,7 +66,7 @@ struct CommissionLoop {
 
 /// Result of the diagnosis for the following steps of the same command.
 struct CommissionFinding {
-  Measurements measured;  ///< what the diagnosis points into
+  Measurements measured;  ///< the diagnosis refers to it
   Diagnosis diagnosis;
 };
 
@@ -156,7 +156,7 @@ class CommissionSession {
   double motion_s_ = 0.0;
 };
 
-/// Work while which the axis stands disabled and nobody asks whether to stop; as long as this lives.
+/// A computation during which the axis is disabled and Ctrl-C ends the program; for the lifetime of this object.
 class Computing {
  public:
   explicit Computing(const CommissionSession& session) : talk_(session.talk()) { talk_.computes(true); }

@@ -11,7 +11,7 @@ namespace host {
 
 struct CommissionStepResult {
   std::vector<std::string> files;  ///< in the folder
-  std::string said;                ///< what was found, a sentence or two
+  std::string said;                ///< result in one or two sentences
 };
 
 /// Makes before-params.toml (the board as it was), standstill.csv, pulse.csv, look.json. Throws Failure(refused) where

@@ -26,7 +26,7 @@ EffortRecord prepare_effort(const Record& record, const sim::DriveDescription& b
 /// One value a row, Nm or N; zeros within kMotionMargin of the ends.
 struct EffortPrediction {
   std::vector<double> needed;  ///< by the motion, as the drive explains it
-  std::vector<double> given;   ///< by the motor, after what the drive's command path does
+  std::vector<double> given;   ///< of the motor, after the effects of the drive's command path
 };
 
 /// For a drive that has an inverse. `out` is resized when needed, so that it can be used again.

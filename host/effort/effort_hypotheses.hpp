@@ -13,10 +13,10 @@
 
 namespace host {
 
-/// Plain training error of a form beside what was chosen before; nothing where it has no room within physics.
+/// Training error of a form beside the effects chosen before; empty if it is not possible within physical bounds.
 using PlainFit = std::function<std::optional<double>(const EffortTerm&)>;
 
-/// The force balance of one drive, with what is fitted in every hypothesis: base and effects chosen so far.
+/// The force balance of one drive, with the terms of every hypothesis: base and effects chosen so far.
 class EffortHypotheses {
  public:
   /// `absent`: kinds that next() will not be asked for. `coulomb`: the drive's friction level, Nm or N, to which all

@@ -1,4 +1,4 @@
-// What the rows of a force balance may hold beyond any effect: smooth functions over each coordinate.
+// Residual structure beyond any effect: smooth functions over each coordinate.
 #pragma once
 
 #include <vector>

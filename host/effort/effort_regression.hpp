@@ -17,7 +17,7 @@ struct ScreenedModel {
   std::vector<std::string> kinds;  ///< beyond the base, in the order in which they were chosen
   sim::DriveDescription model;
   std::string words;  ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
-  /// RMS residual over RMS acting effort of the rows; 1 is no better than no model.
+  /// RMS residual over RMS torque or force of the rows; 1 is no better than no model.
   double train = 1.0, validate = 1.0;
   double probability = 0.0;  ///< of the last kind, or of its group, among all that may follow and nothing
   double confidence = 0.0;   ///< of the last kind against nothing more
@@ -30,7 +30,7 @@ class EffortRegression {
  public:
   EffortRegression(const sim::DriveDescription& model, const EffortRows& rows)
       : EffortRegression(model, rows, rows.effort) {}
-  /// `effort`: what is left to explain, Nm or N, one element a row.
+  /// `effort`: residual to explain, Nm or N, one element per row.
   EffortRegression(const sim::DriveDescription& model, const EffortRows& rows, const Eigen::VectorXd& effort);
 
   /// How much each row counts, 0 to 1: less where the residual's Student distribution takes it for an outlier.
@@ -44,7 +44,7 @@ class EffortRegression {
   double confidence(const ScreenedModel& before, const ScreenedModel& after) const;
 
  private:
-  /// What is known of a factor before the fit.
+  /// Prior of a factor.
   struct Prior {
     double value = 0.0;
     double deviation = 0.0;  ///< 0: nothing is known
@@ -62,7 +62,7 @@ class EffortRegression {
 
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
-  const Eigen::VectorXd& effort_;          ///< what is left to explain, one element a row
+  const Eigen::VectorXd& effort_;          ///< residual to explain, one element per row
   Eigen::VectorXd train_;                  ///< 0 for rows that judge, else the weight, 0 to 1
   double effort_train_, effort_validate_;  ///< RMS of all that the motor gave
 };

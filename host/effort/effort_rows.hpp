@@ -1,4 +1,4 @@
-// Rows for plain least squares: what the motor gave, and how the axis moved meanwhile, wherever it slides.
+// Rows for least squares: the motor's torque or force, and the motion of the axis while it slides.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ struct EffortSignals {
   double cutoff_Hz = 0.0;
   std::vector<double> speed;         ///< rad/s or m/s, every sample
   std::vector<double> acceleration;  ///< rad/s^2 or m/s^2, every sample
-  std::vector<double> motion;        ///< travel, or the speed where there is no position, every sample
+  std::vector<double> motion;        ///< travel, without a position the speed, at every sample
   std::vector<std::size_t> kept;     ///< samples that became rows, in order
   std::size_t first_row = 0;         ///< of those, in EffortRows
 };

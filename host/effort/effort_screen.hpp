@@ -15,7 +15,7 @@ namespace host {
 
 /// One effect that is certain.
 struct CertainEffect {
-  std::vector<std::string> group;    ///< one kind, or those that these data cannot tell apart, most probable first
+  std::vector<std::string> group;    ///< one kind, or those that these data do not separate, most probable first
   double probability = 0.0;          ///< of the group
   double before = 1.0, after = 1.0;  ///< RMS residual over RMS torque or force of the validation rows
 };
@@ -24,12 +24,12 @@ struct EffortScreen {
   EffortRows rows;
   double effort_train = 0.0, effort_validate = 0.0;  ///< RMS, Nm or N
   ScreenedModel base;
-  std::vector<std::vector<ScreenedModel>> steps;  ///< every kind tried on top of what was chosen so far, best first
+  std::vector<std::vector<ScreenedModel>> steps;  ///< every kind tried in addition to those chosen so far, best first
   std::vector<ScreenedModel> chosen;              ///< one for each effect that is named
-  std::vector<std::vector<std::string>> tied;     ///< of each chosen: kinds that these rows do not tell from it
-  std::vector<CertainEffect> certain;             ///< in the order in which they were found, those not named too
+  std::vector<std::vector<std::string>> tied;  ///< of each chosen kind: those that these rows do not separate from it
+  std::vector<CertainEffect> certain;          ///< in the order in which they were found, those not named too
   double nothing = 1.0;          ///< after the last step: probability that no effect of the catalogue follows
-  double memory_log_odds = 0.0;  ///< that what is left depends on some coordinate, nats
+  double memory_log_odds = 0.0;  ///< that the residual depends on some coordinate, nats
   std::optional<Repeatability> repeatable;   ///< of the best model's residual, where a motion was repeated
   std::optional<ScreenedModel> judge_alone;  ///< the base fitted to the judging rows, its `train` of these
   std::vector<std::string> held;             ///< base parameters that stayed as given, and why, in words

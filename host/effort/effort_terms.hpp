@@ -1,4 +1,4 @@
-// What each effect of the catalogue adds to the effort that a motion needs, as columns of a linear regression.
+// Contribution of each effect of the catalogue to the torque or force of a motion, as columns of a linear regression.
 #pragma once
 
 #include <functional>
@@ -37,7 +37,7 @@ bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry);
 /// already, as far as they have a linear form.
 std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const EffortRows& rows);
 
-/// Whether base_terms() can stand for the whole model.
+/// Whether base_terms() represents the whole model.
 bool has_linear_form(const sim::DriveDescription& model);
 
 /// The model without the effects of base_terms() that are not friction or inertia: what acts as it stands.

@@ -1,4 +1,4 @@
-// Waves over the travel as columns of the force balance: which periods are tried, and what a wave makes of a model.
+// Waves over the travel as columns of the force balance: the periods to try, and a wave as an effect of a model.
 #pragma once
 
 #include <Eigen/Core>

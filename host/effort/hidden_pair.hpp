@@ -1,4 +1,4 @@
-// Two effects that hide each other: beside either of them alone, what is left wanders as it did before.
+// Two effects that mask each other: with either of them alone, the residual varies as before.
 #pragma once
 
 #include <functional>

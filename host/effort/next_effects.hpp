@@ -9,10 +9,10 @@
 
 namespace host {
 
-/// The kind of what the catalogue has no name for.
+/// Kind for effects that the catalogue does not contain.
 inline constexpr const char* kNoName = "";
 
-/// One kind in its most probable form, given what was chosen before.
+/// One kind in its most probable form, given the effects chosen before.
 struct NextEffect {
   EffortTerm term;
   std::vector<EffortTerm> others;  ///< further forms to start a refinement from, where the kind has any
@@ -20,7 +20,7 @@ struct NextEffect {
   double probability = 0.0;        ///< among all kinds and nothing more
 };
 
-/// What may come next, most probable first.
+/// Candidates for the next effect, most probable first.
 struct NextEffects {
   std::vector<NextEffect> effects;
   double nothing = 1.0;  ///< probability that no effect of the catalogue is missing
@@ -34,7 +34,7 @@ std::vector<std::string> certain_group(const NextEffects& next, double& probabil
 /// What has no name becomes "nothing of the catalogue".
 void leave_unnamed(NextEffects& next);
 
-/// Takes kinds out of what may come next; the others share their probability.
+/// Removes kinds from the candidates; the others share their probability.
 void take_out(NextEffects& next, const std::vector<std::string>& kinds);
 
 /// The one of that kind, which must be there.

@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// A curve that leads from the end of one piece into the beginning of the next, and what it takes of both.
+/// A curve from the end of one piece into the beginning of the next, and the lengths that it replaces.
 struct CornerBlend {
   PathCurve curve;
   double taken = 0.0;  ///< mm of either

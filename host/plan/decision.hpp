@@ -14,7 +14,7 @@ inline constexpr double kHighestOdds = 1000.0;
 /// A run has decided where the best rival is as probable as this.
 inline constexpr double kDecided = 0.95;
 
-/// What may be stated of odds: 1 to kHighestOdds, which rounding does not keep them from.
+/// Range of stated odds: 1 to kHighestOdds, within rounding.
 double stated_odds(double odds);
 
 /// "more than 1000 to 1", "38 to 1"
@@ -22,7 +22,7 @@ std::string odds_text(double odds);
 
 struct Decision {
   std::vector<Rival> rivals;       ///< with their parameters fitted to everything, and their probabilities afterwards
-  std::vector<double> chi_square;  ///< what the run adds to each rival's, re-fitted to both, over the dispersion
+  std::vector<double> chi_square;  ///< chi^2 that the run adds to each rival's, re-fitted to both, over the dispersion
   /// Squared error over squared floor that even the best rival leaves of training and run together, at least 1: where
   /// no rival is the whole truth, what they make of its rest speaks as much less.
   double dispersion = 1.0;

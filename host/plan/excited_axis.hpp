@@ -69,7 +69,7 @@ class ExcitedAxis {
     return static_cast<double>(axes_[0].telemetry().encoder_counts - start_counts_) * data_.encoder_resolution;
   }
 
-  /// What was recorded so far, a row a control period; the axis is of no use afterwards.
+  /// The record so far, one row per control period; the axis must not be used afterwards.
   Record take() { return std::move(record_); }
 
  private:

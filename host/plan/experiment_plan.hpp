@@ -1,4 +1,4 @@
-// The run that best separates the explanations that are left of a machine's records.
+// Plans the run that best separates the remaining explanations of a machine's records.
 #pragma once
 
 #include <string>
@@ -19,18 +19,18 @@ struct PlanOptions {
 struct PairOutlook {
   std::size_t a = 0, b = 0;  ///< indices of rivals
   bool separable = false;
-  /// What the run is expected to make of even odds, of the true one to the other, up to kHighestOdds.
+  /// Expected odds of the true one to the other after the run, from even odds, up to kHighestOdds.
   double odds_if_a = 1.0, odds_if_b = 1.0;
   std::string by_hand = {};  ///< where no motion in the box separates them: what does
 };
 
-/// A piece that was simulated, and what it alone would do.
+/// A piece that was simulated, and its effect alone.
 struct ConsideredPiece {
   RunPiece piece;
   double expected_log_odds = 0.0;  ///< of the pair that it separates worst, among those that anything separates
 };
 
-/// The run as it would be with one rival true, and all rivals bent to it.
+/// The run with one rival true, and all rivals re-fitted to it.
 struct PredictedRun {
   Record record;
   std::vector<sim::DriveDescription> bent;  ///< as many as there are rivals
@@ -42,7 +42,7 @@ struct Plan {
   bool separable = false;  ///< some pair is
   std::string by_hand;     ///< for the pairs that are not, in words; empty where all are
   RunPlan run;             ///< without pieces where nothing is separable
-  /// Of the true one to the next that the run can tell from it: the geometric mean over what may be true.
+  /// Of the true rival to the most similar one that the run separates from it: geometric mean over the possible truths.
   double expected_odds = 1.0;
   std::vector<ConsideredPiece> considered;  ///< best first
   std::vector<PredictedRun> predicted;      ///< with each rival true in turn
@@ -50,7 +50,7 @@ struct Plan {
   bool cut_short = false;                   ///< pieces were left untried
 };
 
-/// What a person can do where no motion separates two explanations.
+/// A manual test for two explanations that no motion separates.
 std::string separation_by_hand(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
 /// `model`: whose design the board runs. `rivals`: of fit_rivals() on the same training records, or what a Decision

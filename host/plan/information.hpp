@@ -1,4 +1,4 @@
-// What a piece of a run says about a rival: its squared error there, and how that changes when the rival bends.
+// Information of a piece of a run about a rival: its squared error, and its change when the rival is re-fitted.
 #pragma once
 
 #include <Eigen/Core>

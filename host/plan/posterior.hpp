@@ -1,4 +1,4 @@
-// A diagnosis that goes on from what was believed before a planned run.
+// A diagnosis that continues from the prior odds before a planned run.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,10 +10,11 @@
 
 namespace host {
 
-/// What a plan (`axis-plan/1`), a decision, or an ambiguous diagnosis (`axis-diagnosis/1`) leaves open, without models.
+/// The alternatives of a plan (`axis-plan/1`), a decision, or an ambiguous diagnosis (`axis-diagnosis/1`), without
+/// models.
 struct Beliefs {
   std::vector<Rival> rivals;
-  double expected_odds = 0.0;  ///< that the plan stated; 0: none
+  double expected_odds = 0.0;  ///< stated by the plan; 0: none
 };
 
 /// Throws Failure(bad_input) naming the file and what mends it.

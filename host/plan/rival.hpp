@@ -1,4 +1,4 @@
-// Rival explanations of the same records: fitted models, held against one another on common ground.
+// Rival explanations of the same records: fitted models, compared with the same noise floors.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vec
                               const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress = {},
                               const Rival* known = nullptr);
 
-/// What a diagnosis leaves undecided, with its probabilities: the candidates of its group that cannot be told apart.
+/// The undecided alternatives of a diagnosis, with their probabilities: candidates that these records do not separate.
 /// Fitted to `records`, all that it saw. Empty where its verdict is another.
 std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const Record*>& records);
 

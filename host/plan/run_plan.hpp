@@ -21,7 +21,7 @@ struct RunPiece {
 struct RunPlan {
   std::vector<RunPiece> pieces;
   ExcitationLimits box;             ///< of the whole run, around where the axis stands at its beginning
-  std::vector<std::string> rivals;  ///< what it is to separate, "cogging", "backlash + input_delay"
+  std::vector<std::string> rivals;  ///< explanations to separate, "cogging", "backlash + input_delay"
   double expected_odds = 0.0;       ///< of the true rival to the next, stated before; 0: nothing was stated
 
   double duration_s() const;

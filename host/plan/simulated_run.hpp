@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// What a run left behind.
+/// Result of a run.
 struct RunOutcome {
   Record record;
   bool completed = false;  ///< every piece came to its end within its box
