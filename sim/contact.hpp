@@ -1,4 +1,4 @@
-// The contact of a drive as its motion meets it: what `slide` and its kin ask of a `Contact`.
+// Interface between a drive's contact and its motion: requirements of `slide` and its variants on a `Contact`.
 #pragma once
 
 #include <cmath>

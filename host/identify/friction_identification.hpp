@@ -21,7 +21,7 @@ enum class FrictionMethod {
 
 std::string_view method_name(FrictionMethod method);  ///< "joint", "paper"
 
-/// By its name. Throws Failure(usage) with the names that there are.
+/// Finds a method by its name. Throws Failure(usage) with the known names.
 FrictionMethod friction_method_named(std::string_view name);
 
 struct FrictionIdentification {
@@ -30,7 +30,7 @@ struct FrictionIdentification {
   FrictionFit fit;
   std::vector<FrictionPoint> points;
   double observer_viscous = 0.0;                    ///< B of the observer's design
-  std::optional<Estimate> viscous_by_disturbance;   ///< what the joint fit makes of the Kalman disturbance instead
+  std::optional<Estimate> viscous_by_disturbance;   ///< the same from the Kalman disturbance instead of the command
   std::optional<TachometerCalibration> tachometer;  ///< against the encoder
   std::vector<std::string> warnings;
 };

@@ -23,7 +23,7 @@ struct RowRun {
   Eigen::Index first, end;
 };
 
-/// Columns of the memory that lie over one coordinate and share one size.
+/// Columns of the memory over one coordinate, which share one size.
 struct MemoryGroup {
   std::string coordinate;
   Eigen::Index first, count;
@@ -43,7 +43,7 @@ struct EvidenceFit {
   double noise = 0.0;          ///< scale of the innovations, in the unit of y
   Eigen::VectorXd sizes;       ///< of each memory group, in the unit of y
   Eigen::VectorXd factors;     ///< of the hypothesis' columns
-  Eigen::VectorXd remembered;  ///< what the memory takes of every row
+  Eigen::VectorXd remembered;  ///< part of every row that the memory explains
   Eigen::VectorXd weights;     ///< of the whitened rows: 1/variance
 
   /// For further columns on top of these: whitened columns times their prior deviations, their information matrix's
@@ -75,7 +75,7 @@ class Evidence {
   EvidenceFit fit_from(const EvidenceFit& before, const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations,
                        double give_up = -HUGE_VAL) const;
 
-  /// Sizes at which there is no memory.
+  /// Sizes without any memory.
   Eigen::VectorXd no_memory() const;
 
   /// Gain of the log evidence by further columns of prior deviation 1, at the noise and the memory of `fit`, for each

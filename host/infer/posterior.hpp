@@ -1,4 +1,4 @@
-// From log evidence to probabilities, and from these to what is claimed.
+// Converts log evidence to probabilities, and these to claims.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The boards on this computer's USB, and the way to one of them.
+// Lists the boards on this computer's USB, and opens one of them.
 #pragma once
 
 #include <memory>
