@@ -5,7 +5,7 @@
 #include <functional>
 #include <thread>
 
-/// Asks `holds` every 20 ms, for at most a minute. Returns whether it came to hold.
+/// Checks `holds` every 20 ms, for at most a minute. Returns whether it became true.
 inline bool wait_until(const std::function<bool()>& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!holds()) {

@@ -139,7 +139,7 @@ Circle fit_circle(const std::vector<double>& x, const std::vector<double>& y, co
   return {x0 + cx, y0 + cy, std::sqrt(std::max(0.0, found(2) + cx * cx + cy * cy))};
 }
 
-/// Points before and after the circle are left out, round by round.
+/// Fits a circle repeatedly, each time without the points before and after it.
 Circle find_circle(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<std::size_t> keep(x.size());
   for (std::size_t k = 0; k < keep.size(); ++k) keep[k] = k;

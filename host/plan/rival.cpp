@@ -54,8 +54,8 @@ sim::DriveDescription with_effect(const std::string& kind, const sim::DriveDescr
   return found.empty() ? best_start(*info, model, training) : found.front().model;
 }
 
-/// The effect added where everything else stands well already: its own parameters are fitted before the others give
-/// way. Nothing where the model cannot take it.
+/// Adds the effect to a model that already fits well: first only the effect's own parameters are fitted. Empty if the
+/// model cannot take it.
 std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, const sim::DriveDescription& model,
                                                        const RecordSet& training) {
   constexpr FitOptions kAlone{.most_iterations = 8, .least_gain = 1e-3, .freedom = Freedom::last_effect};

@@ -43,7 +43,7 @@ struct Invariance {
   std::string original, rewritten;  ///< both verdicts in words
 };
 
-/// Diagnoses a question and its rewritings; one answer for each of `chosen`.
+/// Diagnoses a question and its rewritten forms; one result for each of `chosen`.
 std::vector<Invariance> try_rewritings(const Question& question, std::span<const Rewriting> chosen);
 
 }  // namespace host

@@ -195,7 +195,7 @@ std::vector<nlohmann::json> Jobs::steps_to(std::string model) const {
   std::vector<int> ids;
   {
     const std::lock_guard lock(mutex_);
-    // A step was asked for before the one that went on from it.
+    // A step's job is older than the job that continues from it.
     for (auto item = jobs_.rbegin(); item != jobs_.rend(); ++item) {
       const Job& job = *item->second;
       if (job.state["state"] != "done" || job.state["model"] != model) continue;

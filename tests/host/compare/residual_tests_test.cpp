@@ -1,4 +1,4 @@
-// What a made residual depends on must be named, and what depends on nothing must not be.
+// The tests must name the coordinate on which a made residual depends, and none for an independent residual.
 #include "host/compare/residual_tests.hpp"
 
 #include <gtest/gtest.h>
