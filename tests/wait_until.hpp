@@ -1,4 +1,4 @@
-// What a test waits for. How long that takes is the computer's matter: a busy one must not fail a test.
+// Waits for a condition in tests, however busy the computer is.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// The catalogue as a whole: complete, consistent, and harmless where an effect has no strength.
+// The catalogue as a whole: complete, consistent, and without effect at zero strength.
 #include "sim/catalogue.hpp"
 
 #include <gmock/gmock.h>

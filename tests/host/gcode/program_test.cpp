@@ -1,4 +1,4 @@
-// G-code programs, against what geometry by hand says of them.
+// G-code programs against geometry worked out by hand.
 #include "host/gcode/program.hpp"
 
 #include <gmock/gmock.h>

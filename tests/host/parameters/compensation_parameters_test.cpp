@@ -1,4 +1,4 @@
-// From a model's effects to what a board compensates.
+// From a model's effects to the board's compensation.
 #include "host/parameters/compensation_parameters.hpp"
 
 #include <gmock/gmock.h>
