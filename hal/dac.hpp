@@ -12,7 +12,6 @@ namespace hal {
 /// inside the converter's range. Returns false when the transfer failed; the output is then unchanged or unknown.
 /// `is_healthy()` is false when the converter, read back in the background, differs from its setting: brown-out, short
 /// circuit, heat, broken wire. It then stays false until the board restarts the converter. Neither call waits.
-/// circuit, heat, broken wire. It then stays false until the board starts the converter anew. Neither call waits.
 template <typename T>
 concept Dac = requires(T& dac, std::int32_t code) {
   { dac.write(code) } -> std::same_as<bool>;

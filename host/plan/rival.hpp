@@ -28,7 +28,7 @@ std::vector<Rival> fit_rivals(const sim::DriveDescription& model, const std::vec
                               const Rival* known = nullptr);
 
 /// The undecided alternatives of a diagnosis, with their probabilities: candidates that these records do not separate.
-/// Fitted to `records`, all that it saw. Empty where its verdict is another.
+/// Fitted to `records`, all of its records. Empty for another verdict.
 std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const Record*>& records);
 
 /// The rivals that a plan separates: `kinds` fitted to `records`, all that were measured; without `kinds`, those that a

@@ -40,7 +40,6 @@ constexpr Scalar friction_curve(const FrictionDirection<Scalar>& side, Scalar sp
 /// beyond, where exp(-16) = 1e-7 is left. A piece spans at most a quarter or half of the dominant omega, so its error
 /// is at most h^4/384: 1.7e-4 of the level, half a step of the converter at 1 V. That holds for omegas within a factor
 /// of ten; at a factor of fifty the error is a thousandth of the level.
-/// within a factor of ten; at fifty a thousandth of the level is lost.
 template <typename Scalar>
 class FrictionPieces {
  public:
