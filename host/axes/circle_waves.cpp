@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Waves of one kind over one axis on what is left. A rate is cycles a mm, or Hz.
+/// Searches the residual for waves of one kind over one axis. Rates are in cycles per mm, or Hz.
 class WaveSearch {
  public:
   WaveSearch(const CircleRows& rows, const Eigen::VectorXd& left, WaveKind kind, char axis)

@@ -180,7 +180,7 @@ std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, co
                                                             double sample_period_s,
                                                             const std::array<double, 2>& count_mm) {
   using firmware::parameter_check::motion;
-  constexpr double kUnit_mm = 0.001;  // tolerance along the path, instead of an encoder count
+  constexpr double kUnit_mm = 0.001;  // unit of length along the path, instead of an encoder count
   const firmware::MotionLimits along{motion(limits.feed, kUnit_mm, sample_period_s, 1),
                                      motion(limits.acceleration, kUnit_mm, sample_period_s, 2),
                                      motion(limits.jerk, kUnit_mm, sample_period_s, 3)};
