@@ -21,8 +21,7 @@ namespace host {
 
 namespace {
 
-/// Number of rows in both training and validation records, as parts of the validation record, above which validation is
-/// meaningless.
+/// Largest share of validation rows that are also training rows; above it, validation is meaningless.
 constexpr double kMostInCommon = 0.1;
 
 void require_known(const std::vector<std::string>& accepted) {

@@ -25,7 +25,7 @@ struct PositionJumps {
   std::size_t late = 0;  ///< steps that catch up after held rows
   PositionJump first_late;
 
-  /// No jump changes the position; late rows do not.
+  /// Whether no jump changes the position; late rows do not count.
   bool none() const { return wraps == 0 && new_zeros == 0 && dropped == 0; }
 };
 
