@@ -194,7 +194,7 @@ class ABoard(unittest.TestCase):
 class BothWays(unittest.TestCase):
     def test_arrays_come_back_from_the_library_bit_for_bit_without_a_file(self) -> None:
         read = axistool.Record.read(CASE / "train-jog.csv")
-        # Third bits that no decimal of a few digits has; t_s stays, its steps are checked.
+        # Thirds need all bits of a double, unlike decimals of a few digits. t_s stays, because its steps are checked.
         own = {name: values if name == "t_s" else values / 3 for name, values in read.columns.items()}
         record = axistool.Record.from_arrays(read.header, **own)
         with mock.patch("builtins.open", side_effect=AssertionError), mock.patch("os.open", side_effect=AssertionError):
