@@ -1,4 +1,4 @@
-// Where outputs may go: asked before anything is computed, and again by the function that writes.
+// Checks where an output may be written: before any computation, and again when it is written.
 #pragma once
 
 #include <string>

@@ -76,8 +76,9 @@ bool position_and_speed_swapped(const Record& record) {
 }
 
 std::optional<ScaledCopy> scaled_copy(const Record& record) {
-  constexpr double kSame = 1e-6;         // of the variance: a thousandth of the channel's size
-  constexpr double kSameExactly = 1e-9;  // of the range: rounding, where a good servo follows to a thousandth too
+  constexpr double kSame = 1e-6;  // of the variance: a thousandth of the channel's size
+  constexpr double kSameExactly =
+      1e-9;  // of the range: rounding errors only, since a good servo also follows to a thousandth
   using Channel = std::vector<double> Record::*;
   constexpr Channel kChannels[] = {&Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref};
   const auto is_reference = [](Channel channel) { return channel == &Record::x_ref || channel == &Record::w_ref; };

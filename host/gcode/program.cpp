@@ -286,7 +286,7 @@ class Reader {
     const PathPoint to = target();
     switch (motion_) {
       case Motion::none:
-        fail("position without a G0, G1, G2 or G3 before it");
+        fail("position without G0, G1, G2 or G3 before it");
       case Motion::rapid:
       case Motion::feed:
         if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R are for arcs only, G2 or G3");

@@ -251,7 +251,7 @@ class Workbench(unittest.TestCase):
         name = "<img src=x onerror=alert(1)>.csv"
         shutil.copy(CASE / "train-jog.csv", self.folder / name)
         self.browser.delete_all_cookies()
-        opener = self.folder / "opener.html"  # as serve itself opens the page: the token stands on no command line
+        opener = self.folder / "opener.html"  # as serve opens the page: the token is in no command line
         opener.write_text(f'<meta http-equiv="refresh" content="0;url={self.url}">')
         self.browser.get(opener.as_uri())
         self.until("[aria-label='Role of " + name + "']")
