@@ -19,7 +19,7 @@ struct ScreenedModel {
   std::string words;  ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
   /// RMS residual over RMS torque or force of the rows; 1 is no better than no model.
   double train = 1.0, validate = 1.0;
-  double probability = 0.0;  ///< of the last kind, or of its group, among all that may follow and nothing
+  double probability = 0.0;  ///< of the last kind or its group, among all candidates and "nothing"
   double confidence = 0.0;   ///< of the last kind against nothing more
   std::size_t factors = 0;
   Eigen::VectorXd residual;  ///< of every row, Nm or N
