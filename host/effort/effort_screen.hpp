@@ -1,5 +1,5 @@
-// Torque or force first, motion second: which effects the force balance needs, by evidence alone. No threshold decides
-// but the losses of infer/posterior.hpp.
+// Force balance first, motion second: selects the effects that the force balance needs by evidence. The only thresholds
+// are the losses of infer/posterior.hpp.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Which of the rivals a run speaks for: odds from exp(-chi^2/2) with the parameters of each fitted again, chi^2 over
+// Decides between rivals by a run: odds from exp(-chi^2/2) with each rival's parameters re-fitted, and chi^2 divided by
 // the dispersion of the best of them (quasi-likelihood; McCullagh and Nelder, Generalized Linear Models, ch. 9).
 #pragma once
 

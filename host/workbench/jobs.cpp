@@ -33,7 +33,7 @@ std::int64_t now_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// A state that an earlier session wrote, or somebody since: null unless it is one.
+/// The state of a job, written by this or an earlier session; null if the file is not valid.
 nlohmann::json read_state(const std::string& path) {
   try {
     nlohmann::json state = nlohmann::json::parse(read_file(path), nullptr, false);

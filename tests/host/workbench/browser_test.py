@@ -87,7 +87,7 @@ class Workbench(unittest.TestCase):
         self.browser.execute_script(DROP)
 
     def keep(self, name: str) -> None:
-        """A picture of the whole page, where AXIS_SCREENSHOTS asks for it; and what must hold in any view."""
+        """Saves a picture of the whole page if AXIS_SCREENSHOTS is set; checks what holds in every view."""
         wide = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
         self.assertLessEqual(wide, 0, f"{name}: nothing lies beside the page")
         if not (folder := os.environ.get("AXIS_SCREENSHOTS")):
