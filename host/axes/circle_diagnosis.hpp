@@ -21,7 +21,7 @@ struct CircleFinding {
   std::array<double, 2> ci95{};
   double amount = 0.0;                   ///< in the cause's own unit; of waves and spikes the largest amplitude
   std::optional<double> period_turns{};  ///< of the motor
-  double probability = 0.0;              ///< that it is there, against nothing and against everything else in its place
+  double probability = 0.0;              ///< its probability, against none and against all alternatives
   std::vector<std::pair<std::string, double>> instead;  ///< alternative causes with their probabilities
 };
 
@@ -40,7 +40,7 @@ struct CircleDiagnosis {
   std::vector<CircleFinding> causes;  ///< the largest first
   std::vector<CircleFinding> minor;   ///< the same, for at most a twentieth of the deviation
   std::vector<Unseen> unseen;
-  double rest_um = 0.0;                      ///< root mean square of what no cause takes, beyond noise
+  double rest_um = 0.0;                      ///< RMS of what no cause explains, beyond noise
   std::vector<CircleFigures> figures;        ///< of each pass
   std::optional<BidirectionalFigures> both;  ///< the worst feed; absent with one direction only
 };
@@ -51,7 +51,7 @@ CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes);
 /// of another axis than x or y.
 void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model, const std::string& path);
 
-/// Radial deviation that a cause makes along a pass, um, at its samples.
+/// Radial deviation by a cause along a pass, um, at its samples.
 std::vector<double> share_along(const CircleFinding& finding, const CirclePass& pass);
 
 /// `axis-circle/1`.

@@ -35,8 +35,8 @@ struct MachineDesign {
   std::string limited_by;  ///< what limits the bandwidth of the matched loop
 };
 
-/// `options` and `aim` hold for every axis. Throws Failure: usage where names or sample periods do not go together,
-/// refused where no common bandwidth keeps the aim or a loop would be unstable, and what design_axis() throws.
+/// `options` and `aim` apply to every axis. Throws Failure: usage for inconsistent names or sampling periods, refused
+/// if no common bandwidth meets the requirements or a loop would be unstable, and what design_axis() throws.
 MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim);
 
 nlohmann::json machine_json(const MachineDesign& machine);

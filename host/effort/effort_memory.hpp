@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Rows that follow one another in the record without a gap.
+/// Consecutive rows of a record.
 std::vector<RowRun> runs_of(const EffortRows& rows);
 
 /// Hats over speed by direction, position, friction over position, travel since the last reversal, friction over time,
