@@ -25,26 +25,25 @@ struct EffortScreen {
   double effort_train = 0.0, effort_validate = 0.0;  ///< RMS, Nm or N
   ScreenedModel base;
   std::vector<std::vector<ScreenedModel>> steps;  ///< every kind tried in addition to those chosen so far, best first
-  std::vector<ScreenedModel> chosen;              ///< one for each effect that is named
+  std::vector<ScreenedModel> chosen;              ///< one for each named effect
   std::vector<std::vector<std::string>> tied;  ///< of each chosen kind: those that these rows do not separate from it
-  std::vector<CertainEffect> certain;          ///< in the order in which they were found, those not named too
+  std::vector<CertainEffect> certain;          ///< in the order in which they were found, including unnamed ones
   double nothing = 1.0;          ///< after the last step: probability that no effect of the catalogue follows
   double memory_log_odds = 0.0;  ///< that the residual depends on some coordinate, nats
   std::optional<Repeatability> repeatable;   ///< of the best model's residual, where a motion was repeated
-  std::optional<ScreenedModel> judge_alone;  ///< the base fitted to the judging rows, its `train` of these
-  std::vector<std::string> held;             ///< base parameters that stayed as given, and why, in words
+  std::optional<ScreenedModel> judge_alone;  ///< the base fitted to the validation rows; its `train` refers to these
+  std::vector<std::string> held;             ///< base parameters that kept the given value, with the reason in words
 
   bool empty() const { return rows.size() == 0; }
   const ScreenedModel& best() const { return chosen.empty() ? base : chosen.back(); }
 };
 
-/// Chooses up to `most_effects`, never of the kinds in `absent`. Empty where the records hold no torque or force, or
-/// hardly slide, or the model has no inverse.
+/// Chooses up to `most_effects`, without the kinds in `absent`. Empty if the records hold no torque or force, hardly
+/// slide, or the model has no inverse.
 EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,
                            std::size_t most_effects, const std::vector<std::string>& absent = {});
 
-/// The best model with one term more, and all that it held fitted again beside it. Nothing where a factor has no room
-/// within physics.
+/// The best model with one more term, with all others re-fitted. Empty if a factor has no value within physical bounds.
 std::optional<ScreenedModel> refitted_with(const EffortScreen& screen, const EffortTerm& term);
 
 }  // namespace host

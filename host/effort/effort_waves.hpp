@@ -19,11 +19,11 @@ struct Wave {
 /// Travel of one turn of the shaft, mm; 0 for a linear drive.
 double turn_of(const sim::DataSheet& data);
 
-/// Below this period, mm or m, waves pass faster than the filter lets through, or are made by the encoder's steps.
+/// Below this period, mm or m, the filter removes waves, or they come from the encoder's steps.
 double shortest_wave(const sim::DataSheet& data, const EffortRows& rows);
 
-/// All waves that rows of a drive can tell: orders of a shaft's turn, where the travel holds a quarter of one, and any
-/// period that comes back within the travel; `longest`: in travels, of the free ones.
+/// All waves that a drive's rows can show: orders of a shaft's turn, if the travel covers a quarter of one, and any
+/// period that repeats within the travel; `longest`: in travels, of the free ones.
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest);
 
 /// cos and sin of a wave, times `weight`: two columns.

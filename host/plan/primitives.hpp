@@ -1,4 +1,4 @@
-// The pieces that a plan chooses from: the kinds of excitation that a board has, with numbers that suit drive and box.
+// The pieces for plans: the board's kinds of excitation, with numbers that suit drive and box.
 #pragma once
 
 #include <vector>

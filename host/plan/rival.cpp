@@ -16,10 +16,10 @@ namespace host {
 
 namespace {
 
-/// As long as the last word of a diagnosis' search has.
+/// As many iterations as the last fit of a diagnosis.
 constexpr FitOptions kFit{.most_iterations = 15, .least_gain = 1e-5, .most_steps = 40e6};
 
-/// The best fit of the effect from any of its starts, where a search that asks for a promise found none.
+/// The best fit of the effect from any of its starts, if the search found no promising one.
 sim::DriveDescription best_start(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                  const RecordSet& training) {
   constexpr std::size_t kStarts = 3;
@@ -69,8 +69,8 @@ std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, 
   return best.model;
 }
 
-/// Other kinds in place of those of a fitted rival that they do not share, re-fitted; nothing where that cannot be, or
-/// where both are about the same part of the drive: a gap of nothing is a spring, and would be no other explanation.
+/// A fitted rival with its other kinds replaced, re-fitted. Empty if that is impossible, or if both concern the same
+/// part of the drive: a gap of zero width is a spring, and would be no other explanation.
 std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vector<std::string>& kinds,
                                                const RecordSet& training) {
   const auto has = [](const std::vector<std::string>& list, const std::string& kind) {
@@ -91,7 +91,7 @@ std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vec
   return model;
 }
 
-/// Takes for every rival what is better: its own fit, or one that starts from `from`.
+/// Takes the better fit for every rival: its own, or one that starts from `from`.
 void start_again(std::vector<Rival>& rivals, const Rival& from, const RecordSet& ground) {
   for_each_in_parallel(rivals.size(), [&](std::size_t k) {
     std::optional<sim::DriveDescription> other = exchanged(from, rivals[k].kinds, ground);
