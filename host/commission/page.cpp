@@ -125,7 +125,7 @@ Verdict verdict_of(const Page& page) {
   return verdict;
 }
 
-/// What each set of parameters adds to the previous one.
+/// What each set of parameters changes from the previous one.
 std::string set_title(const Page& page, const std::string& name) {
   const bool is_first = page.sets().size() < 3;
   if (name == "before")
@@ -176,7 +176,7 @@ void add_picture(Report& report, const Page& page, const std::vector<std::pair<c
                     {"following error", "µm"}, views, &ResidualView::force, Layout::side_by_side);
 }
 
-/// "response-01.csv to response-09.csv" for files that count on.
+/// "response-01.csv to response-09.csv" for consecutively numbered files.
 std::string files_in_words(const std::vector<std::string>& files) {
   const auto stem_of = [](const std::string& file) {
     return file.substr(0, file.find_last_not_of("0123456789", file.rfind('.') - 1) + 1);
@@ -201,7 +201,7 @@ Table steps_table(const Page& page) {
   for (const auto& step : page.state["steps"]) {
     if (!step.value("done", false)) continue;
     std::string said = step.value("said", "");
-    // It stands at the top, or on the diagnosis's own page.
+    // It is at the top, or on the diagnosis's own page.
     if (const std::size_t at = said.find(explanation); !explanation.empty() && at != std::string::npos)
       said.erase(at, explanation.size());
     if (step["name"] == "compensate" && page.is_new() && page.has_after()) said = "The figures are above.";

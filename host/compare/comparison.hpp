@@ -20,7 +20,7 @@ enum class Measure {
 struct ComparedRecord {
   PreparedRecord prepared;
   ErrorFloor floor;
-  std::shared_ptr<const EffortRecord> effort = nullptr;  ///< where the measure is the effort
+  std::shared_ptr<const EffortRecord> effort = nullptr;  ///< if the measure is torque or force
 };
 
 /// Three floors: a single late impact or breakaway must not outweigh all windows that fit.
@@ -40,11 +40,11 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
-/// The earliest time stamp of all: origin for effects that change with time, whatever the logger's clock started with.
+/// The earliest time stamp of all: time origin of effects that change with time, whatever the logger's clock.
 double first_stamp_s(const RecordSet& set);
 
-/// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses
-/// swing within a sample.
+/// Integrator steps of one pass of a model over the windows in use: one per sample, more if masses oscillate within a
+/// sample.
 double steps_of(const sim::Drive& drive, const RecordSet& set);
 
 /// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
