@@ -18,7 +18,7 @@
 
 namespace host {
 
-/// No machine goes farther, or faster, than this many mm (m), rad/s (m/s).
+/// Upper bound of position and speed, mm (m), rad/s (m/s), beyond any machine.
 inline constexpr double kMostOfPlant = 1e9;
 
 /// The first line, with its line feed.
@@ -37,8 +37,8 @@ struct PlantGreeting {
 /// s.
 PlantGreeting parse_plant_greeting(std::string_view line);
 
-/// Reads the line of a period: an axis each, a voltage, or nothing where the drive is disabled. Throws
-/// Failure(protocol) saying what is wrong with it and how it ought to look.
+/// Reads the line of a period: for each axis a voltage, or nothing if the drive is disabled. Throws Failure(protocol)
+/// with the fault and the expected form.
 std::vector<std::optional<double>> parse_plant_line(std::string_view line, std::uint64_t k, std::size_t axes);
 
 /// The answer of period `k`, with its line feed.

@@ -12,7 +12,7 @@ namespace host {
 struct Doubt {
   std::string effect;   ///< kind
   std::string message;  ///< names the parameter, its value, the consequence and the remedy
-  bool refuses = true;  ///< no controller may be designed from it; else it is only to be said
+  bool refuses = true;  ///< no controller may be designed from it; otherwise only a warning
 };
 
 /// Signs and ranges of all parameters; of the fitted ones also: on a bound of the fit, interval wider than the value;

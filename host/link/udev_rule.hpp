@@ -1,4 +1,4 @@
-// The rule that lets a user, not only root, open a board.
+// The udev rule that lets users other than root open a board.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ inline constexpr const char* kInstallUdevRule = "sudo axistool udev-rule --insta
 /// For hidraw and for libusb: the group plugdev, and the user at the computer's screen.
 std::string udev_rule();
 
-/// Writes the rule and makes udev apply it to what is plugged in. Throws Failure (permission) when it may not.
+/// Writes the rule and makes udev apply it to connected boards. Throws Failure(permission) without the rights for it.
 void install_udev_rule();
 
 }  // namespace host
