@@ -5,8 +5,8 @@
 
 namespace host {
 
-/// From now on no output of this process takes the place of this file, whatever name or link leads to it. A name that
-/// leads to no file is ignored.
+/// Protects a file: no further output of this process replaces it, under any name or link. A name without a file is
+/// ignored.
 void protect_input(const std::string& path);
 
 /// The file that `path` stands for, links followed, and also where the last one leads to no file yet. Throws Failure:

@@ -137,7 +137,7 @@ class Reader {
     }
   }
 
-  /// Two of a group in one line contradict each other.
+  /// Refuses two words of one group in one line, because they contradict each other.
   void claim(const char* group) {
     if (!block_.groups.insert(group).second) fail(fmt::format("two words of group '{}' in one line", group));
   }
