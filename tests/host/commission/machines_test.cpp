@@ -38,7 +38,7 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
   const auto [code, words] = commission(board, folder.path("x"), "look", "page", {}, options);
   EXPECT_EQ(code, host::ExitCode::done) << words;
   if (code != host::ExitCode::done) return {};
-  // Its steps, like its commands, have one set of figures for the model that they begin with.
+  // Its steps state the same figures for the initial model, as the commands do.
   const json diagnosed = read(folder.path("x/diagnosis.json"));
   EXPECT_EQ(read(folder.path("x/comparison.json"))["error"], diagnosed["error"]["given"]["validate"]);
   Outcome outcome{read(folder.path("x/commission.json")), read(folder.path("x/errors.json")), {}};

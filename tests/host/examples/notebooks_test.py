@@ -26,7 +26,7 @@ def code_cells(notebook: dict) -> list[str]:
 
 
 def run_here(cells: list[str]) -> dict:
-    """What a kernel does with cells without magics: the last expression of each is shown."""
+    """Runs cells without magics as a kernel does, and checks what the last expression of each shows."""
     names: dict = {}
     for number, cell in enumerate(cells):
         body = ast.parse(cell).body
