@@ -9,9 +9,9 @@
 
 namespace hal {
 
-/// Contract: `send24` shifts 24 bits out, most significant first, framed by the select line; `exchange24` also brings
-/// the 24 bits that came back, at a rate at which they can. Both are false when that failed. `pause_ns` waits at least
-/// so long.
+/// Contract: `send24` shifts 24 bits out, most significant first, framed by the select line. `exchange24` also returns
+/// the 24 bits received, at a clock rate that allows it. Both return false if that failed. `pause_ns` waits at least
+/// that long.
 template <typename T>
 concept Transfer24 = requires(T& port, std::uint32_t word, std::uint32_t& reply) {
   { port.send24(word) } -> std::same_as<bool>;
@@ -19,13 +19,13 @@ concept Transfer24 = requires(T& port, std::uint32_t word, std::uint32_t& reply)
   { port.pause_ns(word) } -> std::same_as<void>;
 };
 
-/// What the converter's registers, read back, say of it.
+/// State of the converter according to its registers.
 enum class ConverterState : std::uint8_t {
   sound,
   silent,            ///< the serial port failed
-  registers_differ,  ///< absent, unpowered, or another range, code or setting than was written: a brown-out
+  registers_differ,  ///< absent, unpowered, or another range, code or setting than was written: brown-out
   too_hot,           ///< has shut its outputs down
-  overloaded,        ///< an output gives more current than the clamp allows: shorted
+  overloaded,        ///< an output exceeds the current limit: short circuit
 };
 
 /// BIN/2sCOMP is tied low: codes are two's complement. -10 V..+10 V, 20/65536 V a step (table 8). LDAC is tied low, so
@@ -53,7 +53,7 @@ class Ad5752 {
     std::uint32_t code_ = 0;
   };
 
-  /// Range, power and 0 V on both channels. False when the registers do not then read as written.
+  /// Sets range, power and 0 V on both channels. False if the registers then read differently.
   bool start() {
     constexpr std::uint32_t kPowerUp_ns = 10'000;  // table 24: before that no word may reach an output
     a_.code_ = b_.code_ = 0;
@@ -67,8 +67,8 @@ class Ad5752 {
     return state_ == ConverterState::sound;
   }
 
-  /// Reads one register back, the next one at the next call. What differs is read again at once: a disturbance on the
-  /// line passes, a lost register does not. A state other than sound stays until start().
+  /// Reads one register back, the next one at the next call. A difference is read again at once: a disturbance on the
+  /// line disappears, a lost register does not. A state other than sound persists until start().
   void watch() {
     const Reading reading = expected(next_);
     next_ = (next_ + 1) % kReadings;

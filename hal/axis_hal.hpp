@@ -1,4 +1,4 @@
-// What the control law of one axis needs of the world.
+// Hardware that the control law of one axis needs.
 #pragma once
 
 #include <type_traits>

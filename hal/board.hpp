@@ -16,12 +16,12 @@
 
 namespace hal {
 
-/// Contract: while an object of type ControlShutOut lives, the control interrupt does not run; they nest, and live for
-/// microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells the
-/// watchdog that the processor is about to stand still for as long as the erase of a sector may last; `end_stall`
-/// makes it quick again. `restart` starts the program anew, and may return before it does. `axis(index)` is there for
-/// every index below `kAxes`. A board whose program can be updated also has `image_flash()`: a Flash of three sectors,
-/// the place where programs run and two slots.
+/// Contract: while an object of type ControlShutOut exists, the control interrupt does not run; the objects nest, and
+/// exist for microseconds, except during a save. `set_control_rate` takes effect within a period. `begin_stall` tells
+/// the watchdog that the processor may stop for as long as a sector erase; `end_stall` restores the short time-out.
+/// `restart` restarts the program, and may return before it does. `axis(index)` exists for every index below `kAxes`.
+/// A board whose program can be updated also has `image_flash()`: a Flash of three sectors, the place where programs run
+/// and two slots.
 template <typename T>
 concept Board = requires(T& board, std::size_t index, std::uint32_t rate_Hz) {
   typename T::AxisType;

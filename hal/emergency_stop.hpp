@@ -1,4 +1,4 @@
-// Emergency-stop input. It acts in hardware too; software only learns of it.
+// Emergency-stop input. It acts in hardware, too; software only reads it.
 #pragma once
 
 #include <concepts>

@@ -28,7 +28,7 @@ concept Encoder = requires(T& encoder) {
   { encoder.read() } -> std::same_as<EncoderReading>;
 };
 
-/// An encoder whose index pulse is wired. Contract: `read_index()` returns at once, and forgets what it has told.
+/// An encoder with an index pulse. Contract: `read_index()` returns at once, and clears what it has reported.
 template <typename T>
 concept IndexedEncoder = Encoder<T> && requires(T& encoder) {
   { encoder.read_index() } -> std::same_as<IndexReading>;

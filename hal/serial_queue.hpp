@@ -1,4 +1,4 @@
-// Room for what a serial line sends more slowly than the program writes, so that the program never waits for it.
+// Buffer for a serial line that is slower than the program, so that the program never waits.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace hal {
 
-/// `send` queues and returns at once; bytes that do not fit are dropped and counted. `poll` hands on what the line
-/// takes: call it once a character or as often as it comes. One caller of all.
+/// `send` queues and returns at once; bytes that do not fit are dropped and counted. `poll` passes on what the line
+/// takes: call it at least once per character time. One caller for both.
 template <SerialLine Line, std::size_t size>
 class SerialQueue {
  public:

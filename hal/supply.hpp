@@ -1,4 +1,4 @@
-// The board's supply voltage, as a yes or no.
+// Whether the board's supply voltage is too low.
 #pragma once
 
 #include <concepts>

@@ -13,7 +13,7 @@ void write_file_atomically(const std::string& path, std::string_view text);
 /// Writes `text` on standard output and flushes it. Throws Failure(bad_input) where not all of it arrived.
 void write_standard_output(std::string_view text);
 
-/// What is still buffered for standard output. Throws as write_standard_output() does, also for what failed before.
+/// Flushes standard output. Throws as write_standard_output() does, also for an earlier failure.
 void finish_standard_output();
 
 }  // namespace host

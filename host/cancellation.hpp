@@ -1,4 +1,4 @@
-// Ending a long computation from outside: who runs it sets a flag, its fits look at it.
+// Cancels a long computation from outside: the caller sets a flag, which the fits check.
 #pragma once
 
 #include <atomic>
@@ -12,13 +12,13 @@ struct Cancelled : std::exception {
   const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// The flag of what this thread computes; none: it cannot be cancelled.
+/// The cancellation flag of this thread's computation; null: it cannot be cancelled.
 inline const std::atomic<bool>*& cancel_flag() {
   thread_local const std::atomic<bool>* flag = nullptr;
   return flag;
 }
 
-/// While it lives, what this thread computes ends with Cancelled soon after `flag` is set.
+/// While it exists, this thread's computation ends with Cancelled soon after `flag` is set.
 class CancelledBy {
  public:
   explicit CancelledBy(const std::atomic<bool>* flag) : before_(std::exchange(cancel_flag(), flag)) {}

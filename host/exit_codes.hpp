@@ -19,7 +19,7 @@ enum class ExitCode : int {
   bad_input = 9,
 };
 
-/// An end that the user can do something about: the message says what, where and what to do.
+/// A failure that the user can correct: the message says what, where and how.
 class Failure : public std::runtime_error {
  public:
   Failure(ExitCode exit_code, const std::string& message) : std::runtime_error(message), code(exit_code) {}

@@ -1,4 +1,4 @@
-// Which board, in words, and the way to it.
+// Opens a board by its name: usb:SERIAL, sim, socket:PATH.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ namespace host {
 /// Failure.
 BoardClient open_board(const std::string& device, std::chrono::duration<double> patience);
 
-/// "x" -> 0, on a board of so many axes. Throws Failure(usage).
+/// "x" -> 0, on a board with `axes` axes. Throws Failure(usage).
 std::uint8_t axis_index(const std::string& name, std::size_t axes);
 
 }  // namespace host

@@ -1,12 +1,12 @@
-// Where outputs may go: asked before anything is computed, and again by the function that writes.
+// Checks where an output may be written: before any computation, and again when it is written.
 #pragma once
 
 #include <string>
 
 namespace host {
 
-/// From now on no output of this process takes the place of this file, whatever name or link leads to it. A name that
-/// leads to no file is ignored.
+/// Protects a file: no further output of this process replaces it, under any name or link. A name without a file is
+/// ignored.
 void protect_input(const std::string& path);
 
 /// The file that `path` stands for, links followed, and also where the last one leads to no file yet. Throws Failure:

@@ -1,4 +1,4 @@
-// A library that is loaded while the program runs.
+// A library that is loaded at run time.
 #pragma once
 
 #include <dlfcn.h>
@@ -19,8 +19,8 @@ class SharedLibrary {
   bool is_loaded() const { return handle_ != nullptr; }
   const std::string& why_not() const { return why_not_; }
 
-  /// Points `function` at the function of this name, whose type the library's own header has given it; false where the
-  /// library lacks it.
+  /// Sets `function` to the library's function of this name, with the type from the library's header; false if there is
+  /// none.
   template <typename Function>
   bool find(Function*& function, const char* name) const {
     static_assert(std::is_function_v<Function>);

@@ -1,4 +1,4 @@
-// Fields of a TOML table, asked for by name: each read is checked, and what nobody asked for is refused.
+// Fields of a TOML table, read by name: each value is checked, and unknown fields are refused.
 #pragma once
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ class TomlFields {
   /// Position of the text of `key` among `known`.
   std::size_t choice(std::string_view key, const std::vector<std::string_view>& known);
   std::optional<std::size_t> optional_choice(std::string_view key, const std::vector<std::string_view>& known);
-  /// The tables of an array of tables; none where it is absent.
+  /// The tables of an array of tables; empty if it is absent.
   std::vector<const toml::table*> tables(std::string_view key);
   const toml::table* sub_table(std::string_view key);
   bool has(std::string_view key) const { return table_.contains(key); }

@@ -1,4 +1,4 @@
-// TOML as every reader of the tool takes it.
+// Checks and writes TOML for all readers of the tool.
 #pragma once
 
 #include <toml++/toml.h>

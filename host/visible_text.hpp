@@ -1,4 +1,4 @@
-// Text from files, as a terminal may show it.
+// Makes text from files safe to show on a terminal.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The contact of a drive as its motion meets it: what `slide` and its kin ask of a `Contact`.
+// Interface between a drive's contact and its motion: requirements of `slide` and its variants on a `Contact`.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,7 @@ inline FrictionPoint further_friction(const Drive& drive, int side, double speed
   return all;
 }
 
-/// A drive that has nothing but eq. (19), with or without the Stribeck effect: the predictor's innermost loop.
+/// A drive with eq. (19) only, with or without the Stribeck effect: the predictor's innermost loop.
 template <bool kStribeck>
 struct PlainContact {
   const std::array<SlidingCurve, 2>& sides;

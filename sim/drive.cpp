@@ -96,7 +96,7 @@ void Drive::filter_tach(DriveMotion& motion, double w_before, double duration_s)
     motion.tach = motion.w;
     return;
   }
-  // The speed runs straight from its value before to its value after: the exact response to a ramp.
+  // The speed is linear between its values before and after: the exact response to a ramp.
   const double slope = (motion.w - w_before) / duration_s;
   motion.tach =
       motion.w - tach_lag_s * slope + (motion.tach - w_before + tach_lag_s * slope) * decay(duration_s / tach_lag_s);

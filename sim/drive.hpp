@@ -37,7 +37,7 @@ struct SlidingCurve {
   FrictionPoint dry(double speed, double breakaway_factor = 1.0) const;
 };
 
-/// What an asymmetry multiplies the friction of one direction by.
+/// Factor of an asymmetry on the friction of one direction.
 struct DirectionFactor {
   double level = 1.0;
   double viscous = 1.0;

@@ -38,7 +38,7 @@ struct DataSheet {
 /// The id without it ("cosine"); an id without a number is its own family.
 std::string_view family_of(std::string_view id);
 std::string numbered_id(std::string_view family, double number);
-/// The number behind an id, or nothing.
+/// The number in an id; empty if there is none.
 std::optional<double> number_of(std::string_view id);
 
 /// What a data sheet or a drawing says of a parameter.

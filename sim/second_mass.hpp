@@ -1,4 +1,4 @@
-// What the effects of a second mass have in common.
+// Common parts of the effects of a second mass.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// A program in the background of a test; what it prints on standard output is nobody's, or goes into a file.
+// A background program for a test; its standard output is discarded or written to a file.
 #pragma once
 
 #include <fcntl.h>

@@ -1,11 +1,11 @@
-// What a test waits for. How long that takes is the computer's matter: a busy one must not fail a test.
+// Waits for a condition in tests, however busy the computer is.
 #pragma once
 
 #include <chrono>
 #include <functional>
 #include <thread>
 
-/// Asks `holds` every 20 ms, for at most a minute. Returns whether it came to hold.
+/// Checks `holds` every 20 ms, for at most a minute. Returns whether it became true.
 inline bool wait_until(const std::function<bool()>& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!holds()) {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Fails when a source file of the tree $1 is longer than a reader wants.
+# Fails when a source file of the tree $1 is longer than 500 lines.
 set -eu
 limit=500
 cd "$1"

@@ -1,4 +1,4 @@
-// The control law of one axis: measure, estimate, take the reference, control, put out.
+// The control law of one axis: measure, estimate, take the reference, control, output.
 #pragma once
 
 #include <cstdint>
@@ -26,17 +26,17 @@ namespace firmware {
 ///        + what compensation/ adds to it                                           if switched on
 ///        + d_hat(k)                                                                if switched on
 ///
-/// Behind all of it but friction stand notch and low-pass (control_filter.hpp), each if switched on.
+/// Notch and low-pass (control_filter.hpp), each if switched on, filter everything except friction.
 ///
-/// The estimator is given what the converter really put out, less the friction feed-forward: d_hat is the disturbance
-/// that feed-forward left over, so that cancelling it on top does not count friction twice. Friction takes wref(k+1),
-/// the velocity of the interval during which u(k) is held.
+/// The estimator gets the converter's actual output minus the friction feed-forward. d_hat is therefore the disturbance
+/// that feed-forward does not cover, and cancelling it does not count friction twice. Friction uses wref(k+1), the
+/// velocity of the interval in which u(k) is held.
 template <typename Scalar, hal::AxisHal Hal>
 class Axis {
  public:
   explicit constexpr Axis(Hal& hal) : hal_(hal) {}
 
-  /// Takes new parameters, or says what is wrong with them and keeps the old. Only while disabled.
+  /// Takes new parameters; if they are wrong, returns why and keeps the old ones. Only while disabled.
   constexpr Refusal configure(const AxisParameters<Scalar>& parameters) {
     if (telemetry_.enabled) return Refusal::controller_is_enabled;
     const Refusal error = check(parameters);
@@ -66,8 +66,8 @@ class Axis {
     return Refusal::none;
   }
 
-  /// Closes the loop from the next step on, with the reference where the axis stands. False (and telemetry().fault says
-  /// why) while a fault is latched or no parameters have been accepted.
+  /// Closes the loop from the next step on, with the reference at the axis's position. Returns false while a fault is
+  /// latched (telemetry().fault) or before parameters have been accepted.
   constexpr bool enable() {
     if (!is_configured_) telemetry_.fault = AxisFault::parameters_missing;
     if (telemetry_.fault != AxisFault::none) return false;
@@ -82,7 +82,7 @@ class Axis {
     return true;
   }
 
-  /// The enable line alone, for an amplifier that takes a while: the loop stays open, at 0 V.
+  /// Only the enable line, for an amplifier that needs time: the loop stays open, at 0 V.
   constexpr void energise() { hal_.drive_enable().set(true); }
 
   /// Opens the loop at once: 0 V, enable line off.
@@ -94,10 +94,10 @@ class Axis {
     put_out_zero();
   }
 
-  /// Added to the control signal of every step from now on, V; in an open loop it is all of it.
+  /// Added to the control signal of every step from now on, V; in an open loop it is the whole command.
   constexpr void excite(Scalar volts) { excitation_V_ = volts; }
-  /// From the next enable() until the axis is disabled the command is what excite() was told, and the reference stays
-  /// where the axis is. Only while disabled.
+  /// From the next enable() until the axis is disabled, the command is the value of excite(), and the reference stays
+  /// at the axis's position. Only while disabled.
   constexpr void open_loop() { is_open_loop_ = true; }
   constexpr void forget_excitation() {
     is_open_loop_ = is_closed_loop_ = is_plain_loop_ = false;
@@ -105,16 +105,17 @@ class Axis {
   }
   constexpr bool is_open_loop() const { return is_open_loop_; }
 
-  /// What pitch.on takes off the reference. Before configure(), while disabled; the table must stay where it is.
+  /// The table that pitch.on subtracts from the reference. Call it before configure(), while disabled; the table must
+  /// stay in place.
   constexpr void use_pitch_table(PitchTable table) { pitch_.use(table); }
-  /// Counts by which the reference may lie beside what is wanted of the table.
+  /// Largest offset of the reference from the wanted position of the table, counts.
   constexpr std::int64_t largest_offset() const { return backlash_.largest_offset() + pitch_.largest_offset(); }
 
-  /// A sensor that fails no longer opens the loop: whoever steps the axis sees telemetry().fault and decides.
+  /// A failed sensor no longer opens the loop: the caller of the step sees telemetry().fault and decides.
   constexpr void leave_sensors_to_supervisor() { decides_on_sensors_ = false; }
 
-  /// One control period without estimate and reference: `volts` to the converter, and of the sensors what can be read;
-  /// `velocity` stands for the estimate's.
+  /// One control period without estimate and reference: outputs `volts` and reads the sensors that work; `velocity`
+  /// replaces the estimate's.
   [[gnu::noinline]] constexpr void step_with_command(const hal::EncoderReading& encoder, Scalar volts,
                                                      Scalar velocity) {
     telemetry_.encoder_travel = encoder.valid ? counter_.advance(encoder.counts) : 0;
@@ -135,7 +136,7 @@ class Axis {
     is_synchronised_ = false;
   }
 
-  /// Positions are from home from now on: what was counted as 0 is `origin`. The axis does not move by it.
+  /// From now on positions count from home: the former 0 is `origin`. The axis does not move.
   constexpr void set_home(std::int64_t origin) {
     counter_.shift(origin);
     telemetry_.encoder_counts += origin;
@@ -145,13 +146,13 @@ class Axis {
     if (is_closed_loop_ && pitch_.is_on()) pitch_.shift(origin);
     telemetry_.homed = true;
   }
-  /// Nothing is known of where the axis is, but of how far it moves.
+  /// The position is unknown from now on; only changes of it are known.
   constexpr void forget_home() { telemetry_.homed = false; }
 
-  /// The encoder's counter in the last step.
+  /// Encoder counter of the last step.
   constexpr std::uint32_t encoder_reading() const { return counter_.last_reading(); }
-  /// Before a step that comes late: the travel of the periods that were lost is nobody's surprise. The reference goes
-  /// along, so that a stop begins from where the axis is, at the speed that it has.
+  /// Call it before a step that is late: the travel of the lost periods does not count as an error. The reference moves
+  /// along, so that a stop begins at the axis's position and speed.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) {
     if (!telemetry_.enabled || !encoder.valid || !is_synchronised_) return;
     const std::int64_t missed = counter_.counts_at(encoder.counts) - counter_.counts() - telemetry_.encoder_travel;
@@ -161,7 +162,7 @@ class Axis {
     if (is_closed_loop_ && pitch_.is_on()) pitch_.shift(missed);
   }
 
-  /// What a reading of the encoder means in this axis's counts.
+  /// Position of an encoder reading in this axis's counts.
   constexpr std::int64_t counts_at(std::uint32_t reading) const { return counter_.counts_at(reading); }
 
   /// Velocity reference, mm/s (m/s), limited to the velocity limit; 0 slows down to standstill. False while disabled.
@@ -174,7 +175,7 @@ class Axis {
     return true;
   }
 
-  /// Stops a jog in time to stand within these counts: before each step(). Moves are planned to end inside.
+  /// Stops a jog in time to end within these counts; call it before each step(). Moves are planned to end inside.
   constexpr void keep_inside(std::int64_t min_counts, std::int64_t max_counts) {
     if (generator_.mode() != MotionMode::jog) return;
     const Increment velocity = generator_.jog_profile().run_out_velocity();
@@ -185,35 +186,34 @@ class Axis {
     if (room <= stopping_.counts(velocity, delay)) generator_.jog(0);
   }
 
-  /// Counts, from the velocity limit: where no end of travel is as near, keep_inside() has nothing to do.
+  /// Counts, from the velocity limit: if no end of travel is closer, keep_inside() does nothing.
   constexpr std::int64_t farthest_stop() const { return farthest_stop_; }
 
   /// Slows down to standstill within the limits.
   constexpr void stop() { generator_.stop(); }
 
-  /// The stops to come, until the loop opens, have the deceleration of faults.
+  /// All further stops, until the loop opens, use the fault deceleration.
   constexpr void brake_hard() { generator_.brake_hard(); }
 
-  /// The same after step_with(): takes the whole reference over.
+  /// The same after step_with(): continues with the whole reference.
   constexpr void stop_interpolated() { generator_.stop_from(preview_.newest()); }
 
-  /// Where the reference of the table leads, kPreviewSamples from now: what is asked of the axis next goes on from
-  /// here.
+  /// Where the table's reference will be kPreviewSamples from now; the next command to the axis starts from there.
   constexpr CountPosition leading() const {
     CountPosition leading = preview_.leading();
     leading.advance(-backlash_.offset(kPreviewSamples) - pitch_.offset(kPreviewSamples));
     return leading;
   }
 
-  /// The plan of a move from where the reference stands. Divides: for the background, not for the control interrupt.
+  /// Plans a move from the present reference. Divides: for the background, not for the control interrupt.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
-    // A difference of positions has 64 bits; no reference stands as far out as this.
+    // The difference of positions needs 64 bits; no reference is that far away.
     constexpr std::int64_t kFarthestTarget = std::int64_t{1} << 62;
     if (target.counts > kFarthestTarget || target.counts < -kFarthestTarget) return {{}, Refusal::move_too_long};
     return plan_move(target - leading(), limits_);
   }
 
-  /// Likewise, of a move by so many counts.
+  /// The same for a move by this many counts.
   constexpr MovePlanResult plan_move_by(std::int64_t counts, std::int32_t share_of_velocity = kWholeVelocity) const {
     MotionLimits limits = limits_;
     if (share_of_velocity < kWholeVelocity) limits.velocity = limits.velocity / kWholeVelocity * share_of_velocity;
@@ -221,24 +221,25 @@ class Axis {
     return plan_move(CountPosition::at(counts), limits);
   }
 
-  /// Starts a plan made while the reference was at rest, as it must still be. False otherwise, or while disabled.
+  /// Starts a plan made while the reference was at rest; it must still be at rest. Returns false otherwise, or while
+  /// disabled.
   constexpr bool start(const MovePlan& plan) { return telemetry_.enabled && generator_.start(plan); }
 
-  /// The reference, and what of it is still in the preview, has come to rest.
+  /// The reference, including its preview, is at rest.
   constexpr bool is_at_rest() const {
     return generator_.at_rest() && preview_.position() == preview_.leading() && !backlash_.is_crossing() &&
            !pitch_.is_crossing();
   }
 
-  /// One control period with the axis's own reference. The encoder's reading comes from outside where several axes are
-  /// read at one instant.
+  /// One control period with the axis's own reference. The caller gives the encoder reading if several axes are read at
+  /// one instant.
   constexpr const AxisTelemetry<Scalar>& step(const hal::EncoderReading& encoder) {
     return follow(encoder, telemetry_.enabled ? generator_.next() : 0);
   }
   constexpr const AxisTelemetry<Scalar>& step() { return step(hal_.encoder().read()); }
 
-  /// The same with an increment on top, for kPreviewSamples from now, that comes from an interpolator which coordinates
-  /// several axes; |increment| < 2^61.
+  /// The same plus an increment for kPreviewSamples from now, from an interpolator that coordinates several axes;
+  /// |increment| < 2^61.
   constexpr const AxisTelemetry<Scalar>& step_with(Increment increment, const hal::EncoderReading& encoder) {
     return follow(encoder, telemetry_.enabled ? increment + generator_.next() : 0);
   }
@@ -252,7 +253,7 @@ class Axis {
   /// Travel of the whole reference in the newest sample, kPreviewSamples ahead.
   constexpr Increment newest_increment() const { return preview_.newest(); }
 
-  /// The reference without what compensation of backlash and pitch added to it: where the table is wanted.
+  /// The reference without the offsets of backlash and pitch compensation: the wanted position of the table.
   constexpr CountPosition table_reference() const {
     CountPosition table = table_of_motor();
     table.advance(-pitch_.offset(0));
@@ -384,14 +385,14 @@ class Axis {
     return Traits::times(reading.code, parameters_.tachometer_gain) - parameters_.tachometer_offset;
   }
 
-  /// Latches the first fault, and opens the loop unless that is somebody else's to decide. Always false.
+  /// Latches the first fault, and opens the loop unless the caller decides that. Always returns false.
   [[gnu::noinline]] constexpr bool lose(AxisFault fault) {
     if (decides_on_sensors_ || !telemetry_.enabled) return latch(fault);
     if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
     return false;
   }
 
-  /// Latches the first fault and opens the loop. Always false, for the caller to return.
+  /// Latches the first fault and opens the loop. Always returns false, for the caller to return.
   constexpr bool latch(AxisFault fault) {
     if (telemetry_.fault == AxisFault::none) telemetry_.fault = fault;
     disable();
@@ -418,7 +419,7 @@ class Axis {
   bool decides_on_sensors_ = true;
   bool is_open_loop_ = false;
   bool is_closed_loop_ = false;  ///< enabled, and not in open loop
-  bool is_plain_loop_ = false;   ///< likewise, and nothing is added to the reference but backlash's share
+  bool is_plain_loop_ = false;   ///< the same, and only backlash compensation changes the reference
   Scalar excitation_V_{};
   BacklashCrossing backlash_;
   ControlFilters<Scalar> filters_;

@@ -23,7 +23,7 @@ constexpr bool is_valid(const TravelHarmonic<Scalar>& harmonic) {
           harmonic.turns_per_count > 0 && harmonic.turns_per_count < kOneCount / 2);
 }
 
-/// Only what is switched on must make sense.
+/// Checks only what is switched on.
 template <typename Scalar>
 constexpr Refusal check_compensation(const CompensationParameters<Scalar>& c) {
   if (c.cogging_on)
@@ -37,7 +37,7 @@ constexpr Refusal check_compensation(const CompensationParameters<Scalar>& c) {
   const auto is_crossing_time = [](std::int32_t samples) { return samples >= 1 && samples <= CrossingRamp::kLongest; };
   if (c.pitch.on && !is_crossing_time(c.pitch.crossing_samples)) return Refusal::pitch_crossing;
   if (!c.backlash.on) return Refusal::none;
-  constexpr Increment kWidest = kOneCount << 10;  // a scalar of fixed point holds it
+  constexpr Increment kWidest = kOneCount << 10;  // fits a fixed-point scalar
   if (c.backlash.gap <= 0 || c.backlash.gap >= kWidest || c.backlash.wind_up < 0 || c.backlash.wind_up >= kWidest)
     return Refusal::backlash;
   return is_crossing_time(c.backlash.crossing_samples) ? Refusal::none : Refusal::backlash_crossing;
@@ -58,7 +58,7 @@ template <typename Scalar>
 constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
   if (p.motion.velocity != 0 || p.motion.acceleration != 0 || p.motion.jerk != 0) return p.motion;
   using parameter_check::motion;
-  // What is out of range is so here, too.
+  // A value out of range is refused here, too.
   const Increment hard = motion(p.fault_deceleration, p.encoder_resolution, p.sample_period_s, 2);
   const Increment fault_deceleration =
       p.fault_deceleration > p.acceleration_limit && hard == 0 ? kMostMotion + 1 : hard;
@@ -68,7 +68,7 @@ constexpr MotionLimits motion_limits(const AxisParameters<Scalar>& p) {
           .fault_deceleration = fault_deceleration};
 }
 
-/// The first thing that is wrong.
+/// The first error.
 template <typename Scalar>
 constexpr Refusal check(const AxisParameters<Scalar>& p) {
   using Traits = ScalarTraits<Scalar>;
@@ -112,7 +112,7 @@ constexpr Refusal check_sequence(const DriveSequenceParameters& s) {
   return is_sound && (!s.ready_input || s.amplifier_wait > 0) ? Refusal::none : Refusal::amplifier_ready;
 }
 
-/// Every monitor must have thresholds, and none so high that it would not protect.
+/// Every monitor needs thresholds, and none may be so high that it does not protect.
 template <typename Scalar>
 constexpr Refusal check_monitors(const AxisParameters<Scalar>& p) {
   const monitor_ceilings::Scaled<Scalar> scaled(p);

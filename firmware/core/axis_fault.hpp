@@ -1,4 +1,4 @@
-// What stops an axis. Numbers are permanent: a fault keeps its number for ever, and a number is never given again.
+// Faults that stop an axis. Numbers are permanent and never reused.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ enum class AxisFault : std::uint8_t {
   tachometer_invalid = 2,
   control_signal_not_a_number = 3,
   dac_write_failed = 4,
-  parameters_missing = 5,  ///< enable was asked for before parameters were accepted
+  parameters_missing = 5,  ///< enable was requested before parameters were accepted
   following_error = 6,
   encoder_tachometer_disagreement = 7,
   encoder_jump = 8,

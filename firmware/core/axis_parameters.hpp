@@ -1,4 +1,4 @@
-// Everything that one axis is told: plain values, checked once, before they are used.
+// All parameters of one axis: plain values, checked once, before they are used.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct AxisParameters {
   Scalar encoder_resolution{};    ///< dx, mm (m) a count, > 0
   Scalar dac_resolution_V{};      ///< du, > 0
   Scalar dac_limit_V{};           ///< output range is -limit..+limit; 2 du .. 2^23 du
-  bool tachometer_fitted = true;  ///< false: the estimate rests on the encoder alone
+  bool tachometer_fitted = true;  ///< false: the estimate uses the encoder only
   Scalar tachometer_gain{};       ///< rad/s (m/s) a code
   Scalar tachometer_offset{};     ///< rad/s (m/s) at code 0, subtracted
 
@@ -46,9 +46,9 @@ struct AxisParameters {
   Scalar velocity_limit{};      ///< of references, mm/s (m/s)
   Scalar acceleration_limit{};  ///< mm/s^2 (m/s^2)
   Scalar jerk_limit{};          ///< mm/s^3 (m/s^3)
-  Scalar fault_deceleration{};  ///< of the ramp that a fault makes; up to acceleration_limit: as that
-  /// The four as increments, where the scalar cannot hold them closely enough: fixed point at a fast control rate has
-  /// a few steps for a jerk limit. Zero: made of the scalars.
+  Scalar fault_deceleration{};  ///< of the ramp after a fault; at least acceleration_limit
+  /// These four as increments, if the scalar's resolution is too coarse: fixed point at a fast control rate resolves a
+  /// jerk limit into a few steps only. Zero: computed from the scalars.
   MotionLimits motion{};
 
   FilterParameters<Scalar> filters{};             ///< notch, low-pass; of the feedback and of reference feed-forward

@@ -1,4 +1,4 @@
-// What one control period saw and did.
+// Measurements and outputs of one control period.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,23 @@ struct AxisSample {
   Scalar tachometer_velocity{};     ///< calibrated reading; 0 without a tachometer
   Scalar reference_velocity{};      ///< wref(k), eq. (52)
   Scalar position_error{};          ///< xref(k) - x_hat(k)
-  std::int32_t dac_code = 0;        ///< what the converter was given
+  std::int32_t dac_code = 0;        ///< output of the converter
 };
 
-/// Plain data, filled anew by every step.
+/// Plain data, rewritten by every step.
 template <typename Scalar>
 struct AxisTelemetry : AxisSample<Scalar> {
   std::int64_t encoder_counts = 0;
   std::int32_t encoder_travel = 0;  ///< counts since the last sample
   CountPosition reference{};        ///< xref(k), counts
-  Scalar tracking_error{};          ///< xref(k) less the encoder's reading, whatever the estimate says; mm (m)
+  Scalar tracking_error{};          ///< xref(k) minus the encoder reading, independent of the estimate; mm (m)
   Scalar friction_V{};              ///< feed-forward of friction and cogging contained in the control signal
-  Scalar output_V{};                ///< what the converter was given, as a voltage
-  Scalar feedback_V{};              ///< what of it answers errors of position and speed: no feed-forward
+  Scalar output_V{};                ///< output of the converter, as a voltage
+  Scalar feedback_V{};              ///< its part from errors of position and speed, without feed-forward
   Scalar control_V{};               ///< u(k) before limits and rounding
   bool saturated = false;           ///< u(k) was beyond the converter's range
   bool enabled = false;
-  bool homed = false;  ///< encoder_counts are from home, not from where the axis happened to be at power-up
+  bool homed = false;  ///< encoder_counts are from home, not from the position at power-up
   AxisFault fault = AxisFault::none;
 };
 

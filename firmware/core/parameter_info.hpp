@@ -1,4 +1,4 @@
-// What is known of one parameter: its identity, what values it may take, and what it means.
+// Description of one parameter: identity, permitted values, meaning.
 #pragma once
 
 #include <bit>
@@ -16,18 +16,18 @@ enum class ParameterChange : std::uint8_t { any_time = 0, while_disabled = 1 };
 
 /// One row of the table (app/parameters/parameter_table.hpp).
 struct ParameterInfo {
-  std::uint16_t id;  ///< 1..4095, permanent: of a parameter that goes, the id is never given to another
+  std::uint16_t id;  ///< 1..4095, permanent: the id of a removed parameter is never reused
   ParameterScope scope;
   std::string_view name;  ///< "group.name", without the axis
   ParameterType type;
   std::string_view unit;         ///< "1" for a pure number, "" for a switch
-  std::string_view linear_unit;  ///< of a linear drive, whose travel is in m and whose effort is in N
+  std::string_view linear_unit;  ///< of a linear drive, with travel in m and force in N
   float minimum, maximum, initial;
   ParameterChange change;
   std::string_view doc;  ///< one line
 };
 
-/// What of a row decides whether a value is accepted: all that the board itself needs.
+/// The part of a row that decides whether a value is accepted: all that the board needs.
 struct ParameterRule {
   std::uint16_t id;
   ParameterType type;
@@ -43,7 +43,7 @@ enum class ValueRefusal : std::uint8_t {
   above_maximum = 3,
   not_whole = 4,
   rate_disagrees = 5,  ///< drive.sample_period is not 1 / control.rate
-  refused_by_core = 6  ///< for a Refusal: the parameter does not go with the others of its axis
+  refused_by_core = 6  ///< for a Refusal: the parameter contradicts others of its axis
 };
 
 constexpr ValueRefusal check_value(const ParameterRule& rule, float value) {

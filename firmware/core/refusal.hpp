@@ -1,12 +1,12 @@
-// Why the core says no: one vocabulary for parameters, limits and moves.
+// Reasons for which the core refuses parameters, limits and moves.
 #pragma once
 
 #include <cstdint>
 
 namespace firmware {
 
-/// The low twelve bits are the id of the parameter that the refusal is about; 0: it is about none. What a monitor's
-/// declaration refuses needs no name here (supervision/monitored_faults.hpp).
+/// The low twelve bits are the id of the parameter concerned; 0: none. Refusals by a monitor's declaration have no name
+/// here (supervision/monitored_faults.hpp).
 enum class Refusal : std::uint16_t {
   none = 0,
   sample_period = 17,               ///< not above 0

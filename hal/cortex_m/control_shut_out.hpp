@@ -1,4 +1,4 @@
-// Keeps every interrupt out for a moment.
+// Disables all interrupts for a short time.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,11 @@
 namespace hal::cortex_m {
 
 #ifdef AXIS_REGISTERS_ANSWERED
-/// The test's; see register.hpp.
+/// For tests; see register.hpp.
 void answer_shut_out(bool begins);
 #endif
 
-/// While one lives no interrupt but faults and NMI runs; they nest.
+/// While an object exists, no interrupt except faults and NMI runs; objects nest.
 class ControlShutOut {
  public:
 #ifdef AXIS_REGISTERS_ANSWERED

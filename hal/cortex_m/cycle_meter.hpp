@@ -1,14 +1,14 @@
-// How many processor clocks a piece of work takes, from the debug unit's counter: wait states, caches and all.
+// Measures processor clocks with the debug unit's counter, including wait states and caches.
 #pragma once
 
 #include "hal/cortex_m/registers.hpp"
 
 namespace hal::cortex_m {
 
-/// `begin` and `end` belong to one interrupt; another priority may look at the results.
+/// Call `begin` and `end` in one interrupt; another priority may read the results.
 class CycleMeter {
  public:
-  /// The counter stands still until the trace unit is on (ARMv7-M ARM, C1.6.5).
+  /// The counter does not run until the trace unit is on (ARMv7-M ARM, C1.6.5).
   void start() {
     debug_monitor_control() = debug_monitor_control() | kTraceEnable;
     cycle_counter().CYCCNT = 0;
@@ -23,7 +23,7 @@ class CycleMeter {
     average_times_256_ = average_times_256_ + taken - average_times_256_ / kWeight;
   }
 
-  /// Over some 256 pieces of work.
+  /// Average over some 256 measurements.
   std::uint32_t average() const { return average_times_256_ / kWeight; }
   std::uint32_t worst() const { return worst_; }
 

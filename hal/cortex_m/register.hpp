@@ -1,5 +1,5 @@
-// One register of the chip: on the target a plain volatile word. Where a test answers for the chip
-// (AXIS_REGISTERS_ANSWERED), each access goes to it, with the address that the processor would have put on its bus.
+// One register of the chip: on the target a volatile word. In tests that emulate the chip (AXIS_REGISTERS_ANSWERED),
+// each access goes to the test, with the address that the processor would have put on its bus.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace hal::cortex_m {
 std::uint32_t answer_read(std::uintptr_t address, std::size_t size);
 void answer_write(std::uintptr_t address, std::size_t size, std::uint32_t value);
 
-/// Behaves as a volatile Word does; what lies at its own address is never touched.
+/// Behaves as a volatile Word; the memory at its own address is never used.
 template <typename Word>
 class AnsweredRegister {
  public:

@@ -1,4 +1,4 @@
-// Lets the processor rest.
+// Puts the processor to sleep.
 #pragma once
 
 namespace hal::cortex_m {

@@ -8,24 +8,24 @@
 
 namespace hal::pc {
 
-/// What is broken now. All at once is possible; zero and false are sound.
+/// Present defects. All may occur at once; zero and false mean no defect.
 struct AxisDefects {
-  bool encoder_dead = false;          ///< its wires are cut: the counter stands still, and nobody notices
-  bool encoder_reported_bad = false;  ///< the same, but the input's monitor notices
+  bool encoder_dead = false;          ///< its wires are cut: the counter does not move, undetected
+  bool encoder_reported_bad = false;  ///< the same, but the input's monitor detects it
   bool encoder_swapped = false;       ///< both channels are interchanged: it counts the other way
   std::int32_t encoder_noise = 0;     ///< counts, evenly spread over +-noise at every reading
-  std::int32_t encoder_lost = 0;      ///< counts that have gone missing
+  std::int32_t encoder_lost = 0;      ///< lost counts
   bool tachometer_dead = false;       ///< reads 0
   bool tachometer_reversed = false;
   std::int32_t tachometer_offset = 0;  ///< codes
   bool motor_reversed = false;         ///< its leads are swapped
   bool dac_stuck = false;              ///< stays at dac_stuck_code
   std::int32_t dac_stuck_code = 0;
-  bool dac_unhealthy = false;         ///< its registers, read back, are not as they were set
+  bool dac_unhealthy = false;         ///< its registers, read back, differ from their setting
   bool blocked = false;               ///< nothing moves
-  bool drive_faulted = false;         ///< the amplifier gives no current, and says so
-  bool unready = false;               ///< the amplifier's ready contact is open, or its wire is
-  bool brake_stuck = false;           ///< it does not let go
+  bool drive_faulted = false;         ///< the amplifier gives no current, and reports it
+  bool unready = false;               ///< the amplifier's ready contact or its wire is open
+  bool brake_stuck = false;           ///< it does not release
   std::int32_t amplifier_offset = 0;  ///< codes that it adds to its command while it drives
   bool positive_end_reached = false;
   bool negative_end_reached = false;
@@ -109,7 +109,7 @@ class FaultyAxis {
       apply();
     }
     bool is_on() const { return is_on_; }
-    /// The stop relay takes the brake's current as it takes the enable.
+    /// The stop relay removes the current of the brake as well as the enable.
     void apply() {
       axis_.sound_.drive_enable().set(drives());
       axis_.brake_.set_released(is_brake_released_ && axis_.is_powered_ && !axis_.defects.brake_stuck);
@@ -149,7 +149,7 @@ class FaultyAxis {
     enable_.apply();
   }
 
-  /// Lets the machine run, with the defects that act on it.
+  /// Advances the machine with the defects that act on it.
   void advance(double duration_s) {
     enable_.apply();
     if (defects.dac_stuck || defects.amplifier_offset != 0) dac_.write(dac_.commanded());
@@ -161,7 +161,7 @@ class FaultyAxis {
   }
 
  private:
-  /// Something gives way for a few milliseconds, then nothing moves.
+  /// Something slips for a few milliseconds, then nothing moves.
   void block(double x, double w, double duration_s) {
     constexpr double kLeft = 0.6, kStanding = 0.01;  // of the speed a period later; rad/s (m/s)
     const double slowed = std::abs(w) < kStanding ? 0.0 : kLeft * w;

@@ -13,7 +13,7 @@
 
 namespace hal::pc {
 
-/// What is wired to the board besides the drive itself.
+/// Further hardware that is connected to the board.
 struct AxisWiring {
   /// Tachometer A/D converter, rad/s (m/s) a code: 16 bits over -512..+512 rad/s. Far below the paper's noise of 0.22
   /// rad/s, so the model's noise variance stays what it says.
@@ -23,15 +23,16 @@ struct AxisWiring {
   double home = std::numeric_limits<double>::quiet_NaN();  ///< home switch: actuated at and beyond it; NaN: none
   double index_spacing = 0.0;  ///< travel from one index pulse to the next, mm (m); 0: none is wired
   double index_offset = 0.0;   ///< travel at which one of them lies
-  double ready_after_s = 0.0;  ///< of a FaultyAxis: from the enable, at which it drives, until the amplifier says so
-  BrakeWiring brake{};         ///< of a FaultyAxis
+  double ready_after_s =
+      0.0;  ///< of a FaultyAxis: time from the enable, at which it drives, until the amplifier reports ready
+  BrakeWiring brake{};  ///< of a FaultyAxis
 };
 
-/// Satisfies AxisHal; limits() satisfies LimitInputs. The plant is the caller's, who also lets its time pass.
+/// Satisfies AxisHal; limits() satisfies LimitInputs. The caller owns the plant and advances its time.
 class SimulatedAxis {
  public:
-  /// Takes the current away from the drive, as a board does at reset. Throws std::invalid_argument for a drive whose
-  /// description lacks the converter's or the encoder's resolution: then there are no codes and no counts.
+  /// Removes the current from the drive, as a board does at reset. Throws std::invalid_argument for a drive without a
+  /// resolution of converter or encoder: codes and counts are then undefined.
   explicit SimulatedAxis(sim::Plant& plant, const AxisWiring& wiring = {})
       : encoder_{plant, wiring},
         tachometer_{plant, wiring.tachometer_resolution},
@@ -58,7 +59,7 @@ class SimulatedAxis {
         : plant_(plant), wiring_(wiring), last_turn_(turn_of(plant.encoder_counts())) {}
     EncoderReading read() { return {static_cast<std::uint32_t>(plant_.encoder_counts()), true}; }
 
-    /// Of the pulses passed since the last call the one that came last.
+    /// The last of the pulses passed since the last call.
     IndexReading read_index() {
       if (!(wiring_.index_spacing > 0.0)) return {};
       const std::int64_t turn = turn_of(plant_.encoder_counts());

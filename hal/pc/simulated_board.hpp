@@ -13,7 +13,7 @@
 
 namespace hal::pc {
 
-/// Time passes in advance() alone, which calls nothing of the board's program.
+/// Time passes in advance() only, which calls nothing of the board's program.
 template <std::size_t axes>
 class SimulatedBoardOf {
  public:
@@ -48,12 +48,12 @@ class SimulatedBoardOf {
   void end_stall() {}
   void restart() { wants_restart_ = true; }
 
-  // The world's side.
+  // The environment's side.
   std::uint32_t control_period_us() const { return control_period_us_; }
   bool wants_restart() const { return wants_restart_; }
   sim::Plant& plant(std::size_t index) { return plants_[index]; }
 
-  /// One control period of the world's time.
+  /// Advances the environment by one control period.
   void advance() {
     for (sim::Plant& plant : plants_) plant.advance(1e-6 * control_period_us_);
     clock_.advance_us(control_period_us_);

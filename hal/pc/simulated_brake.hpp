@@ -8,8 +8,8 @@
 namespace hal::pc {
 
 struct BrakeWiring {
-  double deceleration = 0.0;     ///< by which it slows the drive down beside its friction, rad/s^2 (m/s^2); 0: no brake
-  double release_time_s = 0.05;  ///< from the current on until it holds nothing
+  double deceleration = 0.0;     ///< deceleration in addition to friction, rad/s^2 (m/s^2); 0: no brake
+  double release_time_s = 0.05;  ///< from the current on until it is released
   double apply_time_s = 0.05;    ///< from the current off until it holds
 };
 

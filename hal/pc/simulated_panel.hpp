@@ -1,4 +1,4 @@
-// What the simulated board shares between its axes: time, emergency stop, supply.
+// Inputs of the simulated board that its axes share: time, emergency stop, supply.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace hal::pc {
 
-/// Simulated time, advanced by whoever runs the plants.
+/// Simulated time, advanced by the code that runs the plants.
 class SimulatedClock {
  public:
   void advance_us(std::uint32_t duration_us) { now_us_ += duration_us; }

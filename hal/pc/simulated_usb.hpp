@@ -11,7 +11,7 @@ namespace hal::pc {
 /// send, receive and is_configured are the board's end. Reports wait, they are never dropped.
 class SimulatedUsb {
  public:
-  /// As many reports as wait each way before a sender is refused.
+  /// Number of reports that wait in each direction before a sender is refused.
   explicit SimulatedUsb(std::size_t depth) : depth_(depth) {}
 
   bool send(const HidReport& report) { return configured_ && put(to_host_, report); }
@@ -21,7 +21,7 @@ class SimulatedUsb {
   bool host_send(const HidReport& report) { return configured_ && put(to_board_, report); }
   bool host_receive(HidReport& report) { return take(to_host_, report); }
   void plug_in() { configured_ = true; }
-  /// What was on its way is lost, as on a real cable.
+  /// Reports on their way are lost, as on a real cable.
   void unplug() {
     configured_ = false;
     to_host_.clear();

@@ -12,15 +12,15 @@ namespace hal::qemu {
 
 class HostStream {
  public:
-  /// `incoming`: a file to which the other program appends; what is in it already is void. `outgoing`: a FIFO. While
-  /// that is full the emulated processor stands still, and its time with it. Names are relative to the emulator's
-  /// working directory. False if one cannot be opened.
+  /// `incoming`: a file to which the other program appends; its present content is ignored. `outgoing`: a FIFO. While
+  /// that is full the emulated processor and its time stop. Names are relative to the emulator's working directory.
+  /// False if one cannot be opened.
   bool open(std::string_view incoming, std::string_view outgoing) {
     return incoming_.open(incoming.data(), incoming.size(), HostFile::Mode::read_binary) && incoming_.skip_to_end() &&
            outgoing_.open(outgoing.data(), outgoing.size(), HostFile::Mode::write_binary);
   }
 
-  /// Goes out with flush(), at the latest when there is no room for more.
+  /// Sent with flush(), at the latest when the buffer is full.
   void send(std::byte byte) {
     leaving_[leaving_count_++] = byte;
     if (leaving_count_ == leaving_.size()) flush();

@@ -1,5 +1,5 @@
-// A square wave that says that control is alive: a charge pump outside makes it the supply of the enables, so that a
-// processor that hangs, at either level, lets go of the drives.
+// A square wave that shows that control is alive: an external charge pump turns it into the supply of the enables, so
+// that a processor that hangs, at either level, disables the drives.
 #pragma once
 
 #include "hal/stm32f4/pin.hpp"
@@ -11,7 +11,7 @@ class ChargePump {
   explicit constexpr ChargePump(Pin pin) : pin_(pin) {}
   void start() { pin_.make_output(false); }
 
-  /// Once a control period, while all that must run runs: half the control rate.
+  /// Call it once per control period while everything required runs: half the control rate.
   void beat() {
     level_ = !level_;
     pin_.set(level_);

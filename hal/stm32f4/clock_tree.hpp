@@ -24,8 +24,8 @@ inline bool wait_for(Register& flags, std::uint32_t mask, std::uint32_t wanted) 
 
 }  // namespace clock_setup
 
-/// Every peripheral and every clock as after a reset, whatever ran before: the ROM's loader leaves the PLL on, and its
-/// registers cannot be written then (7.3.2). False when a clock does not answer.
+/// Resets every peripheral and clock, whatever ran before: the ROM's loader leaves the PLL on, and its registers cannot
+/// be written then (7.3.2). False when a clock does not respond.
 inline bool reset_clocks(Rcc& rcc) {
   using clock_setup::wait_for;
   const auto pulse = [](Register& resets, std::uint32_t which) {

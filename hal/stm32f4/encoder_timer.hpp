@@ -6,8 +6,8 @@
 
 namespace hal::stm32f4 {
 
-/// Channels 1 and 2 count every edge of A and B, channel 3 captures the counter at the index pulse. All 32 bits are the
-/// hardware's, so no overflow needs an interrupt.
+/// Channels 1 and 2 count every edge of A and B, channel 3 captures the counter at the index pulse. The hardware counts
+/// all 32 bits, so no overflow needs an interrupt.
 class EncoderTimer {
  public:
   explicit EncoderTimer(Timer& registers) : registers_(registers) {}

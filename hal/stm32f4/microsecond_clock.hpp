@@ -1,4 +1,4 @@
-// Microseconds from a 16-bit timer, extended to 32 bits by whoever asks often enough.
+// Microseconds from a 16-bit timer, extended to 32 bits at each call.
 #pragma once
 
 #include "hal/clock.hpp"
@@ -6,7 +6,7 @@
 
 namespace hal::stm32f4 {
 
-/// Right while now_us() is called at least every 65 ms; one caller only.
+/// Correct while now_us() is called at least every 65 ms; one caller only.
 class MicrosecondClock {
  public:
   explicit MicrosecondClock(Timer& timer) : timer_(timer) {}

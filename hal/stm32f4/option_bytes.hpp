@@ -1,5 +1,5 @@
-// What the option bytes say of the brown-out reset, which holds the chip in reset while its supply is too low. RM0090,
-// 3.6 and 3.9.6.
+// Reads the setting of the brown-out reset from the option bytes; it holds the chip in reset while its supply is too
+// low. RM0090, 3.6 and 3.9.6.
 #pragma once
 
 #include "hal/stm32f4/registers.hpp"

@@ -1,11 +1,14 @@
 #include "host/axes/circle_diagnosis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "host/axes/circle_figures.hpp"
 #include "host/dense_solutions.hpp"
+#include "host/exit_codes.hpp"
 #include "host/infer/evidence.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/statistics.hpp"
@@ -23,11 +26,11 @@ constexpr int kHats = 8;  ///< of the memory, over the angle
 constexpr double kUsualMemory_um = 5.0;
 constexpr double kPlace_um = 1000.0;  ///< of centre and radius, before the measurement
 constexpr double kLeastNoise = 0.2;   ///< rows have noise of size 1
-constexpr double kCauseOdds = 0.25;   ///< that a cause is there, before the measurement
+constexpr double kCauseOdds = 0.25;   ///< prior probability of a cause
 constexpr std::size_t kMostCauses = 10, kTried = 3;
 constexpr double kWorthTrying = -3.0;  ///< nats
-constexpr double kHopeless = 15.0;     ///< nats below all: no rival
-constexpr double kWorthSaying = 0.02;  ///< probability of what may stand in a cause's place
+constexpr double kHopeless = 15.0;     ///< nats below the total: no rival
+constexpr double kWorthSaying = 0.02;  ///< least probability of an alternative cause
 
 using Causes = std::vector<CircleCause>;
 
@@ -37,8 +40,8 @@ std::vector<RowRun> runs_of(const CircleRows& rows) {
   return runs;
 }
 
-/// Smooth functions of the angle for each sensor, the same and opposite in both directions; without the centre and the
-/// radius that they hold.
+/// Smooth functions of the angle for each sensor, equal and opposite in both directions; without their part in centre
+/// and radius.
 Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
   Memory memory;
   memory.usual = kUsualMemory_um;
@@ -73,7 +76,7 @@ Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
   return memory;
 }
 
-/// Centre and radius of every pass as every sensor sees them.
+/// Centre and radius of every pass by every sensor.
 MatrixXd places_of(const CircleRows& rows) {
   MatrixXd places = MatrixXd::Zero(rows.deviation().size(), 3 * static_cast<Index>(rows.blocks().size()));
   Index at = 0;
@@ -101,7 +104,7 @@ class CircleSearch {
     EvidenceFit fit;
     std::vector<double> probability;
     std::vector<std::vector<std::pair<std::string, double>>> instead;
-    Causes best;  ///< the most probable of all sets that were tried
+    Causes best;  ///< most probable of all sets that were tried
   };
 
   Result run() const {
@@ -142,7 +145,7 @@ class CircleSearch {
       all.segment(columns_before(causes, i), causes[i].columns.cols()) = causes[i].deviations;
     return all;
   }
-  /// Where the columns of a cause begin.
+  /// First columns of the causes.
   Index columns_before(const Causes& causes, std::size_t at) const {
     Index count = places_.cols();
     for (std::size_t i = 0; i < at; ++i) count += causes[i].columns.cols();
@@ -166,7 +169,7 @@ class CircleSearch {
     return near(a.period_mm, b.period_mm) && near(a.frequency_Hz, b.frequency_Hz);
   }
 
-  /// Everything that could be added to these, the most promising first, with what it would gain.
+  /// All causes that could be added to these, with their gain, the best first.
   std::vector<std::pair<double, CircleCause>> promising(const Evidence& evidence, const EvidenceFit& fit,
                                                         const Causes& causes, bool with_waves) const {
     std::vector<std::pair<double, CircleCause>> list;
@@ -189,7 +192,7 @@ class CircleSearch {
       add(best_wave(rows_, left, WaveKind::vibration, axis));
     }
     std::ranges::stable_sort(list, [](const auto& a, const auto& b) { return a.first > b.first; });
-    // Of one kind the best alone.
+    // Only the best of each kind.
     Causes seen;
     std::erase_if(list, [&](const auto& entry) {
       if (std::ranges::any_of(seen, [&](const CircleCause& one) {
@@ -214,7 +217,7 @@ class CircleSearch {
     }
   }
 
-  /// Causes added one by one while each gains, without a memory that would take their place.
+  /// Adds causes one by one while each gains, without a memory that would absorb them.
   Causes forward() const {
     Causes causes;
     EvidenceFit fit = bare_.fit(columns(causes), deviations(causes), {.correlation = 0.5, .sizes = bare_.no_memory()});
@@ -245,7 +248,7 @@ class CircleSearch {
     return full_.fit(columns(causes), deviations(causes), {.correlation = near.correlation, .sizes = near.sizes});
   }
 
-  /// Each cause against nothing and against what else could stand there, with the memory.
+  /// Probability of each cause against none and against its alternatives, with the memory.
   Result judged(const Causes& causes) const {
     Result result{causes, full_.fit(columns(causes), deviations(causes)), {}, {}, causes};
     const double all = result.fit.log_evidence + prior(causes);
@@ -301,7 +304,7 @@ MatrixXd at_samples(const std::vector<CirclePass>& passes, const CircleCause& ca
 
 double range_of(const VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
-/// Of waves and spikes the largest height.
+/// Largest height of waves and spikes.
 double amount_of(const CircleCause& cause, const VectorXd& factors, double um) {
   if (cause.period_mm || cause.frequency_Hz) return 0.5 * um;
   if (cause.kind == "reversal_spike") return um;
@@ -336,7 +339,8 @@ CircleFinding finding_of(const CircleRows& rows, const CircleSearch& search, con
   return found;
 }
 
-/// Less than a step of the encoders where nothing else sees it, or than a twentieth of the whole deviation, is minor.
+/// A cause is minor below one step of the encoders, if no other sensor shows it, or below a twentieth of the whole
+/// deviation.
 double least_um(const std::vector<CirclePass>& passes) {
   constexpr double kMinorShare = 0.05;
   double deviation = 0.0, step = 0.0;
@@ -395,7 +399,9 @@ CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes) {
   return diagnosis;
 }
 
-void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model) {
+void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model, const std::string& path) {
+  if (model.name != "x" && model.name != "y")
+    throw Failure(ExitCode::usage, fmt::format("{}: expected a model of axis x or y, not of \"{}\"", path, model.name));
   if (model.data.kind != sim::DriveKind::rotary) return;
   for (auto* const list : {&diagnosis.causes, &diagnosis.minor})
     for (CircleFinding& found : *list)

@@ -15,13 +15,14 @@ namespace host {
 struct CircleFinding {
   CircleCause cause;
   Eigen::VectorXd factors;
-  /// What this cause alone adds to the bi-directional circular deviation: largest less smallest radial deviation.
+  /// Contribution of this cause alone to the bi-directional circular deviation: largest minus smallest radial
+  /// deviation.
   double um = 0.0;
   std::array<double, 2> ci95{};
   double amount = 0.0;                   ///< in the cause's own unit; of waves and spikes the largest amplitude
   std::optional<double> period_turns{};  ///< of the motor
-  double probability = 0.0;              ///< that it is there, against nothing and against everything else in its place
-  std::vector<std::pair<std::string, double>> instead;  ///< what may stand there instead, with its probability
+  double probability = 0.0;              ///< its probability, against none and against all alternatives
+  std::vector<std::pair<std::string, double>> instead;  ///< alternative causes with their probabilities
 };
 
 /// Of ISO 230-4, from the outer sensor where there is one, otherwise from the encoders; means over 1 degree.
@@ -37,19 +38,20 @@ struct BidirectionalFigures {
 struct CircleDiagnosis {
   std::vector<CirclePass> passes;
   std::vector<CircleFinding> causes;  ///< the largest first
-  std::vector<CircleFinding> minor;   ///< likewise: a twentieth of the deviation or less
+  std::vector<CircleFinding> minor;   ///< the same, for at most a twentieth of the deviation
   std::vector<Unseen> unseen;
-  double rest_um = 0.0;                      ///< root mean square of what no cause takes, beyond noise
+  double rest_um = 0.0;                      ///< RMS of what no cause explains, beyond noise
   std::vector<CircleFigures> figures;        ///< of each pass
   std::optional<BidirectionalFigures> both;  ///< the worst feed; absent with one direction only
 };
 
 CircleDiagnosis diagnose_circle(std::vector<CirclePass> passes);
 
-/// Says periods of the model's axis in turns of its motor, too.
-void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model);
+/// Also gives the periods of the model's axis in turns of its motor. Throws Failure(usage), naming `path`, for a model
+/// of another axis than x or y.
+void tell_turns(CircleDiagnosis& diagnosis, const sim::DriveDescription& model, const std::string& path);
 
-/// Radial deviation that a cause makes along a pass, um, at its samples.
+/// Radial deviation by a cause along a pass, um, at its samples.
 std::vector<double> share_along(const CircleFinding& finding, const CirclePass& pass);
 
 /// `axis-circle/1`.

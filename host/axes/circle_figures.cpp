@@ -12,7 +12,7 @@ namespace host {
 namespace {
 
 constexpr std::size_t kBins = 360;
-using Curve = std::array<double, kBins>;  ///< radial deviation by degree, um; NaN where nothing was seen
+using Curve = std::array<double, kBins>;  ///< radial deviation by degree, um; NaN without a sample
 
 const std::vector<double>& seen(const CirclePass& pass) {
   return pass.outer_um.empty() ? pass.encoder_um : pass.outer_um;

@@ -1,4 +1,4 @@
-// The terms of ISO 230-4, of turns of a circle.
+// Terms of ISO 230-4 for turns of a circle.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace host {
 
 std::vector<CircleFigures> circle_figures(const std::vector<CirclePass>& passes);
 
-/// Of the feed at which both directions differ most; nothing without both at one feed.
+/// At the feed with the largest difference of the directions; empty without both at one feed.
 std::optional<BidirectionalFigures> bidirectional_figures(const std::vector<CirclePass>& passes);
 
 }  // namespace host

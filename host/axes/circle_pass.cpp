@@ -16,8 +16,8 @@ namespace host {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kLeastTurn = 0.8 * kTurn;  ///< of a pass: one turn with where it speeds up and slows down
-constexpr double kMostTurns = 3.0;          ///< of a pass: further ones show nothing new
+constexpr double kLeastTurn = 0.8 * kTurn;  ///< of a pass: one turn including acceleration and deceleration
+constexpr double kMostTurns = 3.0;          ///< of a pass: more add nothing
 constexpr std::size_t kMostPasses = 12;
 constexpr double kSteady = 0.02;    ///< relative change of the feed within a pass
 constexpr double kOnCircle = 0.02;  ///< of the radius
@@ -123,7 +123,7 @@ struct Circle {
   double off(double px, double py) const { return std::hypot(px - x, py - y) - radius; }
 };
 
-/// Least squares (Kasa) on the points that `keep` names.
+/// Least squares (Kasa) of the points in `keep`.
 Circle fit_circle(const std::vector<double>& x, const std::vector<double>& y, const std::vector<std::size_t>& keep) {
   const double x0 = x[keep.front()], y0 = y[keep.front()];
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
@@ -139,7 +139,7 @@ Circle fit_circle(const std::vector<double>& x, const std::vector<double>& y, co
   return {x0 + cx, y0 + cy, std::sqrt(std::max(0.0, found(2) + cx * cx + cy * cy))};
 }
 
-/// Points before and after the circle are left out, round by round.
+/// Fits a circle repeatedly, each time without the points before and after it.
 Circle find_circle(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<std::size_t> keep(x.size());
   for (std::size_t k = 0; k < keep.size(); ++k) keep[k] = k;
@@ -167,7 +167,7 @@ struct Stretch {
   std::size_t first, end;
 };
 
-/// Where the point turns on the circle at a steady speed, long enough.
+/// Ranges in which the point moves on the circle at a steady speed, long enough.
 std::vector<Stretch> steady_stretches(const PlaneRecord& plane, const Circle& circle,
                                       const std::vector<double>& angle) {
   const auto half = static_cast<std::size_t>(std::max(2.0, 0.5 * kSpeedWindow_s / plane.period_s));
@@ -179,7 +179,7 @@ std::vector<Stretch> steady_stretches(const PlaneRecord& plane, const Circle& ci
   std::size_t k = half;
   const std::size_t last = angle.size() - half;
   while (k < last) {
-    // A steady speed is one that is still there a little later.
+    // A steady speed is the same a little later.
     const double now = speed(k);
     const std::size_t later = k + 2 * half;
     const auto holds = [&](std::size_t at) {
@@ -222,7 +222,7 @@ CirclePass pass_of(const PlaneRecord& plane, const Circle& circle, const std::ve
   pass.outer = !plane.ballbar.empty()                   ? OuterSensor::ballbar
                : !plane.x2.empty() && !plane.y2.empty() ? OuterSensor::scales
                                                         : OuterSensor::none;
-  // A ballbar shows its length, or what it deviates by.
+  // A ballbar gives its length or its deviation.
   const double bar =
       plane.ballbar.empty() || std::abs(median(plane.ballbar)) < 0.5 * circle.radius ? 0.0 : circle.radius;
   double late = 0.0;

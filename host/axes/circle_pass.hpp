@@ -8,23 +8,23 @@
 
 namespace host {
 
-/// What sees the table itself, beside the motors' encoders.
+/// Sensor at the table, in addition to the motors' encoders.
 enum class OuterSensor { none, scales, ballbar };
 
-/// One stretch at a steady feed in one direction; rows follow one another without a gap.
+/// One range at a steady feed in one direction, with consecutive rows.
 struct CirclePass {
   std::string source;  ///< the record's name
   bool is_ccw = true;
   double feed_mm_s = 0.0;
   double radius_mm = 0.0;
   double period_s = 0.0;
-  double lag_s = 0.0;     ///< by which the encoders follow the references along the circle; 0 without references
+  double lag_s = 0.0;     ///< by which the encoders lag the references along the circle; 0 without references
   double count_um = 0.0;  ///< the encoders' step
   OuterSensor outer = OuterSensor::none;
   bool has_reference = false;
-  std::vector<double> t_s, angle_rad;  ///< from +X, counter-clockwise, as the encoders stand
+  std::vector<double> t_s, angle_rad;  ///< from +X, counter-clockwise, by the encoders
   std::vector<double> encoder_um;      ///< radial deviation of the encoders
-  std::vector<double> outer_um;        ///< of the outer sensor; empty where there is none
+  std::vector<double> outer_um;        ///< of the outer sensor; empty without one
 
   double turn_rad_s() const { return feed_mm_s / radius_mm; }
   double direction() const { return is_ccw ? 1.0 : -1.0; }

@@ -1,4 +1,4 @@
-// A circle's diagnosis for people: a page, and lines for a terminal.
+// A circle's diagnosis as an HTML page and as text for a terminal.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// The circle magnified in both directions, each cause with its own picture and share, the terms of ISO 230-4, what
-/// these sensors cannot see.
+/// The circle magnified in both directions, each cause with its own figure and share, the terms of ISO 230-4, and
+/// causes that these sensors do not show.
 Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtitle);
 
 std::string circle_text(const CircleDiagnosis& diagnosis, const Terminal& terminal);

@@ -15,13 +15,13 @@ constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kRowsAPass = 800;
 constexpr double kUsual_um = 10.0;  ///< of a cause
 constexpr double kLeastNoise_um = 0.02;
-constexpr double kLeastLagAngle = 0.02;  ///< rad: below, a lag and a delay draw the same circle
+constexpr double kLeastLagAngle = 0.02;  ///< rad: below it, a lag and a delay give the same circle
 constexpr double kFirstKnot_s = 0.003, kKnotRatio = 1.6, kSpikeForms = 12.0;
 constexpr int kSpikeKnots = 7;
 
 constexpr int kLoopPowers = 5;
 
-/// Noise of rows, from their second differences.
+/// Noise of the rows, from their second differences.
 double noise_of(const Eigen::VectorXd& values) {
   std::vector<double> differences;
   for (Eigen::Index k = 2; k < values.size(); ++k)
@@ -31,14 +31,14 @@ double noise_of(const Eigen::VectorXd& values) {
 
 double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
-/// Angle since the axis turned over at its positive end, 0 to 2 pi; half of that later it turns at the other.
+/// Angle since the axis reversed at its positive end, 0 to 2 pi; at pi it reverses at the other end.
 double since_positive_end(const CirclePass& pass, std::size_t k, char axis) {
   const double end = axis == 'x' ? 0.0 : kPi / 2.0;
   const double angle = std::fmod(pass.direction() * (pass.angle_rad[k] - end), 2.0 * kPi);
   return angle < 0.0 ? angle + 2.0 * kPi : angle;
 }
 
-/// Part of an error along an axis that is radial.
+/// Radial component of an error along an axis.
 double radial_part(const CirclePass& pass, std::size_t k, char axis) {
   return axis == 'x' ? std::cos(pass.angle_rad[k]) : std::sin(pass.angle_rad[k]);
 }
@@ -87,7 +87,7 @@ CircleCause with_amount(CircleCause made, double per_um, const char* unit) {
   return made;
 }
 
-/// Feeds that differ by more than a pass' own unsteadiness.
+/// Whether feeds differ by more than the unsteadiness of a pass.
 std::vector<double> feeds_of(const std::vector<CirclePass>& passes) {
   std::vector<double> feeds;
   for (const CirclePass& pass : passes)
@@ -96,8 +96,8 @@ std::vector<double> feeds_of(const std::vector<CirclePass>& passes) {
   return feeds;
 }
 
-/// After each reversal the axis lags by a spike. `forms`: its course over the time since then; of each feed factors of
-/// its own, and of each end where `by_end`.
+/// After each reversal the axis lags by a spike. `forms`: its shape over the time since the reversal, with separate
+/// factors for each feed, and for each end if `by_end`.
 CircleCause spike(const CircleRows& rows, char axis, const std::vector<std::function<double(double)>>& forms,
                   bool by_end) {
   std::vector<CircleRows::Signature> signatures;
@@ -112,7 +112,7 @@ CircleCause spike(const CircleRows& rows, char axis, const std::vector<std::func
   return cause(rows, "reversal_spike", {axis}, signatures, false, -std::log(kSpikeForms));
 }
 
-/// Up and exponentially down; and straight lines between some times, of which none lies within one row.
+/// A rise with exponential decay, and straight lines between some times at least one row apart.
 void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& list) {
   for (const bool by_end : {false, true}) {
     for (const double decay_s : {0.004, 0.007, 0.012, 0.02, 0.035})
@@ -130,7 +130,7 @@ void add_spikes(const CircleRows& rows, char axis, std::vector<CircleCause>& lis
   }
 }
 
-/// Differences between the axes' loops. The radius of a lagging loop shrinks with its lag; of a late one it does not.
+/// Differences between the axes' loops. A lag reduces the radius, a delay does not.
 void add_servo(const CircleRows& rows, std::vector<CircleCause>& list) {
   const double feed = most(rows.passes(), feed_of), acceleration = most(rows.passes(), acceleration_of);
   const auto late = [=](const CirclePass& pass, std::size_t k) {
@@ -151,7 +151,7 @@ void add_servo(const CircleRows& rows, std::vector<CircleCause>& list) {
         with_amount(cause(rows, "delay_between_axes", "xy", {late}, false, -std::log(9.0)), ms_per_um, "ms"));
 }
 
-/// What only a sensor at the table sees.
+/// Causes that only a sensor at the table shows.
 void add_geometry(const CircleRows& rows, std::vector<CircleCause>& list) {
   const double radius = most(rows.passes(), radius_of);
   const auto outer = [&](const char* kind, const std::string& axis, const CircleRows::Signature& signature) {
@@ -262,7 +262,7 @@ CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double 
             return &pass == own ? wave(2.0 * kPi * pass.t_s[k] * value) * radial_part(pass, k, axis) : 0.0;
           });
   } else {
-    // A torque is answered through the loop, by powers of j times its frequency, which goes with the axis' speed.
+    // The loop responds to a torque: powers of j times the frequency, which is proportional to the axis's speed.
     const double top = most(rows.passes(), feed_of);
     for (int power = 0; power < (kind == WaveKind::torque_ripple ? kLoopPowers : 1); ++power)
       for (const Wave wave : waves)
@@ -288,7 +288,7 @@ CircleCause ripple_through_any_loop(const CircleRows& rows, char axis, double pe
   for (int knot = 0; knot < kKnots; ++knot)
     for (const bool is_late : {false, true})
       for (const bool is_sine : {false, true}) {
-        if (knot == 0 && is_late) continue;  // a standing force has no phase
+        if (knot == 0 && is_late) continue;  // a constant force has no phase
         signatures.emplace_back([=](const CirclePass& pass, std::size_t k) {
           const double along = radial_part(pass, k, axis), phase = 2.0 * kPi * pass.radius_mm * along / period_mm;
           const double speed = pass.feed_mm_s / top * std::sqrt(std::max(0.0, 1.0 - along * along));

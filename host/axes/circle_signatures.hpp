@@ -1,4 +1,4 @@
-// What each cause of a bad circle leaves in the radial deviation: columns of one linear model.
+// Signature of each cause in the radial deviation: columns of one linear model.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// Rows of one pass as one sensor saw it.
+/// Rows of one pass by one sensor.
 struct CircleBlock {
   std::size_t pass;
   bool is_outer;
@@ -26,9 +26,9 @@ class CircleRows {
 
   /// Of a pass and a sample, um.
   using Signature = std::function<double(const CirclePass& pass, std::size_t sample)>;
-  /// As rows, times their weights; 0 in rows of the encoders where `outer_only`.
+  /// As rows, times their weights; 0 in rows of the encoders if `outer_only`.
   Eigen::VectorXd column(const Signature& signature, bool outer_only) const;
-  /// The same for each block on its own.
+  /// The same for each block separately.
   Eigen::VectorXd block_column(const Signature& signature, const CircleBlock& block) const;
 
   const Eigen::VectorXd& deviation() const { return deviation_; }
@@ -39,7 +39,7 @@ class CircleRows {
   const Eigen::VectorXd& angle_rad() const { return angle_; }
   const Eigen::VectorXd& time_s() const { return time_; }
   bool has_outer() const { return has_outer_; }
-  /// Time that a row of a pass spans; of the fastest pass.
+  /// Duration of a row of a pass; of the fastest pass.
   double row_s(std::size_t pass) const { return static_cast<double>(samples_a_row_[pass]) * passes_[pass].period_s; }
   double row_s() const { return row_s_; }
 
@@ -54,50 +54,51 @@ class CircleRows {
   double row_s_ = 0.0;
 };
 
-/// One cause with its values of a nonlinear parameter filled in.
+/// One cause with given values of its nonlinear parameters.
 struct CircleCause {
   std::string kind, axis;  ///< axis: "x", "y", "xy"
   std::vector<CircleRows::Signature> signatures;
   bool outer_only = false;     ///< the encoders do not see it
   Eigen::MatrixXd columns;     ///< the signatures as rows
-  Eigen::VectorXd deviations;  ///< of the factors before the measurement, um
+  Eigen::VectorXd deviations;  ///< prior standard deviation of the factors, um
   double log_prior = 0.0;
   std::optional<double> period_mm, frequency_Hz;
-  /// What a factor of 1 um is in the cause's own unit: ms, um/m, ppm; empty where um it is.
+  /// Value of a factor of 1 um in the cause's own unit: ms, um/m, ppm; empty if that unit is um.
   double amount_per_um = 1.0;
   std::string amount_unit = "um";
 };
 
-/// Cycles of a wave that a row of the fastest pass may span and still show it.
+/// Cycles of a wave per row of the fastest pass up to which the row shows it.
 inline constexpr double kMostCyclesARow = 0.4;
-/// Whether the mean over rows of a pass leaves something of a wave: also as an alias, which its signature then shows.
+/// Whether the mean over a pass's rows shows a wave, also as an alias, which its signature includes.
 bool shows_through(double frequency_Hz, double row_s);
 
 enum class WaveKind { cyclic_error, torque_ripple, vibration };
 
 /// Causes without a nonlinear parameter, and reversal spikes with each of several decay times: everything that these
-/// sensors can see.
+/// sensors show.
 std::vector<CircleCause> plain_causes(const CircleRows& rows);
 
 /// A wave over the travel of an axis (value: its period, mm) or over time (frequency, Hz).
 CircleCause wave_cause(const CircleRows& rows, WaveKind kind, char axis, double value);
 
-/// Torque ripple near the loop's own frequency, where a series in the frequency does not follow the loop's answer.
+/// Torque ripple near the loop's natural frequency, where a series in the frequency does not describe the loop's
+/// response.
 CircleCause ripple_through_any_loop(const CircleRows& rows, char axis, double period_mm);
 
-/// The wave of this kind over this axis that fits what is left best, by a grid of periods or frequencies. `left`: rows
-/// times their weights.
+/// The wave of this kind over this axis that fits the residual best, on a grid of periods or frequencies. `left`: the
+/// residual's rows times their weights.
 CircleCause best_wave(const CircleRows& rows, const Eigen::VectorXd& left, WaveKind kind, char axis);
-/// The same near the wave that is there.
+/// The same near a given wave.
 CircleCause nearby_wave(const CircleRows& rows, const Eigen::VectorXd& left, const CircleCause& wave);
 
-/// Kinds that these sensors and passes cannot see or tell apart, with the reason and what would show them.
+/// Kinds that these sensors and passes do not show or separate, with the reason and the remedy.
 struct Unseen {
   std::string kind, why;
 };
 std::vector<Unseen> unseen_causes(const CircleRows& rows);
 
-/// Meaning, and what to do about it.
+/// Meaning and remedy.
 struct CauseText {
   const char *title, *next;
 };

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Waves of one kind over one axis on what is left. A rate is cycles a mm, or Hz.
+/// Searches the residual for waves of one kind over one axis. Rates are in cycles per mm, or Hz.
 class WaveSearch {
  public:
   WaveSearch(const CircleRows& rows, const Eigen::VectorXd& left, WaveKind kind, char axis)
@@ -25,7 +25,7 @@ class WaveSearch {
     }
     along_ = rows.angle_rad().array() - (axis == 'x' ? 0.0 : 0.5 * std::numbers::pi);
     along_ = along_.array().cos();
-    constexpr double kTurns = 8.0;  // fewer cycles a turn are a form of the circle
+    constexpr double kTurns = 8.0;  // fewer cycles per turn change the circle's shape
     lowest_ = over_time() ? kTurns * turn_Hz : 1.5 / radius_;
     highest_ = 0.99 * kMostCyclesARow / rows.row_s() / (over_time() ? 1.0 : feed_);
     step_ = over_time() ? 0.3 / duration_s_ : 0.15 / radius_;
@@ -55,7 +55,7 @@ class WaveSearch {
     at_ = rate;
   }
 
-  /// Of the squared error that is left: phases free by pass and sensor, or common to all.
+  /// Part of the squared residual, with free phases for each pass and sensor, or common ones.
   double taken(double rate) const {
     double sum = 0.0;
     Vector2d pull = Vector2d::Zero(), own = Vector2d::Zero();
@@ -64,7 +64,7 @@ class WaveSearch {
       if (over_time() && !shows_through(rate, rows_.row_s(block.pass))) continue;
       const double cycles = 2.0 * std::numbers::pi * rate;
       const double radius = rows_.passes()[block.pass].radius_mm;
-      // Rows are evenly spaced in time: the phase turns by as much from each to the next.
+      // Rows are equally spaced in time: the phase changes by the same angle from row to row.
       const std::complex<double> turn = std::polar(1.0, cycles * rows_.row_s(block.pass));
       std::complex<double> at = std::polar(1.0, cycles * rows_.time_s()(block.first));
       for (Index row = block.first; row < block.end; ++row) {
@@ -86,7 +86,7 @@ class WaveSearch {
   const Eigen::VectorXd& left_;
   WaveKind kind_;
   char axis_;
-  Eigen::VectorXd along_;  ///< part of an error along the axis that is radial
+  Eigen::VectorXd along_;  ///< radial component of an error along the axis
   double radius_ = 0.0, feed_ = 0.0, duration_s_ = 0.0, lowest_ = 0.0, highest_ = 0.0, step_ = 0.0;
   double best_ = -1.0, at_ = 1.0;
 };

@@ -14,7 +14,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kSteady_s = 0.3, kRest_s = 0.7;
-constexpr double kHighest_Hz = 150.0;  ///< a jerk-limited motion has nothing above
+constexpr double kHighest_Hz = 150.0;  ///< a jerk-limited motion has no content above
 constexpr double kTelling_um = 0.1;
 
 /// Speeds along a line from rest to rest, sample by sample, mm/s.

@@ -1,4 +1,5 @@
-// What two axes that follow differently make of lines and circles: the linear part, from their frequency responses.
+// Contour errors of lines and circles when two axes follow differently: the linear part, from their frequency
+// responses.
 #pragma once
 
 #include <complex>
@@ -17,23 +18,23 @@ struct ServoAxis {
   AxisController controller;
 };
 
-/// Travel over reference, as sampled.
+/// Travel over reference, sampled.
 std::complex<double> following(const ServoAxis& axis, double f_Hz);
 
-/// Errors at one feed that come from the difference of two axes; friction and noise are not in them.
+/// Errors at one feed due to the difference of two axes, without friction and noise.
 struct FeedContour {
   double feed_mm_s = 0.0;
-  double line_45_um = 0.0;  ///< largest distance from a line at 45 degrees, with its acceleration and deceleration
-  double ellipse_um = 0.0;  ///< difference of the half axes of what becomes of a circle
+  double line_45_um = 0.0;  ///< largest distance from a line at 45 degrees, including acceleration and deceleration
+  double ellipse_um = 0.0;  ///< difference between the half axes of the ellipse that a circle becomes
 };
 
 inline constexpr double kForecastRadius_mm = 35.0;  // the paper's circle, p. 1508
 
-/// `limits` in mm: lines speed up and slow down within them.
+/// `limits` in mm: acceleration along lines stays within them.
 FeedContour contour_forecast(const ServoAxis& x, const ServoAxis& y, double feed_mm_s, const ReferenceLimits& limits);
 
-/// Of a line at 45 degrees: what, made equal in both drives, would take most of the error away; empty where the error
-/// is below 0.1 um or nothing takes half of it.
+/// For a line at 45 degrees: the property whose difference between the drives causes most of the error; empty if the
+/// error is below 0.1 um or no property causes half of it.
 std::string main_difference(const ServoAxis& x, const ServoAxis& y, double feed_mm_s, const ReferenceLimits& limits);
 
 }  // namespace host

@@ -41,7 +41,7 @@ FinePlant drive_of(const AxisTask& task) {
   return task.measured ? fine_plant(task.measured->response, *task.measured->fit) : fine_plant(plant_of(task.model));
 }
 
-/// Without a tachometer where one axis has none: the estimators shall have equal sensors.
+/// Without a tachometer if one axis has none: all estimators must have equal sensors.
 std::vector<sim::DriveDescription> equal_sensors(const std::vector<AxisTask>& tasks) {
   std::vector<sim::DriveDescription> models;
   bool all = true;
@@ -54,8 +54,8 @@ std::vector<sim::DriveDescription> equal_sensors(const std::vector<AxisTask>& ta
   return models;
 }
 
-/// Variances that make every estimator the same one in travel, speed and acceleration of the table: sensors as good as
-/// the worst, disturbances (in volts) as lively as the axis that a volt accelerates least has them.
+/// Variances that make all estimators equal in travel, speed and acceleration of the table: the noise of the worst
+/// sensors, and disturbances (in volts) as fast as those of the axis with the least acceleration per volt.
 std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescription>& models,
                                             const DesignOptions& options) {
   std::vector<AxisDesign> designs;
@@ -86,8 +86,8 @@ std::vector<DesignOptions> equal_estimators(const std::vector<sim::DriveDescript
   return list;
 }
 
-/// Feed-forward of the reference velocity alone leaves what viscous friction takes, and axes differ in it: it is fed
-/// forward as friction, and every loop is that of a double integrator.
+/// Feed-forward of the reference velocity alone ignores viscous friction, which differs between axes. It is therefore
+/// fed forward as friction, and every loop is that of a double integrator.
 std::vector<sim::DriveDescription> equal_drives(std::vector<sim::DriveDescription> models,
                                                 const DesignOptions& options) {
   if (!options.zero_phase)
@@ -96,7 +96,7 @@ std::vector<sim::DriveDescription> equal_drives(std::vector<sim::DriveDescriptio
   return models;
 }
 
-/// `controlled`: the drive as the controller takes it.
+/// `controlled`: the drive in the controller's units.
 AxisLoop loop_of(const sim::DriveDescription& model, const sim::DriveDescription& controlled, DesignOptions options,
                  double bandwidth_Hz, const ControlFilterChoice& filters, const FinePlant& drive) {
   options.bandwidth_Hz = bandwidth_Hz;
@@ -127,7 +127,7 @@ struct Found {
   ControlFilterChoice filters;
 };
 
-/// The highest bandwidth that all drives keep, with the filters that allow it; that of `options` where no aim is named.
+/// The highest bandwidth for all drives, with the filters that allow it; without requirements that of `options`.
 Found best_loop(const std::vector<LoopTask>& drives, const std::vector<AxisTask>& tasks, const LoopAim& aim,
                 const DesignOptions& options) {
   if (!aim.modulus && !aim.crossover_Hz) return {{options.bandwidth_Hz, 0.0, {}}, aim.filters};

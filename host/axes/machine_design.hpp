@@ -13,11 +13,11 @@ namespace host {
 
 struct AxisTask {
   sim::DriveDescription model;
-  std::optional<AxisResponse> measured;  ///< with a fit; without it the model stands for the drive
+  std::optional<AxisResponse> measured;  ///< with a fit; without it the model is used
 };
 
 struct AxisLoop {
-  sim::DriveDescription model;  ///< as designed for: without its tachometer where another axis has none
+  sim::DriveDescription model;  ///< as designed for: without its tachometer if another axis has none
   AxisDesign design;
   ControlFilterChoice filters;
   std::optional<double> modulus;  ///< modulus margin on the measured drive, or on the model
@@ -26,17 +26,17 @@ struct AxisLoop {
 struct LoopSet {
   std::vector<AxisLoop> axes;
   std::vector<FeedContour> contour;  ///< by feed; the worst of all pairs of axes
-  std::string remaining;             ///< what of the drives makes most of that; empty where nothing stands out
+  std::string remaining;             ///< effect that causes most of that error; empty if none dominates
 };
 
 struct MachineDesign {
   LoopSet matched;         ///< equal poles of loop and estimator, equal filters and feed-forward
   LoopSet own;             ///< the best of each axis
-  std::string limited_by;  ///< why the matched loop is no faster
+  std::string limited_by;  ///< what limits the bandwidth of the matched loop
 };
 
-/// `options` and `aim` hold for every axis. Throws Failure: usage where names or sample periods do not go together,
-/// refused where no common bandwidth keeps the aim or a loop would be unstable, and what design_axis() throws.
+/// `options` and `aim` apply to every axis. Throws Failure: usage for inconsistent names or sampling periods, refused
+/// if no common bandwidth meets the requirements or a loop would be unstable, and what design_axis() throws.
 MachineDesign design_machine(const std::vector<AxisTask>& tasks, const DesignOptions& options, const LoopAim& aim);
 
 nlohmann::json machine_json(const MachineDesign& machine);

@@ -27,13 +27,7 @@ void run(const CircleArguments& arguments) {
     names += (names.empty() ? "" : ", ") + path;
   }
   host::CircleDiagnosis diagnosis = host::diagnose_circle(host::circle_passes(records));
-  for (const std::string& path : arguments.models) {
-    const sim::DriveDescription model = host::read_model(path);
-    if (model.name != "x" && model.name != "y")
-      throw host::Failure(host::ExitCode::usage,
-                          fmt::format("{}: expected a model of axis x or y, not of \"{}\"", path, model.name));
-    host::tell_turns(diagnosis, model);
-  }
+  for (const std::string& path : arguments.models) host::tell_turns(diagnosis, host::read_model(path), path);
   if (!arguments.report.empty()) host::circle_report(diagnosis, names).write(arguments.report);
   if (!arguments.json.empty()) write_json(host::circle_json(diagnosis), arguments.json);
   if (arguments.json != "-") fmt::print("{}", host::circle_text(diagnosis, host::terminal_of(stdout)));

@@ -75,7 +75,7 @@ std::string no_command(const CLI::App& app, const std::string& name);
 /// Called by a command that ran to its end but whose answer is not "done" (for example ExitCode::answer_is_no).
 void end_with(host::ExitCode code);
 
-/// What the process returns when no failure was thrown.
+/// Exit code of the process if no failure was thrown.
 int exit_status();
 
 }  // namespace axistool

@@ -54,7 +54,8 @@ void print(const host::Diagnosis& diagnosis) {
   if (diagnosis.held_back)
     fmt::print("No --validate: one of {} blocks of {:.2g} s of motion was held back for validation.\n",
                diagnosis.blocks.every, diagnosis.blocks.block_s);
-  if (!diagnosis.not_searched.empty())
+  const bool is_explained = !verdict.effects.empty() && diagnosis.after_validate <= host::kExplained;
+  if (!diagnosis.not_searched.empty() && !is_explained)  // as on the page
     fmt::print("Search incomplete (simulation budget exhausted) for: {}\n", fmt::join(diagnosis.not_searched, ", "));
   print_errors(diagnosis);
   if (diagnosis.candidates.empty()) return;

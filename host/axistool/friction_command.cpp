@@ -77,8 +77,8 @@ void print_table(const host::FrictionIdentification& found, const std::string& o
 void run(const FrictionArguments& arguments) {
   const sim::DriveDescription model = host::read_model(arguments.model);
   const host::Measurements measured = host::MeasurementGate(model, {arguments.accepted}).read(arguments.records);
-  const auto method = arguments.method == "paper" ? host::FrictionMethod::paper : host::FrictionMethod::joint;
-  const host::FrictionIdentification found = host::identify_friction(measured, model, method, arguments.options);
+  const host::FrictionIdentification found =
+      host::identify_friction(measured, model, host::friction_method_named(arguments.method), arguments.options);
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::friction_json(found);

@@ -6,6 +6,7 @@
 #include "host/axistool/commands.hpp"
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/compare/comparison_report.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/identify/paper_drives.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 struct IdentifyArguments {
   std::vector<std::string> records, accepted;
-  std::string output, drive, method, json;
+  std::string output, drive, method, json, report;
   host::MotionOptions options;
 };
 
@@ -63,6 +64,16 @@ void print_table(const host::Identification& found, const std::string& output) {
   }
 }
 
+/// The page of compare, for the identified model on its own records.
+void write_report(const IdentifyArguments& arguments, const sim::DriveDescription& model) {
+  std::vector<host::Record> records;
+  for (const std::string& path : arguments.records) records.push_back(host::read_record(path));
+  const std::string& name = arguments.output.empty() ? model.name : arguments.output;
+  const host::ComparedModel fit =
+      host::compare_with(name, model, std::move(records), host::kWindow_s, arguments.accepted);
+  host::comparison_report({&fit, 1}).write(arguments.report);
+}
+
 void run(const IdentifyArguments& arguments) {
   std::vector<std::string> warnings;
   const sim::DriveDescription drive = drive_for(arguments, warnings);
@@ -71,6 +82,7 @@ void run(const IdentifyArguments& arguments) {
       measured, drive, host::method_named(arguments.method, measured.training()), arguments.options);
   found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
   if (!arguments.output.empty()) host::write_model(found.model, arguments.output);
+  if (!arguments.report.empty()) write_report(arguments, found.model);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
@@ -90,6 +102,8 @@ void add_identify(CLI::App& app) {
   add_input(*command, "RECORD", arguments->records, "records of one drive (axis-record/1); several are stacked")
       ->required();
   add_output(*command, "-o,--output", arguments->output, "model to write (axis-model/1)");
+  add_output(*command, "--report", arguments->report,
+             "write an HTML page with plots to this file: the identified model compared with its own records");
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive: a model file, with or without effects");
   command
       ->add_option(

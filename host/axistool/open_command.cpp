@@ -38,10 +38,7 @@ host::OpeningOptions options_of(const OpenArguments& arguments) {
   if (!arguments.sheet.empty()) options.hints.sheet = host::read_drive(arguments.sheet).data;
   if (arguments.torque_constant > 0.0) options.hints.torque_constant = arguments.torque_constant;
   if (arguments.period_s > 0.0) options.hints.period_s = arguments.period_s;
-  if (!arguments.map.empty() && std::filesystem::exists(arguments.map))
-    options.mapping_path = arguments.map;
-  else if (!arguments.map.empty())
-    options.hints.mappings = host::parse_mappings(arguments.map);
+  host::take_map(options, arguments.map);
   options.hal_path = arguments.hal;
   options.hints.drive = arguments.drive;
   return options;

@@ -34,23 +34,6 @@ std::vector<std::vector<std::string>> kinds_of(const std::vector<std::string>& w
   return rivals;
 }
 
-std::vector<host::Rival> rivals_of(const PlanArguments& arguments, const InsightRecords& records,
-                                   const std::vector<const host::Record*>& all) {
-  SearchProgress progress("rivals");
-  if (!arguments.rivals.empty())
-    return host::fit_rivals(records.model, all, kinds_of(arguments.rivals), progress.callback());
-  const host::Diagnosis diagnosis = host::diagnose(records.model, records.measurements, progress.callback());
-  std::vector<host::Rival> rivals = host::rivals_of(diagnosis, all);
-  if (rivals.empty())
-    throw host::Failure(
-        host::ExitCode::answer_is_no,
-        fmt::format("nothing is left to separate: the verdict on these records is {}{}{}. --rivals A,B plans a run for "
-                    "two explanations anyway",
-                    host::status_name(diagnosis.verdict.status), diagnosis.verdict.effects.empty() ? "" : ": ",
-                    fmt::join(diagnosis.verdict.effects, " + ")));
-  return rivals;
-}
-
 void print(const host::Plan& plan, const std::string& file) {
   fmt::print("Probabilities of the rivals before the run:\n");
   for (const host::Rival& rival : plan.rivals)
@@ -80,7 +63,12 @@ void run(const PlanArguments& arguments) {
   const host::ExcitationLimits box = host::parse_box(arguments.box, records.model.data.kind);
   std::vector<const host::Record*> all = records.measurements.training_records();
   for (const host::Record* record : records.measurements.validation_records()) all.push_back(record);
-  const std::vector<host::Rival> rivals = rivals_of(arguments, records, all);
+  std::vector<host::Rival> rivals;
+  {
+    SearchProgress progress("rivals");
+    rivals =
+        host::rivals_for(records.model, records.measurements, all, kinds_of(arguments.rivals), progress.callback());
+  }
   host::Plan plan;
   {
     SearchProgress progress("plan");

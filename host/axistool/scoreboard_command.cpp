@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <random>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/insight_arguments.hpp"
 #include "host/axistool/real_machines.hpp"
-#include "host/scoreboard/answer.hpp"
 #include "host/scoreboard/rewriting.hpp"
+#include "host/scoreboard/scoreboard.hpp"
 
 namespace axistool {
 
@@ -21,90 +20,10 @@ using host::Answer;
 using host::Outcome;
 using host::Status;
 
-/// Part of the explainable squared error that an answer should remove.
-constexpr double kMostOfIt = 0.8;
-/// A whole case with an error above this many noise floors has an effect to find, whatever a part of it shows.
-constexpr double kSomethingToFind = 2.0;
-
-struct Arguments {
-  std::string folder, real, json;
-  bool cuts = false, rewritten = false, left_out = false;
-  std::size_t nulls = 0, sample = 0;
-  std::uint64_t seed = 1;
+struct Arguments : host::ScoreboardOptions {
+  std::string real, json;
+  bool rewritten = false, left_out = false;
 };
-
-/// Counts over answers of a kind.
-struct Summary {
-  std::size_t cases = 0, most_explained = 0;
-  std::map<Outcome, std::size_t> outcomes;
-
-  void add(const Answer& answer) {
-    ++cases;
-    ++outcomes[answer.outcome];
-    if (answer.explained() >= kMostOfIt) ++most_explained;
-  }
-  std::size_t count(Outcome outcome) const {
-    const auto found = outcomes.find(outcome);
-    return found == outcomes.end() ? 0 : found->second;
-  }
-};
-
-struct Summaries {
-  Summary none, single, pairs, alien;
-
-  explicit Summaries(const std::vector<Answer>& answers) {
-    for (const Answer& answer : answers)
-      (answer.truth.alien                 ? alien
-       : answer.truth.effects.empty()     ? none
-       : answer.truth.effects.size() == 1 ? single
-                                          : pairs)
-          .add(answer);
-  }
-};
-
-nlohmann::json to_json(const host::Reliability& reliability) {
-  nlohmann::json bins = nlohmann::json::array();
-  for (const host::Reliability::Bin& bin : reliability.bins)
-    bins.push_back({{"count", bin.count}, {"forecast", bin.forecast}, {"came_true", bin.came_true}});
-  return {{"bins", bins}, {"expected_error", reliability.expected_error}};
-}
-
-nlohmann::json to_json(const std::vector<Answer>& answers) {
-  nlohmann::json cases = nlohmann::json::array();
-  std::vector<Answer> whole;
-  for (const Answer& answer : answers) {
-    cases.push_back({{"case", answer.name},
-                     {"group", answer.group},
-                     {"truth", answer.truth.effects},
-                     {"alien", answer.truth.alien},
-                     {"outcome", std::string(host::outcome_name(answer.outcome))},
-                     {"status", std::string(host::status_name(answer.verdict.status))},
-                     {"effects", answer.verdict.effects},
-                     {"alternatives", answer.verdict.alternatives},
-                     {"coordinate", answer.verdict.coordinate},
-                     {"forecasts", answer.forecasts},
-                     {"before", answer.before},
-                     {"after", answer.after},
-                     {"explained", answer.explained()},
-                     {"seconds", answer.seconds}});
-    if (answer.group == "whole") whole.push_back(answer);
-  }
-  const Summaries summaries(whole);
-  const auto row = [](const Summary& summary) {
-    nlohmann::json document = {{"cases", summary.cases}, {"most_explained", summary.most_explained}};
-    for (const Outcome outcome : {Outcome::right, Outcome::group, Outcome::partly, Outcome::wrong, Outcome::missed})
-      document[std::string(host::outcome_name(outcome))] = summary.count(outcome);
-    return document;
-  };
-  return {{"format", "axis-scoreboard/1"},
-          {"cases", cases},
-          {"reliability", to_json(host::reliability_of(host::top_forecasts(answers)))},
-          {"summary",
-           {{"none", row(summaries.none)},
-            {"single", row(summaries.single)},
-            {"pairs", row(summaries.pairs)},
-            {"alien", row(summaries.alien)}}}};
-}
 
 void print_head(std::size_t width) {
   fmt::print("{:<{}}  {:<8} {:>8} {:>8} {:>6}  {}\n", "case", width, "outcome", "before", "after", "s",
@@ -125,7 +44,7 @@ void print(const Answer& answer, std::size_t width) {
   std::fflush(stdout);
 }
 
-void print(const Summaries& summaries) {
+void print(const host::AnswerSummaries& summaries) {
   const auto& [none, single, pairs, alien] = summaries;
   fmt::print(
       "\n"
@@ -136,11 +55,11 @@ void print(const Summaries& summaries) {
         "one effect:     {} cases, {} right, {} in the right group, {} wrong, {} missed; {} have {:g} % of the "
         "explainable squared error gone\n",
         single.cases, single.count(Outcome::right), single.count(Outcome::group), single.count(Outcome::wrong),
-        single.count(Outcome::missed), single.most_explained, 100.0 * kMostOfIt);
+        single.count(Outcome::missed), single.most_explained, 100.0 * host::kMostOfIt);
   if (pairs.cases > 0)
     fmt::print("several:        {} cases, {} all found, {} some found, {} wrong, {} missed; {} have {:g} % gone\n",
                pairs.cases, pairs.count(Outcome::right), pairs.count(Outcome::partly), pairs.count(Outcome::wrong),
-               pairs.count(Outcome::missed), pairs.most_explained, 100.0 * kMostOfIt);
+               pairs.count(Outcome::missed), pairs.most_explained, 100.0 * host::kMostOfIt);
   if (alien.cases > 0)
     fmt::print("in no catalogue: {} cases, {} called adequate or given a name\n", alien.cases,
                alien.count(Outcome::wrong));
@@ -202,40 +121,6 @@ void print(const char* title, const host::Reliability& reliability) {
       fmt::print("  {:2}–{:3} % {:6} {:4.0f} % {:8.0f} %\n", 10 * k, 10 * k + 10, bin.count, 100.0 * bin.forecast,
                  100.0 * bin.came_true);
   }
-}
-
-/// The cases to run, in random order if only a sample is used.
-std::vector<host::Trial> trials_of(const Arguments& arguments, std::map<std::string, bool>& worth) {
-  std::vector<host::Trial> wholes, pieces;
-  std::map<std::string, double> error;
-  for (const auto& folder : host::find_cases(arguments.folder)) {
-    const std::string name =
-        folder == arguments.folder ? arguments.folder : folder.lexically_relative(arguments.folder).string();
-    wholes.push_back(host::whole_case(folder, name));
-    if (!arguments.cuts) continue;
-    const host::Truth truth = host::read_truth(folder);
-    std::vector<double> lengths_s{2.0, 4.0, 8.0};
-    if (truth.effects.empty() && !truth.alien) {
-      lengths_s.clear();
-      for (double length_s = 1.0; length_s <= 10.0; length_s += 0.5) lengths_s.push_back(length_s);
-    }
-    for (host::Trial& piece : host::pieces_of_case(folder, name, lengths_s, true)) pieces.push_back(std::move(piece));
-  }
-  if (arguments.sample > 0) {
-    std::mt19937_64 random(arguments.seed);
-    for (auto* list : {&wholes, &pieces}) {
-      std::ranges::shuffle(*list, random);
-      list->resize(std::min(list->size(), arguments.sample));
-      std::ranges::sort(*list, {}, &host::Trial::name);
-    }
-  }
-  for (const host::Trial& piece : pieces) {
-    const std::string folder = piece.folder.string();
-    if (!error.contains(folder)) error[folder] = host::error_of_whole_case(piece.folder);
-    worth[piece.name] = error[folder] > kSomethingToFind;
-  }
-  std::ranges::move(pieces, std::back_inserter(wholes));
-  return wholes;
 }
 
 /// Whole cases, each without its own effect in the catalogue.
@@ -311,8 +196,8 @@ void run_rewritten(const std::vector<host::Trial>& trials, std::size_t width, bo
 
 void run(const Arguments& arguments) {
   const bool talks = arguments.json != "-";
-  std::map<std::string, bool> worth;
-  const std::vector<host::Trial> trials = trials_of(arguments, worth);
+  const host::ScoreboardTrials chosen = host::scoreboard_trials(arguments);
+  const std::vector<host::Trial>& trials = chosen.trials;
   std::size_t width = 4;
   for (const host::Trial& trial : trials) width = std::max(width, trial.name.size());
   if (arguments.left_out) return run_left_out(trials, width, talks, arguments.json);
@@ -327,15 +212,11 @@ void run(const Arguments& arguments) {
     SearchProgress progress(trial.name);
     note(host::run_trial(trial, progress.callback()));
   }
-  for (std::uint64_t k = 0; k < arguments.nulls; ++k)
-    note(host::run_null(arguments.seed * 1'000'000 + k, fmt::format("null {}", k)));
-  if (!arguments.json.empty()) write_json(to_json(answers), arguments.json);
+  for (std::uint64_t k = 0; k < arguments.nulls; ++k) note(host::scoreboard_null(arguments, k));
+  if (!arguments.json.empty()) write_json(host::scoreboard_json(answers), arguments.json);
   if (!talks) return;
-  std::vector<Answer> whole;
-  std::ranges::copy_if(answers, std::back_inserter(whole),
-                       [](const Answer& answer) { return answer.group == "whole"; });
-  print(Summaries(whole));
-  print_pieces(answers, worth);
+  print(host::AnswerSummaries(host::whole_cases(answers)));
+  print_pieces(answers, chosen.has_something);
   print_nulls(answers);
   print("Most probable effect of each answer", host::reliability_of(host::top_forecasts(answers)));
   print("All stated probabilities", host::reliability_of(host::all_forecasts(answers)));

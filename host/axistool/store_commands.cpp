@@ -1,4 +1,4 @@
-// axistool save, backup, restore: parameters that last.
+// axistool save, backup, restore: store parameters in the board's flash and in files.
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,4 +1,4 @@
-// The same motion with the old and with the new parameters, on the machine; the better set stays.
+// Compares the old and the new parameters by the same motion on the machine; the better set stays.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 /// A set of parameters and the machine's two runs with it.
 struct Trial {
-  std::string name, params, record, again;  ///< files of the folder but for the name
+  std::string name, params, record, again;  ///< file names without the folder
   firmware::ParameterValues values;
   std::optional<FollowingError> error, repeated;
   std::string stopped_because;
@@ -84,7 +84,7 @@ class Comparison {
   const Trial& before() const { return trials_.front(); }
   const Trial& after() const { return trials_.back(); }
 
-  /// The set that is left on the board.
+  /// Selects the set that stays on the board.
   void decide(bool was_fitted) {
     const Trial* best = &trials_.front();
     for (const Trial& trial : trials_)

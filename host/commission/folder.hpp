@@ -35,7 +35,7 @@ inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
     {"page", "one page"},
 }};
 
-/// The place of a step in kCommissionSteps. Throws Failure(usage) naming them.
+/// Index of a step in kCommissionSteps. Throws Failure(usage) naming the steps.
 std::size_t commission_step(std::string_view name);
 
 /// State kept between steps and between commands. Every change is on disk when its function returns.
@@ -46,16 +46,16 @@ class CommissionFolder {
 
   std::string path(std::string_view file) const;
   bool has(std::string_view file) const;
-  /// Throws Failure(usage) naming the step that makes it.
+  /// Throws Failure(usage) naming the step that writes it.
   std::string require(std::string_view file, std::string_view step) const;
 
   bool is_done(std::size_t step) const;
   std::optional<std::size_t> first_undone() const;
-  void begin_at(std::size_t step);  ///< this one and all after it are to be done, the page too
+  void begin_at(std::size_t step);  ///< this step and all further ones are to be done again, including the page
   /// `said`: a sentence for the page.
   void finish(std::size_t step, const std::vector<std::string>& files, const std::string& said);
 
-  /// axis-commission/1, with whatever the steps put beside the fields that are fixed.
+  /// axis-commission/1, with the further fields of the steps.
   const nlohmann::json& document() const { return document_; }
   void put(const std::string& key, const nlohmann::json& value);
 

@@ -13,7 +13,7 @@ namespace host {
 
 namespace {
 
-constexpr double kSearchOfBox = 0.45;  ///< of its travel: to one side, and something to stop in
+constexpr double kSearchOfBox = 0.45;  ///< of its travel: towards the switch, with room to stop
 constexpr double kSpeedOfBox = 0.15;
 
 }  // namespace

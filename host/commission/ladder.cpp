@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kSpeeds = 6;  // of one record: a train on the board holds 14 levels
 
-/// Evenly over the logarithm.
+/// Equally spaced on a logarithmic scale.
 std::vector<double> ladder_speeds(double lowest, double highest, std::size_t count) {
   std::vector<double> speeds;
   for (std::size_t k = 0; k < count; ++k)

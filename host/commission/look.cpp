@@ -40,7 +40,7 @@ nlohmann::json look_at_rest(CommissionSession& session) {
 }
 
 struct Pulse {
-  double positive_V = 0.0, negative_V = 0.0;  ///< where it broke away; 0: it did not
+  double positive_V = 0.0, negative_V = 0.0;  ///< at breakaway; 0: it did not move
   double with_encoder = 0.0;                  ///< sum of command times motion
   double with_tachometer = 0.0;
 };
@@ -91,7 +91,7 @@ CommissionStepResult look(CommissionSession& session) {
   session.folder().write_json("look.json", seen);
   require_right_feedback(pulse, record);
   const double breakaway = std::max(pulse.positive_V, pulse.negative_V);
-  constexpr double kRoom = 0.7;  // of the volts: what accelerates, beside friction, has to show too
+  constexpr double kRoom = 0.7;  // of the voltage: the part beyond friction must show as acceleration
   if (breakaway > kRoom * session.options().box.volts)
     throw Failure(ExitCode::refused, fmt::format("the axis breaks away at {:.2g} V, and the box allows {:.2g} V: too "
                                                  "little acceleration remains to identify the inertia; allow {:.2g} V",

@@ -1,4 +1,4 @@
-// The page: error before, cause, error after, noise floor; then the evidence.
+// The page: following error before and after, its cause, and the part that does not repeat; then the evidence.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,13 +27,13 @@ std::string title_of(const std::string& kind) {
 struct Page {
   CommissionSession& session;
   const nlohmann::json& state;
-  nlohmann::json errors, improvement;
+  nlohmann::json errors, comparison, improvement;
 
   const nlohmann::json& sets() const { return errors["sets"]; }
   double before() const { return sets().front()["rms_um"]; }
   bool has_after() const { return !sets().back()["rms_um"].is_null(); }
   double after() const { return has_after() ? sets().back()["rms_um"].get<double>() : before(); }
-  double floor() const { return errors["floor_um"]; }
+  double not_repeatable() const { return errors["floor_um"]; }
   bool is_new() const { return state.value("kept", "") == "new"; }
 
   /// Effects of the improved model that the first one lacked.
@@ -82,10 +82,10 @@ std::vector<std::string> findings(const Page& page) {
   for (const std::string& kind : kinds)
     if (const sim::EffectInfo* info = sim::find_effect(kind))
       sentences.push_back(fmt::format("{}: {}. Usual origin: {}.", info->title, info->shows, info->origin));
-  const auto& ladder = page.improvement["ladder"];
-  sentences.push_back(fmt::format(
-      "The model's prediction error on validation data falls from {} to {} times what sensor noise leaves.",
-      format_value(ladder.front()["validate"].get<double>()), format_value(ladder.back()["validate"].get<double>())));
+  sentences.push_back(
+      fmt::format("The model's prediction error falls from {} to {} times the noise floor on validation data.",
+                  format_value(page.comparison["combined"].get<double>()),
+                  format_value(page.improvement["error"]["after"]["validate"]["combined"].get<double>())));
   return sentences;
 }
 
@@ -103,10 +103,10 @@ Verdict verdict_of(const Page& page) {
   Verdict verdict;
   verdict.tone = page.is_new() ? Tone::good : Tone::neutral;
   verdict.label = page.is_new() ? "error reduced" : "no gain";
-  verdict.headline = fmt::format(
-      "Following error: {} µm before, {}; the noise floor is {} µm. Cause: {}.", format_value(page.before()),
-      page.has_after() ? format_value(page.after()) + " µm after" : "stopped by the new parameters",
-      format_value(page.floor()), page.cause());
+  verdict.headline =
+      fmt::format("Following error: {} µm before, {}; {} µm do not repeat. Cause: {}.", format_value(page.before()),
+                  page.has_after() ? format_value(page.after()) + " µm after" : "stopped by the new parameters",
+                  format_value(page.not_repeatable()), page.cause());
   if (const std::string shares = shares_of_gain(page); !shares.empty()) verdict.sentences.push_back(shares);
   for (std::string& found : findings(page)) verdict.sentences.push_back(std::move(found));
   for (const auto& kind : page.errors["by_hand"]) {
@@ -125,7 +125,7 @@ Verdict verdict_of(const Page& page) {
   return verdict;
 }
 
-/// What each set of parameters adds to the previous one.
+/// What each set of parameters changes from the previous one.
 std::string set_title(const Page& page, const std::string& name) {
   const bool is_first = page.sets().size() < 3;
   if (name == "before")
@@ -138,17 +138,18 @@ BarChart errors_chart(const Page& page) {
   BarChart chart;
   chart.title = "Following error of this axis, RMS";
   chart.caption =
-      "The same jogs, twice with each set of parameters; ±: difference of the two runs. The noise floor is the "
-      "difference between equal runs, which no parameter can reduce. The base model has only inertia and friction.";
+      "The same jogs, twice with each set of parameters; ±: difference between the two RMS values. Not repeatable: RMS "
+      "of "
+      "what differs between equal runs, which no parameter can reduce. The base model has only inertia and friction.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
     if (!set["rms_um"].is_null())
       chart.rows.push_back({set_title(page, set["name"]),
                             {set["rms_um"].get<double>()},
-                            fmt::format("± {}{}", format_value(set["repeats_um"].get<double>()),
+                            fmt::format("± {} µm{}", format_value(set["repeats_um"].get<double>(), 2),
                                         set["name"] == page.errors["kept"] ? ", kept" : "")});
-  chart.rows.push_back({"noise floor", {page.floor()}, ""});
+  chart.rows.push_back({"not repeatable", {page.not_repeatable()}, ""});
   return chart;
 }
 
@@ -171,11 +172,11 @@ void add_picture(Report& report, const Page& page, const std::vector<std::pair<c
   for (const auto& [file, name] : runs)
     views.push_back(
         {name, SeriesRole::residual, following_along(read_record(page.session.folder().path(file)), data), {}});
-  add_residual_plot(report, coordinate_of("position", data.kind, period), "Along the travel",
-                    {"reference less encoder", "µm"}, views, &ResidualView::force, Layout::side_by_side);
+  add_residual_plot(report, coordinate_of("position", data.kind, period), "Following error along the travel",
+                    {"following error", "µm"}, views, &ResidualView::force, Layout::side_by_side);
 }
 
-/// "response-01.csv to response-09.csv" for files that count on.
+/// "response-01.csv to response-09.csv" for consecutively numbered files.
 std::string files_in_words(const std::vector<std::string>& files) {
   const auto stem_of = [](const std::string& file) {
     return file.substr(0, file.find_last_not_of("0123456789", file.rfind('.') - 1) + 1);
@@ -194,15 +195,16 @@ std::string files_in_words(const std::vector<std::string>& files) {
 Table steps_table(const Page& page) {
   Table table;
   table.title = "Steps and their files";
-  table.headings = {"step", "what was found", "files in the folder"};
+  table.headings = {"step", "found", "files"};
   table.stacks = true;
   const std::string explanation = page.state.at("verdict").at("explanation");
   for (const auto& step : page.state["steps"]) {
     if (!step.value("done", false)) continue;
     std::string said = step.value("said", "");
-    // It stands at the top, or on the diagnosis's own page.
+    // It is at the top, or on the diagnosis's own page.
     if (const std::size_t at = said.find(explanation); !explanation.empty() && at != std::string::npos)
       said.erase(at, explanation.size());
+    if (step["name"] == "compensate" && page.is_new() && page.has_after()) said = "The figures are above.";
     table.rows.push_back({step["name"], said, files_in_words(step["files"].get<std::vector<std::string>>())});
   }
   return table;
@@ -228,7 +230,8 @@ Table pages_table(const Page& page) {
 CommissionStepResult write_page(CommissionSession& session) {
   CommissionFolder& folder = session.folder();
   folder.require("errors.json", "compensate");
-  const Page page{session, folder.document(), folder.read_json("errors.json"), folder.read_json("improvement.json")};
+  const Page page{session, folder.document(), folder.read_json("errors.json"), folder.read_json("comparison.json"),
+                  folder.read_json("improvement.json")};
   Report report("Axis " + session.options().axis_name,
                 session.options().sheet.name.empty() ? "commissioning" : session.options().sheet.name);
   report.verdict(verdict_of(page));

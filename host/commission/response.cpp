@@ -1,4 +1,4 @@
-// The frequency response, and a loop designed on it: as fast as the margin asked for allows, and measured again.
+// Measures the frequency response, designs a loop on it as fast as the requested margin allows, and measures again.
 #include <fmt/format.h>
 
 #include <optional>
@@ -19,8 +19,8 @@ namespace {
 constexpr double kFirst_s = 70.0, kAgain_s = 46.0;  // of motion: three bands and a resonance; two bands
 constexpr std::size_t kRealisations = 3;
 constexpr double kGently = 0.25;  // of the amplitude
-constexpr double kKept = 0.9;     // of the margin asked for has to be there when it is measured again
-constexpr double kWorth = 1.05;   // by which the bandwidth has to rise, or nothing changes
+constexpr double kKept = 0.9;     // part of the requested margin that the second measurement must show
+constexpr double kWorth = 1.05;   // factor by which the bandwidth must rise, or nothing changes
 constexpr const char* kMeasured = "response.json";
 
 nlohmann::json filters_json(const ControlFilterChoice& filters) {
@@ -157,7 +157,7 @@ class ResponseStep {
            axis.margins->modulus->ci95[1] >= kKept * session_.options().modulus;
   }
 
-  /// An oscillating loop is not kept.
+  /// An oscillating loop is rejected.
   AxisResponse try_loop() {
     try {
       return measure(kAgain_s, "response-after", share_);
@@ -202,7 +202,7 @@ CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescripti
     return {std::move(loop.design), loop.filters};
   } catch (const Failure& failure) {
     if (failure.code != ExitCode::refused) throw;
-    return first;  // this model finds no bandwidth that keeps the margin
+    return first;  // no bandwidth keeps the margin with this model
   }
 }
 

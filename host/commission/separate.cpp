@@ -1,4 +1,4 @@
-// While the records leave several explanations: plans the run that separates them, makes it, decides.
+// While several explanations remain: plans the run that separates them, makes it, and decides.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string names(const std::vector<Rival>& rivals) {
   return text;
 }
 
-/// The verdict after runs that were made for it.
+/// The verdict after runs that were made to separate explanations.
 nlohmann::json decided_verdict(nlohmann::json verdict, const Decision& decision, const std::string& said) {
   std::vector<std::string> kinds;
   for (const std::size_t place : decision.left)

@@ -24,19 +24,19 @@ namespace host {
 struct CommissionHoming {
   firmware::HomingMode mode = firmware::HomingMode::none;
   double position = 0.0;     ///< of the place that is found, mm (m)
-  bool is_backward = false;  ///< the switch lies to the negative side
+  bool is_backward = false;  ///< the switch is on the negative side
 };
 
 struct CommissionOptions {
   std::uint8_t axis = 0;
   std::string axis_name;        ///< x, y, …
-  sim::DriveDescription sheet;  ///< data sheet; effects, if any, give the form of the base and are not believed
-  /// Travel about where the axis stands when the command begins; volts in open loop, and what motions in closed loop
-  /// are planned for; time of all motion together.
+  sim::DriveDescription sheet;  ///< data sheet; its effects, if any, give only the form of the base
+  /// Travel on both sides of the axis's initial position; volts in open loop, and for planning motions in closed loop;
+  /// time of all motion together.
   ExcitationLimits box;
   double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of delays yet
   double modulus = 0.5;        ///< margin up to which the measured response lets the bandwidth rise
-  std::optional<CommissionHoming> homing = {};  ///< empty: what the board's own homing.mode says
+  std::optional<CommissionHoming> homing = {};  ///< empty: the board's own homing.mode
   bool save = false;                            ///< the better set, in the board's flash
 };
 
@@ -45,11 +45,11 @@ struct CommissionTalk {
   std::function<bool(const std::string&)> consents = [](const std::string&) { return true; };
   std::function<bool()> stop = [] { return false; };
   std::function<void(const std::string&)> tell = [](const std::string&) {};
-  /// Before and after work during which the axis stands disabled and `stop` is not asked.
+  /// Before and after work during which the axis is disabled and `stop` is not checked.
   std::function<void(bool)> computes = [](bool) {};
 };
 
-/// A motion and where its record goes.
+/// A motion and the file of its record.
 struct CommissionRun {
   std::string file;
   std::string kind;  ///< of `axistool excite`
@@ -58,7 +58,7 @@ struct CommissionRun {
   double time_s = 0.0;
 };
 
-/// A controller for a model: design, and filters behind it.
+/// A controller for a model: design and filters.
 struct CommissionLoop {
   AxisDesign design;
   ControlFilterChoice filters;
@@ -66,7 +66,7 @@ struct CommissionLoop {
 
 /// Result of the diagnosis for the following steps of the same command.
 struct CommissionFinding {
-  Measurements measured;  ///< what the diagnosis points into
+  Measurements measured;  ///< the diagnosis refers to it
   Diagnosis diagnosis;
 };
 
@@ -81,7 +81,7 @@ class CommissionSession {
   CommissionFolder& folder() { return folder_; }
   std::uint8_t mask() const { return static_cast<std::uint8_t>(1u << options_.axis); }
 
-  /// Throws Failure(refused) where the user does not want the motions of this step.
+  /// Throws Failure(refused) if the user declines the motions of this step.
   void ask(const std::string& what);
 
   /// Makes the motion within the rest of the box, and writes its record even after a failure. An axis in closed loop
@@ -89,7 +89,7 @@ class CommissionSession {
   /// and what to do.
   Record record(const CommissionRun& run);
 
-  /// The same for a run that was planned.
+  /// The same for a planned run.
   Record record_plan(const RunPlan& run, const std::string& file);
 
   /// Sets the data sheet's scales and control rate on an unfitted axis. Throws Failure(refused) where a fitted axis has
@@ -106,8 +106,8 @@ class CommissionSession {
   /// Of modest bandwidth: nothing is known of delays and resonances yet.
   CommissionLoop first_loop(const sim::DriveDescription& model) const;
   DesignOptions first_options() const;
-  /// The same for every set, so that motions are the same: decided from `model` by what the box leaves, and kept in the
-  /// folder. Throws Failure(refused) where friction takes all of the box's volts.
+  /// Equal for all sets of parameters, so that motions are the same: from `model` and the box, and kept in the folder.
+  /// Throws Failure(refused) if friction takes all of the box's volts.
   void plan_limits(const sim::DriveDescription& model);
   firmware::ParameterValues with_planned_limits(firmware::ParameterValues values) const;
 
@@ -115,13 +115,13 @@ class CommissionSession {
   /// the lowest bandwidth.
   bool calm_down();
 
-  /// Something finds home on this axis.
+  /// Whether this axis has a switch or an index for homing.
   bool can_home();
   bool is_homed();
-  /// Enables the axis and lets it find home. The box stays where it is.
+  /// Enables the axis and homes it. The box stays in place.
   void find_home();
 
-  /// The axis stands and is disabled; whatever fails meanwhile is not said.
+  /// Stops and disables the axis; ignores failures.
   void leave_standing() noexcept;
   void disable();
   /// Clears faults caused by a discarded controller.
@@ -130,12 +130,12 @@ class CommissionSession {
   std::shared_ptr<CommissionFinding> found;
 
   double motion_s() const { return motion_s_; }
-  /// The box of a motion of so many seconds, from where the command began: the axis goes there first.
+  /// The box of a motion of this duration around the command's initial position, to which the axis moves first.
   ExcitationLimits room_for(double time_s, const std::string& what, const firmware::ParameterValues& values);
   ExcitationScale scale(const firmware::ParameterValues& values) const;
   /// Counts the time since `begin` as motion.
   void spend(std::chrono::steady_clock::time_point begin);
-  /// Speeds that motions of this box may have, mm/s (m/s): held for a second; reached at all.
+  /// Highest speeds of motions in this box, mm/s (m/s): held for a second; reached briefly.
   double steady_speed() const;
   double top_speed() const;
 
@@ -156,7 +156,7 @@ class CommissionSession {
   double motion_s_ = 0.0;
 };
 
-/// Work while which the axis stands disabled and nobody asks whether to stop; as long as this lives.
+/// A computation during which the axis is disabled and Ctrl-C ends the program; for the lifetime of this object.
 class Computing {
  public:
   explicit Computing(const CommissionSession& session) : talk_(session.talk()) { talk_.computes(true); }

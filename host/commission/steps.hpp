@@ -11,7 +11,7 @@ namespace host {
 
 struct CommissionStepResult {
   std::vector<std::string> files;  ///< in the folder
-  std::string said;                ///< what was found, a sentence or two
+  std::string said;                ///< result in one or two sentences
 };
 
 /// Makes before-params.toml (the board as it was), standstill.csv, pulse.csv, look.json. Throws Failure(refused) where
@@ -24,7 +24,7 @@ CommissionStepResult identify_first(CommissionSession& session);
 /// Makes first-params.toml, and downloads it.
 CommissionStepResult control_first(CommissionSession& session);
 
-/// Where something finds home: makes steps.csv again, counted from there; every later motion is.
+/// If homing is possible: makes steps.csv again, counted from home; so are all later motions.
 CommissionStepResult home_axis(CommissionSession& session);
 
 /// Makes ladder-slow.csv, ladder-fast.csv.
@@ -33,16 +33,17 @@ CommissionStepResult climb_ladder(CommissionSession& session);
 /// Makes model.toml, with the friction from the jogs if they determine it.
 CommissionStepResult find_friction(CommissionSession& session);
 
-/// Static friction that the jogs leave undetermined (its interval is wider than its value), as where magnets bend the
-/// slowest of them, may come out at thirty times what slides, and no fit finds back from there: instead what broke the
-/// axis away, in volts each way, falling to what slides over the one speed that is known. Whether that was needed.
+/// The jogs may not determine the static friction (its interval is wider than its value), for example when magnets
+/// distort the slowest ones. It may then come out as thirty times the sliding friction, from which no fit recovers. In
+/// that case uses the breakaway voltage of each direction, falling to the sliding friction over the one known speed.
+/// Returns whether that was needed.
 bool level_static_friction(sim::DriveDescription& model, double forward_V, double backward_V);
 
-/// Makes response.json, response.html, raised-params.toml, response-after.json, and leaves a livelier controller to
-/// the later steps where the measured response allows one and the machine agrees.
+/// Makes response.json, response.html, raised-params.toml and response-after.json. Later steps use a faster controller
+/// if the measured response allows one and the machine confirms it.
 CommissionStepResult measure_response(CommissionSession& session);
 
-/// What the measured response allows for `model`; the first loop where it allowed none, or was not measured.
+/// The controller that the measured response allows for `model`; the first one if none was allowed or measured.
 CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model);
 
 /// Makes the other training records (kTrainingFiles) and the validation records (kJudgingFiles).
@@ -54,8 +55,8 @@ CommissionStepResult compare_first(CommissionSession& session);
 /// Makes diagnosis.json, diagnosis.html.
 CommissionStepResult diagnose_machine(CommissionSession& session);
 
-/// Where the diagnosis is ambiguous and a motion in the box separates: makes plan-N.json, run-N.toml, run-N.csv,
-/// decision-N.json, and decided.toml where one explanation is left.
+/// If the diagnosis is ambiguous and a motion in the box separates: makes plan-N.json, run-N.toml, run-N.csv,
+/// decision-N.json, and decided.toml if one explanation remains.
 CommissionStepResult separate(CommissionSession& session);
 
 /// Makes improved.toml, improvement.json, improvement.html.
@@ -71,7 +72,7 @@ inline const std::vector<std::string> kTrainingFiles{"steps.csv", "ladder-slow.c
                                                      "sweep.csv", "reversals.csv",   "dwell.csv"};
 inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-again.csv", "judge-steps.csv"};
 
-/// All training and validation records, through the gate, with the runs that separate explanations.
+/// All training and validation records, checked by the gate, including the runs that separate explanations.
 Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model);
 
 /// Steps of voltage in open loop: steps.csv.

@@ -1,4 +1,4 @@
-// Motions besides steps and ladder: some for training, others for validation, and one of these twice.
+// Motions besides steps and ladder: for training and for validation; one of the latter is made twice.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ CommissionStepResult record_validation(CommissionSession& session) {
   const ExcitationLimits& box = session.options().box;
   const double top = std::min(session.steady_speed(), session.top_speed()),
                count = session.options().sheet.data.encoder_resolution;
-  // Enough to move, too little to turn the ride round.
+  // Enough to move, too little to reverse the jog.
   session.record({"sweep.csv",
                   "multisine",
                   {{}, {{"amplitude", 0.2 * box.volts}, {"from", 2.0}, {"to", 80.0}, {"ride", 0.2 * top}}},

@@ -166,7 +166,7 @@ SetError error_of(const sim::Drive& drive, const RecordSet& set) {
       });
   const auto root_mean = [](double sum, std::size_t count) {
     const double mean = count == 0 ? 0.0 : sum / static_cast<double>(count);
-    return std::isfinite(mean) ? std::sqrt(mean) : HUGE_VAL;  // a model that runs away is as bad as can be
+    return std::isfinite(mean) ? std::sqrt(mean) : HUGE_VAL;  // a diverging model has the largest possible error
   };
   const std::size_t channels = x.count + w.count + effort.count;
   error.combined = root_mean(combined, channels);

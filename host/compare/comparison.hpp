@@ -13,14 +13,14 @@ namespace host {
 /// Measure of comparison.
 enum class Measure {
   motion,  ///< predicted against measured travel and speed
-  effort   ///< what the inverse model needs against what the motor gave; for drives that have an inverse
+  effort   ///< inverse model's torque or force against the motor's; for drives with an inverse
 };
 
 /// A record with the floor of each of its windows.
 struct ComparedRecord {
   PreparedRecord prepared;
   ErrorFloor floor;
-  std::shared_ptr<const EffortRecord> effort = nullptr;  ///< where the measure is the effort
+  std::shared_ptr<const EffortRecord> effort = nullptr;  ///< if the measure is torque or force
 };
 
 /// Three floors: a single late impact or breakaway must not outweigh all windows that fit.
@@ -30,7 +30,7 @@ inline constexpr double kCommonSquare = 9.0;
 struct RecordSet {
   std::vector<ComparedRecord> records;
   Measure measure = Measure::motion;
-  std::size_t stride = 1;  ///< every so many-th window is used; more than 1 makes a search faster
+  std::size_t stride = 1;  ///< uses every stride-th window; more than 1 makes a search faster
   /// Squared error over floor squared up to which a window counts in full in a fit; beyond, its weight grows as the
   /// logarithm. At least three floors.
   double common_square = kCommonSquare;
@@ -40,11 +40,11 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
-/// The earliest time stamp of all: origin for effects that change with time, whatever the logger's clock started with.
+/// The earliest time stamp of all: time origin of effects that change with time, whatever the logger's clock.
 double first_stamp_s(const RecordSet& set);
 
-/// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses
-/// swing within a sample.
+/// Integrator steps of one pass of a model over the windows in use: one per sample, more if masses oscillate within a
+/// sample.
 double steps_of(const sim::Drive& drive, const RecordSet& set);
 
 /// Prepares records and computes their floors with `reference`, the best model known. Keeps references to the records.
@@ -74,7 +74,7 @@ struct WindowScore {
 /// RMS errors of a model on a set.
 struct SetError {
   double combined = 0.0;  ///< RMS over windows and channels of error/floor; about 1 for a perfect model
-  double robust = 0.0;    ///< the same with windows beyond the common weighed by the logarithm: what a fit minimises
+  double robust = 0.0;    ///< the same with outlying windows weighted by the logarithm: the objective of a fit
   double x_rms = 0.0;     ///< mm or m
   double w_rms = 0.0;     ///< rad/s or m/s
   double x_floor = 0.0;   ///< RMS of the windows' floors

@@ -65,7 +65,7 @@ std::size_t record_in(const Focus& focus, const ModelComparison& comparison) {
 
 namespace {
 
-/// The samples of a stretch of one record.
+/// The samples of a range of one record.
 ResidualEffort part_in(const ResidualEffort& all, std::size_t record, const TimeSpan& since_start) {
   std::vector<std::size_t> kept;
   for (std::size_t k = 0; k < all.w.size(); ++k)
@@ -93,7 +93,7 @@ bool spreads(const std::vector<double>& coordinate) {
   return most - least > 0.1 * std::max(std::abs(least), std::abs(most));
 }
 
-/// The first model's residual in the stretch of the focus, where that has samples.
+/// The first model's residual in the selected range, if that has samples.
 void add_stretch(std::vector<ResidualView>& views, const ComparedModel& model, const Focus& focus) {
   if (!focus.stretch) return;
   const std::size_t index = record_in(focus, model.comparison);

@@ -23,7 +23,7 @@ struct ComparedModel {
   std::string name() const;  ///< of the file
 };
 
-/// Admits the records as they were logged and compares the model, completed by their sensors, on windows of `window_s`.
+/// Checks the records as logged and compares the model, completed by their sensors, on windows of `window_s`.
 /// Throws Failure(usage) for an invalid time, and what MeasurementGate, compare_on and compare_model throw.
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
                            double window_s, const std::vector<std::string>& accepted);
@@ -34,7 +34,7 @@ nlohmann::json comparison_document(std::span<const ComparedModel> models);
 /// Roles with different colours, one per model; further models repeat them.
 SeriesRole role_of_model(std::size_t index);
 
-/// The record that the focus names. Throws Failure(usage) where there is no such record.
+/// The record named in the focus. Throws Failure(usage) if there is no such record.
 std::size_t record_in(const Focus& focus, const ModelComparison& comparison);
 
 /// Measured and predicted rows of one record, and the errors.

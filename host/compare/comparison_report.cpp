@@ -209,7 +209,7 @@ BarChart bars_of(const std::vector<ErrorRegion>& where, const std::string& parti
   return chart;
 }
 
-/// Error over floor of each model in the regions of a partition that the first one has too.
+/// Error over floor of each model in the regions of a partition that it shares with the first model.
 BarChart overlaid_bars(std::span<const ComparedModel> models, const std::string& partition, const std::string& title) {
   BarChart chart;
   chart.title = title;

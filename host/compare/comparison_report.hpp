@@ -1,4 +1,4 @@
-// A comparison for people: on the terminal, and as an HTML page.
+// A comparison as text for a terminal and as an HTML page.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@
 
 namespace host {
 
-/// Verdict, log faults, errors by record and channel, and the regions that stand out. At least one model.
+/// Verdict, log faults, errors by record and channel, and the regions with the largest error. At least one model.
 std::string comparison_text(std::span<const ComparedModel> models, const Terminal& terminal);
 
-/// Verdict, facts, traces of one record, the missing effort against speed, position, acceleration, time and what came
-/// before, and the error by regime and the other partitions; of several models on top of each other. Throws as
+/// Verdict, facts, traces of one record, the missing torque or force against speed, position, acceleration, time and
+/// history, the error by motion and the other partitions; several models are drawn on top of each other. Throws as
 /// record_in() does.
 Report comparison_report(std::span<const ComparedModel> models, const Focus& focus = {});
 

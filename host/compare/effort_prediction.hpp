@@ -15,18 +15,18 @@ struct EffortRecord {
   const Record* record;
   sim::DataSheet data;
   Motion motion;
-  std::vector<bool> counts;  ///< by row: it slides, and the filter has signal on both sides
-  double floor;              ///< RMS error that the sensor's own noise makes, Nm or N
+  std::vector<bool> counts;  ///< by row: the axis slides, and the filter has signal on both sides
+  double floor;              ///< RMS torque or force due to sensor noise, Nm or N
 };
 
 /// `base` gives the inertia by which noise of the acceleration shows as effort. Throws Failure(bad_input) for a record
 /// that is too short for the filter.
 EffortRecord prepare_effort(const Record& record, const sim::DriveDescription& base);
 
-/// One value a row, Nm or N; zeros within kMotionMargin of the ends.
+/// One value per row, Nm or N; zeros within kMotionMargin of the ends.
 struct EffortPrediction {
-  std::vector<double> needed;  ///< by the motion, as the drive explains it
-  std::vector<double> given;   ///< by the motor, after what the drive's command path does
+  std::vector<double> needed;  ///< of the motion, by the drive's model
+  std::vector<double> given;   ///< of the motor, after the effects of the drive's command path
 };
 
 /// For a drive that has an inverse. `out` is resized when needed, so that it can be used again.

@@ -15,8 +15,8 @@ struct ResidualSamples {
   std::vector<double> x;             ///< smoothed travel, mm or m
   std::vector<double> w;             ///< smoothed speed, rad/s or m/s
   std::vector<double> acceleration;  ///< of w
-  std::vector<double> effort;        ///< what the motor gives, Nm or N
-  std::vector<double> missing;       ///< effort that the motion needed beyond what the model explains, Nm or N
+  std::vector<double> effort;        ///< torque or force of the motor, Nm or N
+  std::vector<double> missing;       ///< torque or force of the motion that the model does not explain, Nm or N
   std::vector<double> tach_error;  ///< tachometer less the model's tachometer at the smoothed speed; empty without one
 };
 

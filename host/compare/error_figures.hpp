@@ -19,7 +19,7 @@ struct ChannelFigures {
   /// rms over the RMS of the signal that the model has to explain: of a speed channel the measured speed, of a position
   /// channel the travel since the restart of the window. Empty where the signal is zero.
   std::optional<double> share = {};
-  double floor = 0.0;  ///< RMS noise floor: what the best possible model would leave, by sensors and restart
+  double floor = 0.0;  ///< RMS noise floor: error of a perfect model, due to sensors and restart
 
   double over_floor() const { return floor > 0.0 ? rms / floor : 0.0; }
 };

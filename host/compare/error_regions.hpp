@@ -1,4 +1,4 @@
-// Where a model fails: shares of the squared prediction error by what the axis does, where it is, how fast, when.
+// Where a model fails: shares of the squared prediction error by motion, position, speed, and time.
 #pragma once
 
 #include <nlohmann/json.hpp>

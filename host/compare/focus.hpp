@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// It selects what is plotted and changes no figure.
+/// Selects what is plotted; all figures stay the same.
 struct Focus {
   std::string record = {};               ///< whose traces are drawn; empty: the one with the largest error
   std::optional<TimeSpan> stretch = {};  ///< of that record, lit in every plot

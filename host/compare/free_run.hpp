@@ -10,8 +10,8 @@ namespace host {
 /// Samples that a free run is given, as in the public EMPS benchmark (nonlinearbenchmark.org).
 inline constexpr std::size_t kGivenSamples = 20;
 
-/// RMS of the position error of a free run over all samples that were not given, mm or m. Nothing where the record has
-/// no position, or hardly more samples than are given. The drift shows errors of friction and offset, which a free run
+/// RMS of the position error of a free run over all samples after the given ones, mm or m. Empty if the record has no
+/// position, or hardly more samples than are given. The drift shows errors of friction and offset, which a free run
 /// accumulates and a closed loop hides.
 std::optional<double> free_run_rms(const sim::DriveDescription& model, const PreparedRecord& prepared);
 

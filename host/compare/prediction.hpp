@@ -13,8 +13,8 @@ namespace host {
 
 /// Predicted channels, one value a row; rows that no window reaches are left as they were.
 struct Prediction {
-  std::vector<double> x;  ///< what the encoder would read, without quantisation
-  std::vector<double> w;  ///< what the tachometer would read, without noise
+  std::vector<double> x;  ///< encoder reading without quantisation
+  std::vector<double> w;  ///< tachometer reading without noise
 };
 
 /// Predicts every `stride`-th window. `out` is resized when needed, so that it can be used again.

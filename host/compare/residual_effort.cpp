@@ -80,7 +80,7 @@ void append(const sim::Drive& drive, const sim::DriveDescription& model, const P
     const auto acceleration_at = [&](std::size_t row) {
       return (motion.w[row + step] - motion.w[row - step]) / (2.0 * step_s);
     };
-    // Slow against its filter, a tachometer shows the speed of one time constant ago.
+    // For changes slower than its filter, a tachometer shows the speed of one time constant ago.
     const auto motion_at = [&](std::size_t row) {
       sim::DriveMotion at;
       at.x = motion.x[row];

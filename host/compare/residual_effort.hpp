@@ -21,7 +21,8 @@ struct ResidualEffort {
   std::vector<double> temp_C;          ///< empty unless every record has it
 };
 
-/// What the smoothed motion accelerates beyond the predicted one, times the inertia. Unlike the inverse model's, it is
+/// Acceleration of the smoothed motion minus that of the prediction, times the inertia. Unlike the inverse model's, it
+/// is
 /// there for any model: bristles, gaps and second masses move as they do in a prediction.
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set);
 

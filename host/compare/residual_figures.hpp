@@ -23,7 +23,7 @@ struct ResidualView {
 /// They can be subtracted from one another, sample by sample.
 std::vector<ResidualEffort> residuals_on(const std::vector<const sim::DriveDescription*>& models, const RecordSet& set);
 
-/// What a residual is drawn over.
+/// Coordinate over which a residual is drawn.
 struct ResidualCoordinate {
   Axis axis;
   std::vector<double> ResidualEffort::*along;

@@ -29,7 +29,7 @@ struct TrackingError {
   std::vector<PeriodPeak> periods;  ///< of what the parts leave, along the travel; only where a position was recorded
 };
 
-/// Whether a record holds no effort, but a reference beside what it is the reference of.
+/// Whether a record has a reference and its measurement, but no torque, force or command.
 bool has_reference_only(const Record& record);
 
 /// The records of these files, where none of them holds an effort; otherwise none. `data` is of their drive.

@@ -1,4 +1,4 @@
-// One number that the demonstration shows, beside what it should be.
+// One figure of the demonstration, with its reference value.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ struct DemoFigure {
   double found = 0.0;
   double lowest = 0.0;    ///< of the values that agree with the reference
   double highest = 0.0;   ///< likewise
-  std::string reference;  ///< what it is compared with, in words
+  std::string reference;  ///< source of the reference value
 
   bool agrees() const { return found >= lowest && found <= highest; }
 };

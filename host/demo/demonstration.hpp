@@ -25,7 +25,7 @@ struct Demonstration {
 /// Takes some seconds; shows its progress on a terminal. Throws Failure where an input is missing or a step refuses.
 Demonstration demonstrate(const DemonstrationInput& input);
 
-/// What was found beside what it should be, one row a figure.
+/// Figures and their reference values, one row each.
 Table figures_table(const std::vector<DemoFigure>& figures);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// The best shape of an effect between those that are tried first.
+// Refines the shape of an effect between the forms that were tried first.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// The form that leaves least of the training rows' torque or force among the neighbours of `term`, which must have
-/// some, and theirs; `model` is what it makes of the drive.
+/// The form with the smallest training residual among the neighbours of `term`, which must exist, and their neighbours;
+/// `model` is the resulting drive.
 EffortTerm closest_form(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                         const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model);
 

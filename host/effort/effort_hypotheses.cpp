@@ -24,16 +24,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A usual effect is of this part of the Coulomb level, RMS over the rows, times one of these: a prior with heavy
-/// tails, since the weight of an arm is fifty times what cogs usually are.
+/// Usual size of an effect: this part of the Coulomb level, RMS over the rows, times one of these. A prior with heavy
+/// tails, since the weight of an arm is fifty times usual cogging.
 constexpr double kUsual = 0.3;
 constexpr double kTails[] = {0.3, 1.0, 5.0, 25.0};
 constexpr Index kTailCount = 4;
-/// A base parameter is known to some three times its least-squares value before the measurement.
+/// Prior deviation of a base parameter: some three times its least-squares value.
 constexpr double kBaseKnownTo = 3.0;
-/// When within a row a measured current acts, in samples (the base's own shift is taken out before).
+/// Time within a row at which a measured current acts, in samples (the base's own shift is already removed).
 constexpr double kInstantKnownTo = 0.25;
-/// Kinds whose approximate evidence lies so far behind the best, in nats, are not fitted: e^-30 changes no odds.
+/// Kinds whose approximate evidence is this many nats behind the best are not fitted: e^-30 does not change the odds.
 constexpr double kOutOfReach = 30.0;
 constexpr std::size_t kFormsFitted = 6;  // of each ranking
 constexpr std::size_t kMostFitted = 8, kMostWavesWeighed = 24;
@@ -41,14 +41,14 @@ constexpr std::size_t kStarts = 4;  // from which the form of one kind is refine
 
 double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
 
-/// More rows say nothing new of a dozen parameters and cost time with the square of the memory's columns.
+/// More rows add nothing about a dozen parameters and cost time with the square of the memory's columns.
 constexpr std::size_t kMostRows = 2500;
 
 /// A form of an effect before it is fitted.
 struct Form {
   std::string kind;
   MatrixXd columns;  ///< of RMS 1
-  double log_unit;   ///< what the logs gain or lose where what is left counts in another unit
+  double log_unit;   ///< change of the log evidence when the residual is expressed in another unit
   std::function<EffortTerm()> term;
   std::vector<int> sign;
 };
@@ -59,7 +59,7 @@ struct Weighed {
   double log_gain;  ///< approximate
 };
 
-/// The columns of a term at RMS 1; nothing where one of them vanishes.
+/// The columns of a term at RMS 1; empty if one of them vanishes.
 std::optional<Form> form_of(std::string kind, const MatrixXd& columns, std::vector<int> sign, double acting,
                             std::function<EffortTerm()> term) {
   const double log_unit = static_cast<double>(columns.rows()) * std::log(acting);
@@ -78,7 +78,7 @@ double log_unit(const std::vector<EffortTerm>& terms, const Evidence& evidence) 
   return static_cast<double>(evidence.rows().size()) * sum;
 }
 
-/// A few waves over the travel, or a few a turn.
+/// A few waves over the travel, or a few per turn.
 bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
   constexpr double kMostWaves = 12.0, kMostOrders = 4.0;
   const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
@@ -87,7 +87,7 @@ bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
 
 using WaveColumns = std::function<MatrixXd(const Wave&)>;
 
-/// Of many waves, those whose plain gain is largest.
+/// Of many waves, those with the largest plain gain.
 std::vector<Wave> most_promising(std::vector<Wave> waves, const WaveColumns& columns_of, const VectorXd& left) {
   std::vector<std::pair<double, Wave>> ranked;
   for (const Wave& wave : waves) {
@@ -141,7 +141,7 @@ void EffortHypotheses::Known::add(const VectorXd& column, double deviation) {
 
 EffortHypotheses::Known EffortHypotheses::known_with(const std::vector<EffortTerm>& chosen) const {
   Known known = base_;
-  // What was found stands: its size is known to the widest tail.
+  // Effects that were found keep the widest prior.
   for (const EffortTerm& term : chosen) {
     const MatrixXd columns = thin_.of(term.columns);
     for (Index c = 0; c < columns.cols(); ++c)
@@ -157,7 +157,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
   const std::vector<EffortTerm> terms = shaped_terms(held, rows_, explained);
   Known known = known_with(chosen);
-  // When the torque or force acts is known to a part of a sample: a nuisance, unless a delay is what is missing.
+  // The time at which the torque or force acts is uncertain by a part of a sample: a nuisance parameter, unless the
+  // candidate is a delay.
   for (const EffortTerm& term : terms)
     if (term.kind == "input_delay" && rows_.unknown_instant_s > 0.0)
       known.add(thin_.of(term.columns.col(0)), kInstantKnownTo * rows_.unknown_instant_s);
@@ -236,7 +237,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     }
   }
 
-  // Approximate evidence of every form at several sizes, at the memory that was found and without one.
+  // Approximate evidence of every form at several sizes, with the present memory and without any.
   VectorXd scales(kTailCount);
   for (Index s = 0; s < kTailCount; ++s) scales(s) = kTails[s] * kUsual * coulomb_;
   struct Fitted {
@@ -245,7 +246,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   };
   struct Kind {
     std::string name;
-    std::vector<Weighed> ranked[2];  ///< by their gain at the memory that was found, and without a memory
+    std::vector<Weighed> ranked[2];  ///< by their gain with the present memory, and without one
     double best = -HUGE_VAL;
     std::vector<Fitted> fitted;
   };
@@ -269,12 +270,12 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   std::size_t in_reach = kinds.size();
   while (in_reach > kMostFitted && kinds[in_reach - 1].best < kinds.front().best - kOutOfReach) --in_reach;
 
-  // The best forms of each kind by either ranking: first those that lead one, then the others, which end early where
-  // the best of their kind is out of reach. The margin is for what rounds may still change.
+  // The best forms of each kind by either ranking: first the leaders, then the others, which end early if the best of
+  // their kind is out of reach. The margin covers changes in further rounds.
   struct Trial {
     std::size_t kind;
     const Weighed* weighed;
-    double spread = 0.0;  ///< by the forms beside the best of a ranking, nats
+    double spread = 0.0;  ///< of the other forms behind the best of a ranking, nats
   };
   std::vector<Trial> leaders, others;
   for (std::size_t k = 0; k < in_reach; ++k) {
@@ -330,7 +331,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     return reached;
   };
   fit_trials(others, fit_trials(leaders, std::vector<double>(in_reach, -HUGE_VAL)));
-  // What was out of reach stands in the list by its approximate gain.
+  // Kinds out of reach are listed with their approximate gain.
   for (std::size_t k = in_reach; k < kinds.size(); ++k)
     for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
       if (ranked.empty()) continue;

@@ -1,4 +1,4 @@
-// Which effect comes next, by evidence: every form of every effect as columns of the force balance.
+// Selects the next effect by evidence: every form of every effect as columns of the force balance.
 #pragma once
 
 #include <functional>
@@ -13,28 +13,28 @@
 
 namespace host {
 
-/// Plain training error of a form beside what was chosen before; nothing where it has no room within physics.
+/// Training error of a form beside the effects chosen before; empty if it is not possible within physical bounds.
 using PlainFit = std::function<std::optional<double>(const EffortTerm&)>;
 
-/// The force balance of one drive, with what is fitted in every hypothesis: base and effects chosen so far.
+/// The force balance of one drive, with the terms of every hypothesis: base and effects chosen so far.
 class EffortHypotheses {
  public:
-  /// `absent`: kinds that next() will not be asked for. `coulomb`: the drive's friction level, Nm or N, to which all
-  /// usual sizes compare. Keeps references to model and rows.
+  /// `absent`: kinds that next() excludes. `coulomb`: the drive's friction level, Nm or N, the scale of all usual
+  /// sizes. Keeps references to model and rows.
   EffortHypotheses(const sim::DriveDescription& model, const EffortRows& rows, const std::vector<EffortTerm>& base,
                    const Eigen::VectorXd& explained, double coulomb, const std::vector<std::string>& absent);
 
-  /// Fits all kinds but those `excluded` beside the terms chosen so far.
+  /// Fits all kinds except `excluded` in addition to the terms chosen so far.
   NextEffects next(const std::vector<EffortTerm>& chosen, const Eigen::VectorXd& explained,
                    const std::vector<std::string>& excluded, const PlainFit& plain_fit) const;
 
-  /// ln p of the rows with these terms beside the base.
+  /// ln p of the rows with these terms and the base.
   double log_evidence(const std::vector<EffortTerm>& chosen) const;
 
-  /// ln of the odds that a memory is needed beside the chosen terms: something depends on a coordinate.
+  /// ln of the odds that a memory is needed in addition to the chosen terms: the residual depends on a coordinate.
   double memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const;
 
-  /// How far a fit takes each row for no outlier, 0 to 1.
+  /// Weight of each row in a fit, 0 (outlier) to 1.
   Eigen::VectorXd weights(const EvidenceFit& fit) const;
 
   const Memory& memory() const { return evidence_.memory(); }

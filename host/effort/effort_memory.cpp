@@ -44,8 +44,8 @@ MatrixXd hats(const VectorXd& at, const std::vector<double>& knots) {
   return columns;
 }
 
-/// The part of the columns that others do not explain. A memory that can take what the model itself can explain hides
-/// it: M. Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
+/// The part of the columns that others do not explain. A memory that can explain what the model can would mask it: M.
+/// Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
 MatrixXd beside(const MatrixXd& columns, const MatrixXd& others) {
   return columns - others * least_squares_solution(others, columns);
 }

@@ -1,4 +1,4 @@
-// What the rows of a force balance may hold beyond any effect: smooth functions over each coordinate.
+// Residual structure beyond any effect: smooth functions over each coordinate.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Rows that follow one another in the record without a gap.
+/// Consecutive rows of a record.
 std::vector<RowRun> runs_of(const EffortRows& rows);
 
 /// Hats over speed by direction, position, friction over position, travel since the last reversal, friction over time,

@@ -46,7 +46,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
     at += terms[t]->columns.cols();
     for (const int s : terms[t]->sign) {
       beliefs.push_back(t < base.size() ? belief_of(t, base) : Prior{});
-      // Of two masses nobody knows which one the data sheet means.
+      // It is unknown which of the two masses the data sheet means.
       if (second_mass && t == 0) beliefs.back().deviation = 0.0;
       sign.push_back(s);
     }
@@ -70,7 +70,7 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
       }
     }
     if (worst < 0) break;
-    // The data want less than nothing of it: hardly any is left.
+    // The data want a negative factor: only a small part remains.
     constexpr double kHardlyAny = 0.01;
     fixed[static_cast<std::size_t>(worst)] = true;
     beliefs[static_cast<std::size_t>(worst)].value *= kHardlyAny;
@@ -98,7 +98,7 @@ double EffortRegression::confidence(const ScreenedModel& before, const ScreenedM
 }
 
 EffortRegression::Prior EffortRegression::belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
-  /// A data sheet that gives no deviation is believed to half its value.
+  /// A data sheet value without a deviation has a prior deviation of half the value.
   constexpr double kBelief = 0.5;
   const std::string& kind = base[index].kind;
   const sim::EffectEntry* entry = model_.find(kind);
@@ -125,7 +125,7 @@ VectorXd EffortRegression::solve(const MatrixXd& moments, const VectorXd& projec
   for (Index c = 0; c < b.size(); ++c) {
     const Prior& belief = beliefs[static_cast<std::size_t>(c)];
     if (fixed[static_cast<std::size_t>(c)]) continue;
-    // A column that is another one's multiple shares its factor with it.
+    // Proportional columns share one factor.
     constexpr double kTiny = 1e-9;
     a(c, c) *= 1.0 + kTiny;
     if (belief.deviation > 0.0) {

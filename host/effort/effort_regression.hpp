@@ -1,4 +1,4 @@
-// Least squares of the effort on the columns of effects, as far as physics leaves each factor room.
+// Least squares of torque or force on the columns of effects, with physical bounds of each factor.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,39 +12,39 @@
 
 namespace host {
 
-/// A model whose parameters came from the regression.
+/// A model with parameters from the regression.
 struct ScreenedModel {
   std::vector<std::string> kinds;  ///< beyond the base, in the order in which they were chosen
   sim::DriveDescription model;
   std::string words;  ///< of the last kind: "orders 72, 18 of 6.283 mm"; may be empty
-  /// RMS residual over RMS acting effort of the rows; 1 is no better than no model.
+  /// RMS residual over RMS torque or force of the rows; 1 is no better than no model.
   double train = 1.0, validate = 1.0;
-  double probability = 0.0;  ///< of the last kind, or of its group, among all that may follow and nothing
-  double confidence = 0.0;   ///< of the last kind against nothing more
+  double probability = 0.0;  ///< of the last kind or its group, among all candidates and "nothing"
+  double confidence = 0.0;   ///< of the last kind, against no further effect
   std::size_t factors = 0;
   Eigen::VectorXd residual;  ///< of every row, Nm or N
 };
 
-/// Regression of the effort of the training rows, or of a part of it. Keeps references to model, rows and effort.
+/// Regression of the training rows' torque or force, or of a part of it. Keeps references to model, rows and effort.
 class EffortRegression {
  public:
   EffortRegression(const sim::DriveDescription& model, const EffortRows& rows)
       : EffortRegression(model, rows, rows.effort) {}
-  /// `effort`: what is left to explain, Nm or N, one element a row.
+  /// `effort`: residual to explain, Nm or N, one element per row.
   EffortRegression(const sim::DriveDescription& model, const EffortRows& rows, const Eigen::VectorXd& effort);
 
-  /// How much each row counts, 0 to 1: less where the residual's Student distribution takes it for an outlier.
+  /// Weight of each row, 0 to 1: smaller for outliers of the residual's Student distribution.
   void weigh(const Eigen::VectorXd& weights);
 
-  /// Fits the base and the further terms; false where a further term's factor has no room within physics.
+  /// Fits the base and the further terms; false if a further term's factor has no value within physical bounds.
   bool fit(const std::vector<EffortTerm>& base, const std::vector<const EffortTerm*>& further, ScreenedModel& out,
            std::vector<std::string>* held = nullptr) const;
 
-  /// That the judging rows' error falls, by a bootstrap over their blocks.
+  /// Probability that the validation error falls, by a bootstrap over blocks.
   double confidence(const ScreenedModel& before, const ScreenedModel& after) const;
 
  private:
-  /// What is known of a factor before the fit.
+  /// Prior of a factor.
   struct Prior {
     double value = 0.0;
     double deviation = 0.0;  ///< 0: nothing is known
@@ -54,7 +54,7 @@ class EffortRegression {
   Prior belief_of(std::size_t index, const std::vector<EffortTerm>& base) const;
   Eigen::VectorXd solve(const Eigen::MatrixXd& moments, const Eigen::VectorXd& projection,
                         const std::vector<Prior>& beliefs, const std::vector<bool>& fixed, double variance) const;
-  /// Variance of a row's residual as if rows were independent: rows of a block are alike, and count for fewer.
+  /// Variance of a row's residual as if rows were independent; correlated rows of a block count less.
   double effective_variance(const Eigen::MatrixXd& phi, const Eigen::VectorXd& theta) const;
   /// `acting`: EffortTerm::acting of all terms together.
   void measure(ScreenedModel& model, double acting) const;
@@ -62,9 +62,9 @@ class EffortRegression {
 
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
-  const Eigen::VectorXd& effort_;          ///< what is left to explain, one element a row
-  Eigen::VectorXd train_;                  ///< 0 for rows that judge, else the weight, 0 to 1
-  double effort_train_, effort_validate_;  ///< RMS of all that the motor gave
+  const Eigen::VectorXd& effort_;          ///< residual to explain, one element per row
+  Eigen::VectorXd train_;                  ///< 0 for validation rows, else the weight, 0 to 1
+  double effort_train_, effort_validate_;  ///< RMS of the motor's torque or force
 };
 
 }  // namespace host

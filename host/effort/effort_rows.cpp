@@ -17,14 +17,14 @@ namespace host {
 
 namespace {
 
-/// Below this part of a record's high speeds (95 %) an axis may stand: no force balance holds there.
+/// Below this part of a record's high speeds (95 %) an axis may stick: the force balance does not hold there.
 constexpr double kSlidingShare = 0.01;
-/// A speed that changes by less than this part of itself within a record is steady.
+/// A speed that changes by less than this part within a record is steady.
 constexpr double kSteadyShare = 0.3;
-/// So does an acceleration that needs less than this part of the effort.
+/// The same for an acceleration that needs less than this part of the torque or force.
 constexpr double kIdleShare = 0.3;
 constexpr double kBlock_s = 0.5;
-/// What slides for less than this in all proves nothing, s.
+/// Less sliding motion than this in total does not suffice, s.
 constexpr double kLeastSliding_s = 0.2;
 
 /// Whether a record moves at one speed a direction, starts and reversals included, so that inertia hardly shows.
@@ -47,12 +47,12 @@ bool is_steady(const std::vector<double>& speed, double slow, double inertia, co
   return spread <= kSteadyShare * kSteadyShare * squares && inertial <= kIdleShare * kIdleShare * efforts;
 }
 
-/// Deviation of the acceleration that the channel's noise leaves below a cut-off.
+/// Standard deviation of the acceleration from the channel's noise below a cut-off.
 double acceleration_deviation(const Record& record, const sim::DataSheet& data, bool by_speed, double cutoff_Hz) {
   return std::sqrt(acceleration_noise(record, data, cutoff_Hz, by_speed));
 }
 
-/// As high as the sampling allows, lowered until the sensor's noise is a hundredth of the effort.
+/// As high as the sampling allows, lowered until the sensor's noise is a hundredth of the torque or force.
 double cutoff_of(const Record& record, const sim::DataSheet& data, bool by_speed, double inertia, double effort) {
   constexpr double kHighest_Hz = 120.0, kRateShare = 0.125, kNoiseShare = 0.01, kStep = 0.85, kLowest_Hz = 10.0;
   const double rate_Hz = 1.0 / record.sample_period_s;
@@ -138,7 +138,7 @@ struct Builder {
   }
 };
 
-/// What inertia and friction leave of the effort of the training rows, relative.
+/// Relative training residual of inertia and friction.
 double left_by_base(const EffortRows& rows) {
   const auto n = static_cast<Eigen::Index>(std::ranges::count(rows.judges, false));
   Eigen::MatrixXd phi(n, 4);
@@ -231,7 +231,7 @@ EffortRows effort_rows(const sim::DriveDescription& model, const RecordSet& trai
       if (enough(other, false) && left_by_base(other) < kClearlyBetterBySpeed * left_by_base(rows))
         rows = std::move(other);
     }
-  } catch (const Failure&) {  // no effort can be had, or too short for the filter
+  } catch (const Failure&) {  // without torque or force, or too short for the filter
     return {};
   }
   rows.has_position = position;

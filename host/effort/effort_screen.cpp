@@ -39,7 +39,7 @@ class Search {
   }
 
  private:
-  /// The best model with a further term, fitted to the training rows; its kinds hold the term's once.
+  /// The best model with a further term, fitted to the training rows; its list of kinds holds the term's once.
   bool with(const EffortTerm& term, ScreenedModel& out) const {
     std::vector<const EffortTerm*> further = pointers_to(chosen_);
     further.push_back(&term);
@@ -51,7 +51,7 @@ class Search {
     return true;
   }
 
-  /// The same with the form refined, from each start of its kind: the one that leaves least of the training rows.
+  /// The same with the form refined, from each start of its kind: the one with the smallest training residual.
   bool with_closest(NextEffect& effect, ScreenedModel& out) const {
     if (!with(effect.term, out)) return false;
     if (!effect.term.neighbours) return true;
@@ -68,16 +68,16 @@ class Search {
     return true;
   }
 
-  /// What every kind would leave, for the reader and for `add`.
+  /// Residual with each kind, for the report and for `add`.
   std::vector<ScreenedModel> all_of(NextEffects& next) const {
-    // Where a form is refined, it is for those that may be asked for.
+    // Forms are refined only for kinds that may be asked for.
     constexpr double kPossible = 1e-4;
     std::vector<ScreenedModel> list;
     for (NextEffect& effect : next.effects) {
       ScreenedModel tried;
       const bool closest = effect.probability > kPossible || next.effects.size() == 1;
       if (!(closest ? with_closest(effect, tried) : with(effect.term, tried))) continue;
-      if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further waves of an effect that is there
+      if (tried.kinds.size() == screen_.best().kinds.size()) continue;  // further waves of an effect that was found
       tried.probability = effect.probability;
       tried.confidence = logistic(effect.log_odds);
       list.push_back(std::move(tried));
@@ -85,10 +85,11 @@ class Search {
     return list;
   }
 
-  /// Motions that no fit has seen have the last word: they must lie nearer to a model that has the effect.
+  /// Held-back motions decide: they must fit better with the effect than without.
   bool is_refuted(const ScreenedModel& taken) const { return taken.validate >= screen_.best().validate; }
 
-  /// Of a group, a kind behind the first that held-back motions refute: it is not a rival. Null if every kind holds.
+  /// The first kind of a group after the leader that held-back motions refute: it is not a rival. Null if all kinds
+  /// hold.
   NextEffect* refuted_rival(const std::vector<std::string>& group, NextEffects& next) const {
     for (std::size_t k = 1; k < group.size(); ++k) {
       NextEffect& rival = effect_of(next, group[k]);
@@ -98,7 +99,7 @@ class Search {
     return nullptr;
   }
 
-  /// The step is over: what was set aside is no rival any more.
+  /// Ends a step: kinds that were set aside are no longer rivals.
   void close_step(std::vector<ScreenedModel> list, const NextEffects& next) {
     for (ScreenedModel& tried : list) {
       const auto still = std::ranges::find(next.effects, tried.kinds.back(),
@@ -108,7 +109,8 @@ class Search {
     screen_.steps.push_back(std::move(list));
   }
 
-  /// Whether a fit takes enough of the squared error on validation rows: of what is left, and of what the base leaves.
+  /// Whether a fit explains enough of the squared error on validation rows: of the residual, and of the base's
+  /// residual.
   bool is_worth_naming(double before, double after) const {
     const double left = before * before, taken = left - after * after;
     return taken >= kWorthOfLeft * left ||
@@ -131,7 +133,7 @@ class Search {
     return next;
   }
 
-  /// What has no name is a rival as long as it predicts held-back motions better than the most probable effect does.
+  /// An unnamed effect is a rival while it predicts held-back motions better than the most probable effect.
   void weigh_unnamed(NextEffects& next) const {
     const auto is_unnamed = [](const NextEffect& effect) { return effect.term.kind == kNoName; };
     const auto unnamed = std::ranges::find_if(next.effects, is_unnamed);
@@ -147,20 +149,20 @@ class Search {
       take_out(next, {kNoName});
   }
 
-  /// Plain least squares of a form beside what was chosen.
+  /// Least squares of a form in addition to the chosen ones.
   std::optional<double> plain_error(const EffortTerm& term) const {
     ScreenedModel tried;
     if (contains(refused_waves_, term.words) || !with(term, tried)) return {};
     return tried.train;
   }
 
-  /// Adds the most probable effect that is certain, holds on validation rows and takes enough of the error; or those
-  /// that take enough together. False where there is none.
+  /// Adds the most probable effect that is certain, holds on validation rows and explains enough of the error, or
+  /// several that do so together. Returns false if there is none.
   bool step(const EffortHypotheses& hypotheses) {
     NextEffects all = weigh(hypotheses);
     weigh_unnamed(all);
     std::vector<ScreenedModel> list = all_of(all);
-    // What is there, but takes hardly anything, is no rival of what takes much.
+    // A certain effect with a small share is no rival of one with a large share.
     std::vector<std::string> small;
     for (const ScreenedModel& tried : list)
       if (!is_worth_naming(tried)) small.push_back(tried.kinds.back());
@@ -179,7 +181,7 @@ class Search {
     return false;
   }
 
-  /// A spring is a gap of no width: a gap must take its part of what the spring leaves.
+  /// A spring is a gap of zero width: a gap must explain part of the spring's residual.
   void take_out_needless_gap(const std::vector<ScreenedModel>& list, NextEffects& next) const {
     const auto of = [&](const char* kind) {
       return std::ranges::find_if(list, [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
@@ -189,7 +191,7 @@ class Search {
       take_out(next, {"backlash"});
   }
 
-  /// Of what may come next; what is refuted is taken out of it and, for good, of `all`.
+  /// From the candidates; refuted ones are removed from them and, permanently, from `all`.
   bool take_one(NextEffects& next, NextEffects& all, const std::vector<ScreenedModel>& list) {
     while (true) {
       double probability = 0.0;
@@ -201,7 +203,7 @@ class Search {
         take_out(next, {refuted});
         continue;
       }
-      // Where an effect that is there may have another wave, no second one is needed.
+      // If a further wave of a known effect suffices, no second effect is needed.
       std::stable_partition(group.begin(), group.end(), [&](const std::string& kind) { return is_there(kind); });
       const std::string kind = group.front();
       NextEffect& effect = effect_of(next, kind);
@@ -233,7 +235,7 @@ class Search {
 
   bool is_there(const std::string& kind) const { return contains(screen_.best().kinds, kind); }
 
-  /// A wave that does not hold under one name is no other effect.
+  /// A wave that fails validation under one name is not tried under another.
   void refuse_wave(const std::string& form, NextEffects& next) {
     refused_waves_.push_back(form);
     std::vector<std::string> same;
@@ -247,7 +249,7 @@ class Search {
     take_out(all, {kind});
   }
 
-  /// Of a group no second one follows: the first stands for all, and may have further waves.
+  /// A group adds only its first kind, which represents all and may have further waves.
   void keep(EffortTerm term, const std::vector<std::string>& group) {
     for (const std::string& other : group)
       if (other != term.kind || !term.can_repeat) excluded_.push_back(other);
@@ -280,7 +282,7 @@ class Search {
     double log_odds;
   };
 
-  /// Effects that are certain beside all that was found, each of them too small to be named.
+  /// Effects that are certain in addition to all that were found, but each too small to be named.
   std::vector<SmallOne> small_ones(NextEffects all) {
     std::vector<SmallOne> small;
     while (true) {
@@ -299,10 +301,10 @@ class Search {
     }
   }
 
-  /// Takes the first of effects that hide each other: each takes too little to be named, all together they take enough.
+  /// Adds the first of several effects that mask each other: only together they explain enough to be named.
   bool take_small_ones_together(const NextEffects& all, const std::vector<ScreenedModel>& list) {
     NextEffects no_waves = all;
-    // Waves after waves would take any shape over the travel: a first one must be worth its name by itself.
+    // Many waves fit any shape over the travel: the first one must be significant by itself.
     std::vector<std::string> waves;
     for (const NextEffect& effect : all.effects)
       if (effect.term.can_repeat) waves.push_back(effect.term.kind);
@@ -314,7 +316,7 @@ class Search {
         if (k != without) further.push_back(&together[k].term);
       return regression_.fit(base_, further, out);
     };
-    // The least one is dropped until each is needed.
+    // Drops the smallest until each is needed.
     for (bool dropped = true; dropped && together.size() > 1;) {
       ScreenedModel with_all;
       if (!fitted(together.size(), with_all)) return false;
@@ -330,7 +332,7 @@ class Search {
       if (dropped) together.erase(together.begin() + static_cast<std::ptrdiff_t>(smallest));
     }
     if (together.size() < 2) return false;
-    // The others follow in the next steps, in the form that suits them beside the first.
+    // The others follow in the next steps, in the form that fits best beside the first.
     SmallOne& first = together.front();
     ScreenedModel taken;
     if (!with(first.term, taken)) return false;
@@ -342,7 +344,7 @@ class Search {
     return true;
   }
 
-  /// Beside one of two effects that hide each other, is another certain?
+  /// Whether another effect is certain beside one of two that mask each other.
   bool take_one_of_two(const EffortHypotheses& hypotheses, const NextEffects& all,
                        const std::vector<ScreenedModel>& list) {
     const NextEffect* beside = less_seen_of_two(regression_, base_, chosen_, screen_.best(), all,
@@ -366,7 +368,7 @@ class Search {
     return true;
   }
 
-  /// The final model without a kind; nothing where that cannot be fitted.
+  /// The final model without a kind; empty if that cannot be fitted.
   std::optional<ScreenedModel> without(const std::string& kind, std::vector<EffortTerm>& others) const {
     others = chosen_;
     std::erase_if(others, [&](const EffortTerm& term) { return term.kind == kind; });
@@ -381,7 +383,7 @@ class Search {
     return left;
   }
 
-  /// The steps that held a kind are none any more.
+  /// Discards the steps that included a kind.
   void drop(const std::string& kind, std::vector<EffortTerm> others, ScreenedModel left) {
     const auto at = std::ranges::find(screen_.chosen.back().kinds, kind) - screen_.chosen.back().kinds.begin();
     chosen_ = std::move(others);
@@ -399,7 +401,7 @@ class Search {
     drop(to_be_followed_, std::move(others), *std::move(left));
   }
 
-  /// An effect that was found first may have stood for two that came later.
+  /// An effect that was found first may have represented two that were found later.
   void drop_what_others_explain(const EffortHypotheses& hypotheses) {
     for (std::size_t k = 0; screen_.chosen.size() > 1 && k + 1 < screen_.chosen.size();) {
       const std::string kind = screen_.chosen.back().kinds[k];
@@ -419,12 +421,12 @@ class Search {
   const std::vector<EffortTerm>& base_;
   std::vector<EffortTerm> chosen_ = {};
   std::vector<std::string> excluded_, refused_waves_ = {};
-  std::string to_be_followed_ = {};  ///< chosen for what it shows together with another, which is still to be found
+  std::string to_be_followed_ = {};  ///< chosen for its gain together with another effect that is still to be found
   EvidenceFit left_ = {};
 };
 
-/// Where the speed hardly changes, what is left of its changes follows the torque as much as it leads it: each record
-/// has one speed a direction, and no acceleration.
+/// If the speed hardly changes, its residual changes follow the torque as much as they cause it: each record has one
+/// speed per direction, and no acceleration.
 void take_mean_speeds(EffortRows& rows) {
   for (const double sign : {1.0, -1.0}) {
     std::vector<double> sums(rows.signals.size(), 0.0), counts(rows.signals.size(), 0.0);
@@ -460,7 +462,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
     return {};
   if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
   if (most_effects > 0) {
-    // The level that usual sizes compare to; where nothing rubs, a twentieth of what the motor gives.
+    // Scale of usual sizes; without friction, a twentieth of the motor's torque or force.
     constexpr double kLeastLevel = 0.05;
     const sim::Drive fitted(screen.base.model);
     const double coulomb =
@@ -481,7 +483,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
 
 std::optional<ScreenedModel> refitted_with(const EffortScreen& screen, const EffortTerm& term) {
   const ScreenedModel& now = screen.best();
-  // What stands beside the term is fitted again where the regression knows all of it.
+  // The other terms are fitted again if the regression covers all of them.
   const bool whole = screen.chosen.empty() || has_linear_form(now.model);
   const EffortRegression regression(now.model, screen.rows, whole ? screen.rows.effort : now.residual);
   ScreenedModel with;

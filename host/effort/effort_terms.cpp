@@ -53,7 +53,7 @@ EffortTerm simple(std::string kind, const VectorXd& column, int sign,
           {}};
 }
 
-/// Friction curve falling with speed: the part beyond the Coulomb level, by directions where the model has two levels.
+/// Friction that falls with speed: the part above the Coulomb level, by direction if the model has two levels.
 EffortTerm stribeck_term(const sim::DriveDescription& model, const EffortRows& rows, double fading) {
   const VectorXd shape = (-rows.w.array().abs() / fading).exp();
   const sim::EffectEntry* coulomb = model.find("coulomb");
@@ -82,7 +82,7 @@ EffortTerm stribeck_term(const sim::DriveDescription& model, const EffortRows& r
   return term;
 }
 
-/// A pull towards a centre within the travel.
+/// A force towards a centre within the travel.
 EffortTerm spring_term(const EffortRows& rows, double centre) {
   EffortTerm term =
       simple("spring_torque", rows.x.array() - centre, 0, [centre](double stiffness, sim::DriveDescription& fitted) {
@@ -96,7 +96,7 @@ EffortTerm spring_term(const EffortRows& rows, double centre) {
   return term;
 }
 
-/// What a command asks for beyond the level that the amplifier gives: in proportion 1, or it is something else.
+/// Part of a command beyond the amplifier's limit: a factor of 1, otherwise it is something else.
 EffortTerm current_limit_term(const sim::DriveDescription& model, const EffortRows& rows, double limit) {
   VectorXd given(rows.w.size());
   sim::DriveDescription standing = standing_part(model);
@@ -277,7 +277,7 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
   if (may_have("nonlinear_viscous"))
     for (const double part : {0.05, 0.08, 0.12, 0.2, 0.4}) {
       const double saturation = part * top;
-      const int flattening = may_have("stribeck") ? 1 : 0;  // what falls with speed is called so
+      const int flattening = may_have("stribeck") ? 1 : 0;  // the name of friction that falls with speed
       terms.push_back(simple(
           "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), flattening,
           [saturation](double coefficient, sim::DriveDescription& fitted) {
@@ -319,14 +319,14 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
     }
   }
   if (!rows.steady && may_have("input_delay") && may_have("current_loop_lag")) {
-    // T(t - d) = explained: the effort that is asked for leads what acts by d times its slope. The slope is taken of
-    // what inertia and friction explain, which holds no noise of the effort.
+    // T(t - d) = explained: the command leads the acting torque by d times its slope. The slope is that of inertia and
+    // friction, which contain no measurement noise.
     VectorXd slope = VectorXd::Zero(rows.w.size());
     for (Index k = 1; k + 1 < rows.w.size(); ++k) {
       const double step_s = rows.t_s(k + 1) - rows.t_s(k - 1);
       const bool together =
           rows.record[static_cast<std::size_t>(k - 1)] == rows.record[static_cast<std::size_t>(k + 1)];
-      constexpr double kGap_s = 0.1;  // rows on both sides of a stop are not neighbours
+      constexpr double kGap_s = 0.1;  // rows on both sides of a stop are not adjacent
       if (together && step_s > 0.0 && step_s < kGap_s) slope(k) = (explained(k + 1) - explained(k - 1)) / step_s;
     }
     terms.push_back(simple("input_delay", slope, 1, [](double delay_s, sim::DriveDescription& fitted) {
@@ -337,7 +337,7 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
     }));
   }
   if (!rows.has_position) return terms;
-  // A spring that is at rest nowhere within the travel is a weight, and what is left of it.
+  // A spring without an equilibrium within the travel is a weight and its remainder.
   constexpr int kCentres = 5;
   if (may_have("spring_torque"))
     for (int k = 0; k < kCentres; ++k)

@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 /// Neighbouring waves of the grid differ by this part of a wave over the whole travel.
 constexpr double kApart = 0.3;
 constexpr int kMostOrders = 120, kMostFreeWaves = 400;
-/// A weight on an arm shows in a quarter of a turn; with less of a turn it looks like a spring.
+/// A weight on an arm shows in a quarter of a turn; in less it looks like a spring.
 constexpr double kLeastOfATurn = 0.25;
 
 double travel_of(const EffortRows& rows) { return rows.x.maxCoeff() - rows.x.minCoeff(); }
@@ -90,7 +90,7 @@ MatrixXd wave_columns(const EffortRows& rows, const VectorXd& weight, const Wave
   MatrixXd columns(rows.x.size(), 2);
   const double per_travel = wave.order / wave.period;
   for (Index k = 0; k < columns.rows(); ++k) {
-    // What the zero-phase filter of the rows leaves of a wave that passes so fast.
+    // Gain of the rows' zero-phase filter for a wave at this speed.
     const double cutoff_Hz = rows.signals[rows.record[static_cast<std::size_t>(k)]].cutoff_Hz;
     const double passing = std::pow(per_travel * rows.w(k) * rows.lead / cutoff_Hz, 2), fourth = passing * passing;
     const double seen = weight(k) / (1.0 + fourth * fourth);

@@ -1,4 +1,4 @@
-// Waves over the travel as columns of the force balance: which periods are tried, and what a wave makes of a model.
+// Waves over the travel as columns of the force balance: the periods to try, and a wave as an effect of a model.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,18 +19,18 @@ struct Wave {
 /// Travel of one turn of the shaft, mm; 0 for a linear drive.
 double turn_of(const sim::DataSheet& data);
 
-/// Below this period, mm or m, waves pass faster than the filter lets through, or are made by the encoder's steps.
+/// Below this period, mm or m, the filter removes waves, or they come from the encoder's steps.
 double shortest_wave(const sim::DataSheet& data, const EffortRows& rows);
 
-/// All waves that rows of a drive can tell: orders of a shaft's turn, where the travel holds a quarter of one, and any
-/// period that comes back within the travel; `longest`: in travels, of the free ones.
+/// All waves that a drive's rows can show: orders of a shaft's turn, if the travel covers a quarter of one, and any
+/// period that repeats within the travel; `longest`: in travels, of the free ones.
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest);
 
 /// cos and sin of a wave, times `weight`: two columns.
 Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weight, const Wave& wave);
 
-/// What an inertia asks for that varies along the travel by one wave (a crank, an arm): energy is kept, so that
-/// T = J(x) a + w^2/2 dJ/dx. Two columns, of J's cosine and sine. No effect of the catalogue.
+/// Torque of an inertia that varies along the travel as one wave (a crank, an arm). Energy is conserved, so that T =
+/// J(x) a + w^2/2 dJ/dx. Two columns, for the cosine and sine of J. Not in the catalogue.
 Eigen::MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave);
 
 /// A periodic effect of one wave. A model that has an entry of that kind and period gets one order more.

@@ -20,13 +20,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A further knot must take this part of the judging rows' squared error.
+/// Part of the validation rows' squared error that a further knot must explain.
 constexpr double kLeastGainOfCurve = 0.01;
 
 struct Coordinate {
   VectorXd at;
-  VectorXd weight;      ///< -1 or 1: friction turns with the motion
-  double period = 0.0;  ///< `at` goes from 0 to it and begins anew
+  VectorXd weight;      ///< -1 or 1: friction changes sign with the motion
+  double period = 0.0;  ///< `at` goes from 0 to it and starts again
 };
 
 using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
@@ -42,14 +42,14 @@ MatrixXd orders_of(const EffortRows& rows, double period) {
   return columns;
 }
 
-/// Squared error on some rows of columns that were fitted to others.
+/// Squared error on some rows with factors fitted to others.
 double left_elsewhere(const VectorXd& left, const MatrixXd& columns, const Mask& fitted, const Mask& judged) {
   const VectorXd use = fitted.cast<double>();
   const VectorXd factors = least_norm_solution(use.asDiagonal() * columns, use.cwiseProduct(left));
   return judged.select(left - columns * factors, 0.0).matrix().squaredNorm();
 }
 
-/// Whether what a period shows in two thirds of the travel is there in the other third, whichever that is.
+/// Whether a period found in two thirds of the travel also shows in the other third, for each third.
 bool comes_back(const EffortRows& rows, const VectorXd& left, double period) {
   const MatrixXd columns = orders_of(rows, period);
   const double first = rows.x.minCoeff(), third = (rows.x.maxCoeff() - first) / 3.0;
@@ -61,7 +61,7 @@ bool comes_back(const EffortRows& rows, const VectorXd& left, double period) {
   return true;
 }
 
-/// The shortest travel after which what the best model leaves comes back; nothing where it does not.
+/// The shortest travel after which the best model's residual repeats; empty if it does not.
 std::optional<double> period_of(const EffortScreen& screen) {
   const EffortRows& rows = screen.rows;
   const VectorXd& left = screen.best().residual;
@@ -120,7 +120,7 @@ std::vector<double> even_knots(double period, std::size_t count) {
   return knots;
 }
 
-/// Knots that part the training rows evenly, or a period.
+/// Knots with equal numbers of training rows between them, or equally spaced over a period.
 std::vector<double> knots_of(const EffortRows& rows, const Coordinate& coordinate, std::size_t count) {
   const VectorXd& at = coordinate.at;
   if (coordinate.period > 0.0) return even_knots(coordinate.period, count);
@@ -149,14 +149,14 @@ MatrixXd hats(const Coordinate& coordinate, const std::vector<double>& knots) {
     columns(k, n - 1) = coordinate.weight(k) * (1.0 - part);
     columns(k, n) = coordinate.weight(k) * part;
   }
-  if (coordinate.period > 0.0) {  // the last knot is the first one again
+  if (coordinate.period > 0.0) {  // the last knot equals the first
     columns.col(0) += columns.rightCols(1);
     columns.conservativeResize(Eigen::NoChange, columns.cols() - 1);
   }
   return columns;
 }
 
-/// The curve's entry: `values` at `knots`, with bands that take the rest of the model as it is.
+/// The curve's entry: `values` at `knots`, with intervals for fixed other parameters.
 sim::EffectEntry entry_of(std::string_view over, const std::vector<double>& knots, const VectorXd& values,
                           const MatrixXd& information, double variance) {
   sim::EffectEntry entry;
@@ -209,8 +209,8 @@ std::optional<FreeCurveFit> fitted_with_as_many_knots_as_pay(const EffortScreen&
   return best;
 }
 
-/// Over the effort itself a curve and the inertia could take any part of each other's: the inertia stands as it is.
-/// Without acceleration nothing else would.
+/// Over the torque itself, curve and inertia are not separable: the inertia is held. Without acceleration there is no
+/// other choice.
 std::optional<FreeCurveFit> fitted_over_effort(const EffortScreen& screen) {
   if (screen.rows.steady) return {};
   EffortScreen standing = screen;
@@ -226,7 +226,7 @@ std::optional<FreeCurveFit> fitted_over_effort(const EffortScreen& screen) {
 std::optional<FreeCurveFit> fit_free_curve(const EffortScreen& screen, std::string_view over) {
   std::optional<FreeCurveFit> best;
   for (const std::string_view name : sim::kCurveCoordinates) {
-    // The effort explains itself: a curve over it is only drawn where it is asked for.
+    // The torque explains itself: a curve over it is fitted only on request.
     if (over.empty() ? name == "current" : name != over) continue;
     std::optional<FreeCurveFit> own =
         name == "current" ? fitted_over_effort(screen) : fitted_with_as_many_knots_as_pay(screen, name);

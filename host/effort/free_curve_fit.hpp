@@ -1,4 +1,4 @@
-// A curve where no formula fits: straight between as many knots as the rows that judge pay for.
+// A curve where no formula fits: piecewise linear, with as many knots as the validation rows support.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@ namespace host {
 struct FreeCurveFit {
   std::string over;
   std::size_t knots = 0;
-  double period = 0.0;  ///< mm or m; 0 where it does not come back
+  double period = 0.0;  ///< mm or m; 0 if it does not repeat
   ScreenedModel model;  ///< the screen's best model with the curve added
 };
 
-/// Fits what the screen's best model leaves as a curve over a coordinate (sim::kCurveCoordinates), or over the one that
-/// judges best where `over` is empty. Nothing where no curve lowers the error of the rows that judge.
+/// Fits the residual of the best model as a curve over a coordinate (sim::kCurveCoordinates), or over the best one in
+/// validation if `over` is empty. Empty if no curve lowers the validation error.
 std::optional<FreeCurveFit> fit_free_curve(const EffortScreen& screen, std::string_view over = {});
 
 }  // namespace host

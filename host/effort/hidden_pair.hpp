@@ -1,4 +1,4 @@
-// Two effects that hide each other: beside either of them alone, what is left wanders as it did before.
+// Two effects that mask each other: with either of them alone, the residual varies as before.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace host {
 
-/// Of the two that leave least of the training rows, and take more of the squared error together than what each takes
-/// alone adds up to, on training and on validation rows: the one that takes less alone. Null where no two do so and are
-/// worth naming. Waves take part in no pair: together they take any shape. `now`: what was chosen so far, fitted.
+/// Of the pair with the smallest training residual that together explains more of the squared error than both alone add
+/// up to, in training and in validation: the one that explains less alone. Null if no pair does so and is large enough
+/// to be named. Waves are excluded: together they fit any shape. `now`: the effects chosen so far, fitted.
 const NextEffect* less_seen_of_two(const EffortRegression& regression, const std::vector<EffortTerm>& base,
                                    const std::vector<EffortTerm>& chosen, const ScreenedModel& now,
                                    const NextEffects& all,

@@ -7,7 +7,7 @@
 namespace host {
 
 std::vector<std::string> certain_group(const NextEffects& next, double& probability) {
-  constexpr std::size_t kLargestGroup = 4;  // more kinds are no answer
+  constexpr std::size_t kLargestGroup = 4;  // a group of more kinds is no answer
   std::vector<std::string> group;
   probability = 0.0;
   for (const NextEffect& effect : next.effects) {

@@ -1,4 +1,4 @@
-// What repeats when a motion is repeated: that a model can explain. What does not is noise, whatever its size.
+// Repeatable part of the residual, which a model could explain; the rest is noise.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 namespace host {
 
 struct Repeatability {
-  double share = 0.0;    ///< of the residual's square that came back, 0..1
-  double floor = 0.0;    ///< RMS of what did not, Nm or N: the floor that is the machine's
-  double seconds = 0.0;  ///< how much motion was compared with its repetition
+  double share = 0.0;    ///< part of the residual's square that repeated, 0 to 1
+  double floor = 0.0;    ///< RMS of the rest, Nm or N: the machine's noise floor
+  double seconds = 0.0;  ///< duration of the motion that was compared with its repetition
 };
 
-/// The residual of every row against the residual one period of the motion later, over the records whose motion comes
-/// back. Nothing where none does for two seconds in all.
+/// Compares the residual of every row with that one period of the motion later, over the records whose motion repeats.
+/// Empty if that covers less than two seconds in total.
 std::optional<Repeatability> repeatability(const EffortRows& rows, const Eigen::VectorXd& residual);
 
 }  // namespace host

@@ -27,7 +27,7 @@ double follows(const std::vector<double>& path, const std::vector<double>& rate)
 
 struct AffineFit {
   double factor = 0.0;
-  double left = 1.0;   ///< part of the variance that is left
+  double left = 1.0;   ///< unexplained part of the variance
   double worst = 1.0;  ///< largest residual over the channel's range
 };
 
@@ -76,8 +76,9 @@ bool position_and_speed_swapped(const Record& record) {
 }
 
 std::optional<ScaledCopy> scaled_copy(const Record& record) {
-  constexpr double kSame = 1e-6;         // of the variance: a thousandth of the channel's size
-  constexpr double kSameExactly = 1e-9;  // of the range: rounding, where a good servo follows to a thousandth too
+  constexpr double kSame = 1e-6;  // of the variance: a thousandth of the channel's size
+  constexpr double kSameExactly =
+      1e-9;  // of the range: rounding errors only, since a good servo also follows to a thousandth
   using Channel = std::vector<double> Record::*;
   constexpr Channel kChannels[] = {&Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref};
   const auto is_reference = [](Channel channel) { return channel == &Record::x_ref || channel == &Record::w_ref; };
@@ -98,7 +99,7 @@ std::optional<ScaledCopy> scaled_copy(const Record& record) {
 
 bool speed_is_differenced(const Record& record, const sim::DataSheet& data) {
   if (!record.has_position() || !record.has_speed() || record.size() < 4) return false;
-  constexpr double kSame = 1e-3;  // of one encoder step a sample: a tachometer's noise is no multiple of the step
+  constexpr double kSame = 1e-3;  // of one encoder step per sample: tachometer noise is not a multiple of the step
   const double unit = encoder_step(record, data) / (data.lead * record.sample_period_s);
   if (!(unit > 0.0)) return false;
   const auto departs = [&](std::size_t back, std::size_t ahead) {

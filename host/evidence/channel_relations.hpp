@@ -1,4 +1,4 @@
-// Channels that say what another channel should say: exchanged, or the same thing twice.
+// Finds channels that contradict or repeat another one: exchanged columns and copies.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// Whether the column of the speed holds the position and the other way round: the change of "speed" follows
-/// "position", and the change of "position" does not follow "speed".
+/// Whether the columns of speed and position are exchanged: the change of "speed" follows "position", and the change of
+/// "position" does not follow "speed".
 bool position_and_speed_swapped(const Record& record);
 
 struct ScaledCopy {
@@ -20,11 +20,11 @@ struct ScaledCopy {
   bool harmless;  ///< the analysis does not need the copy: a current that only repeats the command
 };
 
-/// The first channel that is another one times a constant, plus a constant, to a thousandth of its own size or (what
-/// a reference could follow, too) exactly. Channels that do not vary are no copies.
+/// The first channel that is another one times a constant plus a constant: to a thousandth of its own size, or exactly
+/// if a reference could follow it as closely. Constant channels are not copies.
 std::optional<ScaledCopy> scaled_copy(const Record& record);
 
-/// Whether the speed is the difference of the position from row to row, or over two rows, to the last digit.
+/// Whether the speed is the difference of positions over one or two rows, to the last digit.
 bool speed_is_differenced(const Record& record, const sim::DataSheet& data);
 
 }  // namespace host

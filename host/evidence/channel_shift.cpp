@@ -17,8 +17,8 @@ namespace host {
 namespace {
 
 constexpr int kMostSamples = 30;
-constexpr double kWhole = 0.1;         ///< a shift this near to a whole number of samples was made by a logger
-constexpr double kPlain = 0.05;        ///< as was one that leaves no more than this part of the squares
+constexpr double kWhole = 0.1;         ///< a logger shifts by whole samples: a shift within this distance of one counts
+constexpr double kPlain = 0.05;        ///< or a shift that leaves at most this part of the squares
 constexpr double kLogLikelihood = 20;  ///< difference that decides between two explanations
 
 /// Smallest of values over shifts -kMostSamples..kMostSamples, between samples by a parabola; empty at the ends.
@@ -32,13 +32,13 @@ std::optional<double> lowest_shift(const std::vector<double>& squares) {
   return static_cast<double>(lowest) - kMostSamples + 0.5 * (left - right) / bend;
 }
 
-/// Sum of squares that `target` less gain and offset times `regressors` leaves.
+/// Sum of squares of `target` minus gain and offset times `regressors`.
 double squares_left(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& target) {
   const Eigen::VectorXd cross = regressors.transpose() * target;
   return std::max(0.0, target.squaredNorm() - cross.dot(symmetric_solution(gram(regressors), cross)));
 }
 
-/// Part of the effort's square that inertia and friction leave at `rows`, for each shift of the effort.
+/// Part of the squared torque or force at `rows` that inertia and friction do not explain, for each shift.
 std::vector<double> rigid_squares(const Motion& motion, std::span<const std::size_t> rows) {
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd regressors(count, 4);
@@ -92,7 +92,7 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
   }
   const std::optional<double> shift = lowest_shift(squares);
   if (!shift || std::abs(*shift) < 0.5) return {};
-  // Below the cut-off white noise has so many independent samples.
+  // White noise below the cut-off has this many independent samples.
   const double independent = static_cast<double>(inner) * 2.0 * cutoff_Hz / rate_Hz;
   const auto index = static_cast<std::size_t>(std::lround(*shift) + kMostSamples);
   const bool whole = std::abs(*shift - std::round(*shift)) <= kWhole;
@@ -100,7 +100,7 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
   const auto better = [&](double other) { return 0.5 * independent * std::log(other / squares[index]); };
   if (better(squares[kMostSamples]) < kLogLikelihood) return {};
   if (*shift > 0.0) {
-    // A lag that begins within a sample delays by up to half of one more than its time constant.
+    // A lag that begins within a sample delays by up to half a sample more than its time constant.
     for (double lag = *shift - 0.75; lag < *shift + 0.8; lag += 0.25) {
       if (lag <= 0.0) continue;
       const double keep = std::exp(-1.0 / lag);
@@ -117,10 +117,10 @@ std::optional<double> tachometer_shift(const Record& record, const sim::DataShee
 
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model) {
   constexpr double kLatestAnswer_s = 0.015;  // dead time and current loop together
-  constexpr double kFirstAnswer = 1.5;       // samples before the command: friction may feign one
+  constexpr double kFirstAnswer = 1.5;       // samples ahead of the command: friction can imitate one
   const double first_answer = record.u_V.empty() ? kLargestTiming : kFirstAnswer;
   constexpr double kGain = 0.15;       // the squares must fall to this part; static friction alone makes 0.25
-  constexpr double kExplained = 0.02;  // of the effort's square: else friction decides where the optimum lies
+  constexpr double kExplained = 0.02;  // of the squared torque or force: above it, friction determines the optimum
   constexpr double kAlike = 0.5;       // samples, between the halves of a record
   MotionOptions options;
   options.decimation = 1;
@@ -145,7 +145,7 @@ std::optional<double> command_shift(const Record& record, const sim::DriveDescri
   if (std::abs(*shift - std::round(*shift)) > kWhole || squares[index] > kGain * squares[kMostSamples] ||
       squares[index] > kExplained)
     return {};
-  // A logger shifts all of a record alike; friction that a rigid drive does not know feigns a shift here and there.
+  // A logger shifts the whole record equally; friction that a rigid model lacks imitates a shift in some parts only.
   const std::span<const std::size_t> all(rows);
   for (const auto half : {all.first(rows.size() / 2), all.last(rows.size() / 2)}) {
     const std::optional<double> own = lowest_shift(rigid_squares(motion, half));

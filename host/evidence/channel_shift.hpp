@@ -1,4 +1,4 @@
-// Channels that were logged early or late, where no lag of the drive or of a sensor explains it.
+// Finds channels that were logged early or late by more than a lag of the drive or a sensor explains.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,13 @@ namespace host {
 std::optional<Motion> motion_if_long_enough(const Record& record, const sim::DataSheet& data,
                                             const MotionOptions& options);
 
-/// Samples by which the tachometer runs behind (> 0) or ahead of (< 0) the encoder. Empty where there is no shift,
-/// where a first-order lag fits as well (that is physics), or where it is not a whole number of samples and leaves more
-/// than such a logger does.
+/// Samples by which the tachometer lags (> 0) or leads (< 0) the encoder. Empty without a shift, if a first-order lag
+/// fits as well (that is physics), or if the shift is not a whole number of samples and leaves a larger residual than a
+/// logger's shift does.
 std::optional<double> tachometer_shift(const Record& record, const sim::DataSheet& data);
 
-/// Whole samples by which the axis answers before (> 0) or after (< 0) its command, beyond what a drive can: an answer
-/// before the command, or later than the catalogue's dead times. Empty otherwise.
+/// Whole samples by which the axis answers before (> 0) or after (< 0) its command, beyond what a drive can do: before
+/// the command, or later than the dead times of the catalogue. Empty otherwise.
 std::optional<double> command_shift(const Record& record, const sim::DriveDescription& model);
 
 }  // namespace host

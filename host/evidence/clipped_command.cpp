@@ -15,9 +15,10 @@ namespace {
 
 constexpr double kAtLevel = 0.999;     ///< of the largest command
 constexpr double kLeastShare = 0.002;  ///< of all rows
-constexpr double kBelowLimit = 0.98;   ///< a command at the converter's limit is the converter's doing
-constexpr double kLeastExcess = 0.15;  ///< of the level: beyond what friction that is not quite Coulomb's can feign
-constexpr double kLeastExcessByModel = 0.5;  ///< a first model's inertia and friction may be a third off
+constexpr double kBelowLimit = 0.98;   ///< a command at the converter's limit is clipped by the converter
+constexpr double kLeastExcess =
+    0.15;  ///< of the level: more than friction that deviates from Coulomb's law can imitate
+constexpr double kLeastExcessByModel = 0.5;  ///< inertia and friction of a first model may be wrong by a third
 constexpr double kMostPlateaus = 0.8;        ///< part of the plateaus that must show it
 constexpr std::size_t kFewestPlateaus = 3;
 
@@ -26,7 +27,7 @@ Eigen::Vector4d regressors(const Motion& motion, std::size_t k) {
   return {motion.acceleration[k], w, w > 0.0 ? 1.0 : 0.0, w < 0.0 ? 1.0 : 0.0};
 }
 
-/// Inertia and friction as the rows of `use` show them; empty where these do not determine them.
+/// Inertia and friction from the rows of `use`; empty if they do not determine them.
 std::optional<Eigen::Vector4d> rigid_fit(const Motion& motion, const std::vector<std::size_t>& use) {
   constexpr std::size_t kFewestRows = 200;
   constexpr double kDetermined = 0.05;  // relative standard error of the inertia
@@ -42,7 +43,7 @@ std::optional<Eigen::Vector4d> rigid_fit(const Motion& motion, const std::vector
   if (use.size() < kFewestRows) return std::nullopt;
   const Eigen::Matrix4d inverse = pseudo_inverse(normal);
   const Eigen::Vector4d found = inverse * cross;
-  // Below the cut-off white noise has so many independent samples.
+  // White noise below the cut-off has this many independent samples.
   const double independent = static_cast<double>(use.size()) * 2.0 * motion.cutoff_Hz / motion.sample_rate_Hz;
   const double variance = std::max(0.0, total - found.dot(cross)) / std::max(1.0, independent - 4.0);
   const double scale = static_cast<double>(use.size()) / std::max(1.0, independent);
@@ -69,7 +70,7 @@ std::optional<ClippedCommand> clipped_command(const Record& record, const sim::D
   if (!prepared) return std::nullopt;
   const Motion& motion = *prepared;
   const auto reach = static_cast<std::size_t>(std::ceil(0.5 * motion.sample_rate_Hz / motion.cutoff_Hz));
-  // Rows whose neighbourhood, as far as the filter reaches, lies wholly below the level, or wholly at it.
+  // Rows whose neighbourhood, as far as the filter reaches, is entirely below the level, or entirely at it.
   std::vector<std::size_t> below, at;
   std::vector<std::size_t> run(record.size());
   const auto is_at = [&](std::size_t row) { return std::abs(record.u_V[row]) >= kAtLevel * level_V; };
@@ -101,7 +102,7 @@ std::optional<ClippedCommand> clipped_command(const Record& record, const sim::D
   };
   std::vector<Plateau> plateaus;
   for (const std::size_t k : at) {
-    if (seen && std::abs(motion.speed[k]) > top_below) continue;  // friction at that speed is known there alone
+    if (seen && std::abs(motion.speed[k]) > top_below) continue;  // friction is known at that speed only
     if (plateaus.empty() || k > plateaus.back().last + 1) plateaus.push_back({});
     const double sign = motion.effort[k] > 0.0 ? 1.0 : -1.0;
     Plateau& plateau = plateaus.back();

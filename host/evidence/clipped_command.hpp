@@ -1,4 +1,4 @@
-// A command that the log cuts off where the amplifier did not.
+// Finds a command that the log cuts off although the amplifier did not.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@ namespace host {
 struct ClippedCommand {
   double level_V;  ///< largest command in the log
   double share;    ///< of the rows at that level
-  double excess;   ///< part by which the motion there needed more effort than the level gives
+  double excess;   ///< relative excess of the torque or force that the motion needed there over the level
   double t_s;      ///< of the first such row
 };
 
-/// Finds a command that stays at one largest level below the converter's limit while the axis does there what more
-/// effort alone could do, judged by inertia and friction as the rows below that level show them. A limit of the drive
-/// (current, voltage, dead zone) gives less effort than was commanded, never more, and is not mistaken for it.
+/// Finds a command that stays at one largest level below the converter's limit while the axis moves as only a larger
+/// command can explain. Inertia and friction come from the rows below that level. A limit of the drive (current,
+/// voltage, dead zone) reduces the torque below the command and never raises it, so it is not mistaken for clipping.
 std::optional<ClippedCommand> clipped_command(const Record& record, const sim::DriveDescription& model);
 
 }  // namespace host

@@ -86,7 +86,7 @@ void find_clipping(const Record& record, const sim::DriveDescription& model, Fau
                            clipped->level_V, 100.0 * clipped->share, 100.0 * clipped->excess, model.data.dac_limit_V));
 }
 
-/// Inertia and friction as this record alone shows them; empty where it is too short to say.
+/// Inertia and friction from this record alone; empty if it is too short.
 std::optional<RigidEstimate> rigid_estimate(const Record& record, const sim::DataSheet& data) {
   const std::optional<Motion> motion = motion_if_long_enough(record, data, {});
   constexpr std::ptrdiff_t kFewestRows = 50;
@@ -96,14 +96,13 @@ std::optional<RigidEstimate> rigid_estimate(const Record& record, const sim::Dat
   return found;
 }
 
-/// Known within a fifth, by half of its 95 % interval.
+/// Half of the 95 % interval is below a fifth of the value.
 bool sure(const Estimate& estimate) {
   constexpr double kSure = 0.2;
   return std::isfinite(estimate.value) && estimate.half_width() < kSure * std::abs(estimate.value);
 }
 
-/// Factors between what this record says of the base parameters and what the model says; empty where the record
-/// cannot tell.
+/// Ratios of this record's base parameters to the model's; empty if the record does not determine them.
 struct BaseFactors {
   double inertia, viscous, forward, backward;
 };
@@ -123,8 +122,8 @@ bool alike(double a, double b) {
   return a * b > 0.0 && a < kAlike * b && b < kAlike * a;
 }
 
-/// Where no model tells what the command should do: an axis that slides at a few thousandths of the converter's range,
-/// or under commands that are beyond it most of the time.
+/// For a record without a model: the axis moves at a few thousandths of the converter's range, or the command is beyond
+/// that range most of the time.
 void find_odd_command(const Record& record, const sim::DataSheet& data, FaultList& faults) {
   constexpr double kTiny = 0.003;  // 30 mV of 10 V: below any drive's friction
   constexpr double kBeyond = 1.05, kMostBeyond = 0.3;
@@ -149,7 +148,7 @@ void find_odd_command(const Record& record, const sim::DataSheet& data, FaultLis
 }
 
 void find_wrong_scales(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
-  sim::DataSheet unlimited = model.data;  // numbers in a wrong unit are not cut off by the converter
+  sim::DataSheet unlimited = model.data;  // the converter does not clip numbers in a wrong unit
   unlimited.dac_limit_V = HUGE_VAL;
   const std::optional<RigidEstimate> found = rigid_estimate(record, unlimited);
   if (!found) return;
@@ -169,7 +168,7 @@ void find_wrong_scales(const Record& record, const sim::DriveDescription& model,
     return;
   }
   const auto [inertia, viscous, forward, backward] = *factors;
-  constexpr double kUnit = 4.0;  // no drive's inertia and friction are both off by so much
+  constexpr double kUnit = 4.0;  // no drive's inertia and friction are both wrong by this much
   const auto off = [](double factor) { return factor > kUnit || (factor > 0.0 && factor < 1.0 / kUnit); };
   const double level = std::sqrt(std::abs(forward * backward));
   if (off(inertia) && alike(inertia, level)) {
@@ -198,7 +197,7 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
   }
   if (const std::optional<double> samples = command_shift(record, model)) {
     const double shift_s = *samples * record.sample_period_s;
-    // A filtered current is logged late by whole samples; a command that is late, or a current that is early, is not.
+    // A filtered current is logged late by whole samples; a late command or an early current is a fault.
     const bool late_current = record.u_V.empty() && shift_s > 0.0;
     faults.add(LogFaultKind::time_shift, record.u_V.empty() ? &Record::i_A : &Record::u_V, record.t_s.front(), shift_s,
                late_current
@@ -220,8 +219,8 @@ std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet
 
 namespace {
 
-/// The step on whose multiples all positions lie; 0 where there is none. Where the axis mostly moves by hundreds of
-/// them it is the log's last digit.
+/// The step of which all positions are multiples; 0 without one. If the axis mostly moves by hundreds of steps, the
+/// step is the log's last digit.
 double position_grid(const Record& record) {
   constexpr double kOff = 0.02;  // of a step: digits of the text
   constexpr std::size_t kFewest = 50;
@@ -238,7 +237,7 @@ double position_grid(const Record& record) {
   return moved[moved.size() / 2] > kMostSteps ? 0.0 : step;
 }
 
-/// What the data sheet leaves out, or whom it is of.
+/// What the data sheet lacks, or which drive it describes.
 void find_wrong_sheet(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
   const char* unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (!model.effects.empty() && !record.drive.empty() && !model.name.empty() && record.drive != model.name)
@@ -261,7 +260,7 @@ std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescripti
   find_wrong_sheet(record, model, faults);
   const PositionJumps jumps = position_jumps(record, model);
   report_jumps(record, jumps, faults);
-  // A record that jumps tells nothing about scales and shifts.
+  // A record with jumps says nothing about scales and shifts.
   if (jumps.none()) {
     find_wrong_scales(record, model, faults);
     find_clipping(record, model, faults);

@@ -1,5 +1,5 @@
-// Faults of logging that no physics explains: to be ruled out before any effect is suspected. What reading a record
-// refuses anyway (dead or copied channels, gaps in time, speed against position in sign or unit) is not repeated here.
+// Faults of logging that no physics explains; they are ruled out before any effect is suspected. Faults that reading a
+// record refuses (dead or copied channels, gaps in time, speed against position in sign or unit) are not repeated here.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,12 +12,12 @@
 
 namespace host {
 
-/// Faults of a record that is adapted to its drive. `model` gives the data sheet and, with an inertia, what the drive
-/// can do at most; without, signs and the command's size against the converter's range are judged all the same. Silent
-/// where physics could explain a finding: a delay, a lag, a changed inertia, a limit of the amplifier.
+/// Faults of a record that is adapted to its drive. `model` gives the data sheet and, with an inertia, the drive's
+/// limits; without one, signs and the command's size against the converter's range are still checked. Reports nothing
+/// that physics could explain: a delay, a lag, a changed inertia, a limit of the amplifier.
 std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescription& model);
 
-/// Of these, the channels that tell what another one tells. Wrong units and exchanged names may come of them.
+/// Of these faults, the copied channels. Wrong units and exchanged names may be their consequences.
 std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet& data);
 
 /// The list "log" of every command that reads records.

@@ -1,4 +1,4 @@
-// What the records themselves tell of the sensors.
+// Resolution and noise of the sensors, from the records themselves.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace host {
 
-/// Completes a data sheet by what the training records show: an encoder's step, a tachometer's noise. Without them a
-/// window in which the axis stands has a floor of nothing.
+/// Adds what the training records show to a data sheet: the encoder's step and the tachometer's noise. Without them the
+/// noise floor of a window at standstill would be zero.
 sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const Measurements& measured);
 
-/// The same by some records.
+/// The same from the given records.
 sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model,
                                             const std::vector<const Record*>& records);
 

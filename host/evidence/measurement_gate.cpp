@@ -21,7 +21,7 @@ namespace host {
 
 namespace {
 
-/// Rows that judge and train at once, in parts of the record that judges, beyond which the judgement means nothing.
+/// Largest share of validation rows that are also training rows; above it, validation is meaningless.
 constexpr double kMostInCommon = 0.1;
 
 void require_known(const std::vector<std::string>& accepted) {

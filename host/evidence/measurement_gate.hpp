@@ -1,4 +1,4 @@
-// The gate: files, data sheet and options become one checked set of measurements, or the command ends here.
+// Turns files, data sheet and options into one checked set of measurements, or ends the command.
 #pragma once
 
 #include <string>
@@ -10,17 +10,18 @@
 namespace host {
 
 struct GateOptions {
-  std::vector<std::string> accepted;  ///< families ("sign") or kinds ("command_sign") of faults that end nothing
-  /// Rows and channels stay as they were logged. Otherwise what can be mended without a guess is: a speed that only
-  /// differences the position is left out, a tachometer or a current that runs late by whole samples is shifted back, a record that
-  /// was homed anew is moved to the first one's zero, one that is given twice counts once. All of it is said in the
-  /// log.
+  std::vector<std::string>
+      accepted;  ///< families ("sign") or kinds ("command_sign") of faults that do not end the command
+  /// Keeps rows and channels as they were logged. Otherwise faults with a unique correction are corrected: a speed that
+  /// is only the difference of positions is left out, a tachometer or current that is late by whole samples is shifted
+  /// back, a record that was homed again is moved to the first record's zero, and a record that is given twice counts
+  /// once. The log states each correction.
   bool as_logged = false;
 };
 
 class MeasurementGate {
  public:
-  /// `drive` gives the data sheet and, where it has effects, what its inertia and friction are about.
+  /// `drive` gives the data sheet and, if it has effects, approximate inertia and friction.
   explicit MeasurementGate(const sim::DriveDescription& drive, GateOptions options = {});
 
   /// Reads and checks. Throws Failure(usage) for a name in `accepted` that no fault has, FaultyLog (exit code 9) where
@@ -35,7 +36,7 @@ class MeasurementGate {
   /// Whether one of them is fatal and not accepted.
   bool any_stops(const std::vector<LogFault>& faults) const;
   std::vector<LogFault> check(Record& record) const;
-  /// A logger that filters its current does so in all records, whether each one tells or not.
+  /// A logger that filters its current does so in all records, even if one does not show it.
   void shift_late_currents(std::vector<Record>& training, std::vector<Record>& validation,
                            std::vector<LogFault>& faults) const;
   void share_zero(std::vector<Record>& training, std::vector<Record>& validation, std::vector<LogFault>& faults) const;

@@ -26,7 +26,7 @@ std::vector<double> power_spectrum(const TravelSignal& signal, double origin, do
   return power;
 }
 
-/// Least squares at orders around a peak, as far as the grid leaves it open.
+/// Least squares at orders around a peak, within the resolution of the grid.
 PeriodPeak refine(const TravelSignal& signal, double order, double order_step) {
   PeriodPeak best = peak_at(signal, 1.0 / order);
   constexpr int kSteps = 8;

@@ -14,20 +14,20 @@ namespace host {
 
 namespace {
 
-constexpr double kEffortMargin = 5.0;  ///< full effort taken so many times: what no error of the model excuses
+constexpr double kEffortMargin = 5.0;  ///< multiple of the full torque or force that no model error explains
 constexpr double kStepMargin = 3.0;    ///< encoder steps that quantisation and interpolation may add
-constexpr double kJitter = 3.0;        ///< samples' travel that an unsteady clock may add or take
+constexpr double kJitter = 3.0;        ///< travel, in samples, that an unsteady clock may add or remove
 constexpr int kFewestBits = 8;
 
-/// The power of two that a number of encoder steps is, or 0.
+/// The power of two equal to a number of encoder steps, or 0.
 double counter_range(double steps) {
   const int bits = static_cast<int>(std::lround(std::log2(steps)));
   constexpr double kTolerance = 2.0;  // steps
   return bits >= kFewestBits && std::abs(steps - std::exp2(bits)) <= kTolerance ? std::exp2(bits) : 0.0;
 }
 
-/// What an angle wraps round at: all new zeros lie as far apart, against the motion, and the position never leaves that
-/// range. A turn of the shaft where it is one; 0 where they are no wraps.
+/// The range at which an angle wraps: all new zeros are the same distance apart, against the motion, and the position
+/// stays within that range. A turn of the shaft if it equals one; 0 without wraps.
 double angle_range(const Record& record, const std::vector<double>& sizes, double turn) {
   constexpr std::size_t kFewest = 2;
   constexpr double kAlike = 0.01;
@@ -39,8 +39,8 @@ double angle_range(const Record& record, const std::vector<double>& sizes, doubl
   return record.kind == sim::DriveKind::rotary && alike(turn) ? turn : range;
 }
 
-/// What one step differs from the next by in all but a hundredth of the rows: where no inertia is known, what the drive
-/// does at most is about as much.
+/// The 99 % quantile of the difference between successive steps. Without a known inertia it stands for what the drive
+/// can do.
 double usual_change(const std::vector<double>& x) {
   constexpr double kUsual = 0.99;
   std::vector<double> changes;
@@ -48,11 +48,11 @@ double usual_change(const std::vector<double>& x) {
   return quantile(std::move(changes), kUsual);
 }
 
-/// Whether the step to row `k` makes up for slower ones before it, so that over all of them the axis keeps its speed:
-/// the rows between were late, or were filled in.
+/// Whether the step to row `k` compensates slower ones before it, so that the speed is constant over all of them: the
+/// rows between were late or filled in.
 bool catches_up(const std::vector<double>& x, std::size_t k) {
   constexpr std::size_t kMostRows = 50, kAround = 20;
-  constexpr double kSlow = 0.6, kKept = 0.5;  // of the speed; a new zero has no stalled rows before it
+  constexpr double kSlow = 0.6, kKept = 0.5;  // of the speed; before a new zero no rows are held
   std::vector<double> steps;
   for (std::size_t row = k < kAround ? 1 : k - kAround + 1; row < std::min(k + kAround, x.size()); ++row)
     steps.push_back(x[row] - x[row - 1]);
@@ -65,8 +65,8 @@ bool catches_up(const std::vector<double>& x, std::size_t k) {
   return false;
 }
 
-/// Half of the steps that are any are larger; 0 where there are none. A position that is held over several rows, or
-/// read coarsely, moves in steps that are large beside their neighbours and not beside these.
+/// Median of the nonzero steps; 0 without any. A position that is held over several rows, or read coarsely, moves in
+/// steps that are large compared with their neighbours but not with these.
 double usual_step(const std::vector<double>& x) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < x.size(); ++k)
@@ -95,7 +95,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
                                 : usual_change(record.x);
   const double impossible = kEffortMargin * per_sample + kStepMargin * resolution;
   const double usual = usual_step(record.x);
-  // What a step exceeds the steps around it by.
+  // The excess of a step over the steps around it.
   const auto excess = [&](std::size_t k) { return step(k) - 0.5 * (step(k - 1) + step(k + 1)); };
   std::vector<double> against_the_motion;  // sizes of new zeros
   for (std::size_t k = 3; k + 2 < record.size(); ++k) {
@@ -127,7 +127,7 @@ PositionJumps position_jumps(const Record& record, const sim::DriveDescription& 
       note(jumps.new_zeros, jumps.first_new_zero, 1, record.t_s[k], jump);
       if (jump * speed <= 0.0) against_the_motion.push_back(std::abs(jump));
     }
-    ++k;  // the steps around a jump are no evidence of another
+    ++k;  // steps next to a jump do not indicate another one
   }
   if (against_the_motion.size() == jumps.new_zeros && jumps.wraps == 0) {
     const double range = angle_range(record, against_the_motion, 2.0 * std::numbers::pi * model.data.lead);

@@ -1,4 +1,4 @@
-// Jumps of the position that the drive cannot have made.
+// Finds jumps of the position that the drive cannot have made.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +14,23 @@ struct PositionJump {
 };
 
 struct PositionJumps {
-  std::size_t wraps = 0;    ///< jumps against the motion, by a power of two of encoder steps or always by as much
-  double wrap_range = 0.0;  ///< what it wraps round at, mm or m
+  std::size_t wraps =
+      0;  ///< jumps against the motion, by a power of two of encoder steps or always by the same distance
+  double wrap_range = 0.0;  ///< range at which it wraps, mm or m
   PositionJump first_wrap;
   std::size_t new_zeros = 0;
   PositionJump first_new_zero;
-  std::size_t dropped = 0;  ///< samples that are missing or repeated, all together
+  std::size_t dropped = 0;  ///< missing or repeated samples in total
   PositionJump first_drop;
-  std::size_t late = 0;  ///< steps that catch up with a motion that the rows before had fallen behind
+  std::size_t late = 0;  ///< steps that catch up after held rows
   PositionJump first_late;
 
-  /// None that changes where the axis is: late rows do not.
+  /// Whether no jump changes the position; late rows do not count.
   bool none() const { return wraps == 0 && new_zeros == 0 && dropped == 0; }
 };
 
-/// A jump is a step that would take several times the drive's full effort; where the model has no inertia, several
-/// times what the record's steps otherwise change by. Needs a position.
+/// A jump is a step that would need several times the drive's full torque or force; if the model has no inertia,
+/// several times the usual change between the record's steps. Needs a position.
 PositionJumps position_jumps(const Record& record, const sim::DriveDescription& model);
 
 }  // namespace host

@@ -14,8 +14,8 @@ namespace host {
 
 namespace {
 
-/// Standard deviation of what differs from row to row, as noise does and motion does not: the third difference of white
-/// noise has twenty times its variance. At least that of the channel's steps.
+/// Standard deviation of the noise from third differences, whose variance is twenty times that of white noise and which
+/// motion hardly affects. At least that of the channel's quantisation.
 double row_noise(const std::vector<double>& values) {
   std::vector<double> third, steps;
   for (std::size_t k = 3; k < values.size(); ++k) {

@@ -1,4 +1,4 @@
-// A record made ready to be compared with a model: the motion behind it, and the windows that a prediction restarts in.
+// A record prepared for comparison with a model: smoothed motion, and windows in which a prediction restarts.
 #pragma once
 
 #include <cstddef>
@@ -17,25 +17,25 @@ struct Window {
   std::size_t length;
 };
 
-/// Length of a window, s: long enough for an effect to move the axis, short enough that a drive whose friction falls
-/// with speed (errors grow by some 50 /s) does not carry a restart's uncertainty into everything.
+/// Length of a window, s: long enough for an effect to move the axis, short enough that the uncertainty of a restart
+/// does not dominate on a drive whose friction falls with speed (errors grow by some 50 /s).
 inline constexpr double kWindow_s = 0.1;
 
 /// A record made ready for comparison. Refers to the record, which must outlive it.
 struct PreparedRecord {
   const Record* record;
   std::vector<double> u_V;
-  double effort_noise;  ///< of one row, Nm or N; 0 where the effort is a command, which is known
+  double effort_noise;  ///< of one row, Nm or N; 0 if it is a command, which is known exactly
   MotionSmoother smoother;
   std::vector<Window> windows;
   double period_s;
-  std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< of every window that the record has room for
+  std::shared_ptr<const std::vector<ShiftWeights>> shift_weights;  ///< of every complete window of the record
 
   const SmoothedMotion& motion() const { return smoother.motion(); }
   double window_s() const {
     return windows.empty() ? kWindow_s : static_cast<double>(windows.front().length) * period_s;
   }
-  /// Of a window that begins at a multiple of their common length, though it may be a shorter one at the end.
+  /// Of a window that begins at a multiple of the common length; the last one may be shorter.
   const ShiftWeights& weights_of(const Window& window) const {
     return (*shift_weights)[window.begin / windows.front().length];
   }

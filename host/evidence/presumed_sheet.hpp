@@ -1,4 +1,4 @@
-// What a record alone says of its drive, where nobody gives a data sheet.
+// A provisional data sheet from the record alone.
 #pragma once
 
 #include "host/record/record.hpp"
@@ -6,8 +6,8 @@
 
 namespace host {
 
-/// The record's kind of drive, and the travel per angle that its position and speed show together (1 where it holds one
-/// of them): enough for the gate to hold other records and channels against it, without an opinion on effort.
+/// The record's kind of drive, and the travel per angle from position and speed (1 if one is missing). That suffices
+/// for the gate to check other records and channels, except torque or force.
 sim::DriveDescription presumed_sheet(const Record& record);
 
 }  // namespace host

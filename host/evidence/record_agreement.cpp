@@ -12,17 +12,18 @@ namespace host {
 
 namespace {
 
-/// Where a rigid model leaves less than this part of the effort, inertia is known so well that a load which changed
-/// by more than kLoad shows.
+/// If a rigid model leaves less than this part of the torque or force unexplained, the inertia is known well enough to
+/// show a load that changed by more than kLoad.
 constexpr double kRigid = 0.03;
 constexpr double kLoad = 0.05;
-/// Where it leaves more, some effect bends the estimates; a change of scale bends inertia and friction alike.
+/// Above it, some effect biases the estimates; a change of scale biases inertia and friction equally.
 constexpr double kStillRigid = 0.15;
 constexpr double kScale = 0.03;
 constexpr double kAlike = 0.02;
-/// Part of an inertia's doubt, which supposes the worst, below which its likeness to another factor may be an accident.
+/// Relative uncertainty of the inertia, in the worst case, below which its agreement with another factor may be
+/// accidental.
 constexpr double kLeastKnown = 0.5;
-/// Records that agree badly with one another cannot convict one of them.
+/// If records disagree with one another, none of them can be called the wrong one.
 constexpr double kStandsOut = 3.0;
 /// Tachometers agree with the encoder within 0.5 % from record to record.
 constexpr double kTachometer = 0.02;
@@ -35,14 +36,14 @@ struct RigidEquations {
   std::size_t rows = 0;
 
   Eigen::Vector4d solve() const { return least_norm_solution(normal, cross); }
-  /// Norm of what is left over the norm of the effort.
+  /// Norm of the residual over norm of the torque or force.
   double left(const Eigen::Vector4d& theta) const {
     const double squares = total - 2.0 * theta.dot(cross) + theta.dot(normal * theta);
     return total > 0.0 ? std::sqrt(std::max(0.0, squares) / total) : 1.0;
   }
-  /// What the effort is of the effort that these parameters ask for.
+  /// Ratio of the torque or force to what these parameters predict.
   double scale_of(const Eigen::Vector4d& theta) const { return theta.dot(cross) / theta.dot(normal * theta); }
-  /// By how much of itself the inertia could be off if all that is left looked like acceleration.
+  /// Relative error of the inertia if the whole residual were proportional to the acceleration.
   double doubt(const Eigen::Vector4d& theta) const {
     const double alone = pseudo_inverse(normal)(0, 0);
     return left(theta) * std::sqrt(total * alone) / std::abs(theta(0));
@@ -80,7 +81,7 @@ std::optional<RigidEquations> rigid_equations(const Record& record, const sim::D
   return equations;
 }
 
-/// Whether inertia takes enough of the effort to be known: a run at constant speed says nothing of it.
+/// Whether inertia takes enough of the torque or force to be identified; a run at constant speed says nothing about it.
 bool accelerates(const RigidEquations& equations, const Eigen::Vector4d& theta) {
   constexpr double kShare = 0.05;
   return std::sqrt(equations.normal(0, 0)) * std::abs(theta(0)) > kShare * std::sqrt(equations.total);
@@ -112,7 +113,7 @@ std::optional<Disagreement> rigid_disagreement(const std::vector<const Record*>&
       if (other.record != record) sum += other.equations;
     return sum;
   };
-  // How well the others agree among themselves.
+  // Agreement of the other records among themselves.
   const auto spread = [&](const Record* judged_record) {
     double largest = 0.0;
     for (const Known& one : known) {
@@ -139,7 +140,7 @@ std::optional<Disagreement> rigid_disagreement(const std::vector<const Record*>&
     const bool friction_too = alike(2) && alike(3);
     const double doubt = own->doubt(here) + rest.doubt(there);
     const bool another_load = left < kRigid && off > std::max(kLoad, doubt);
-    // All of the effort grew by the factor by which the inertia did, which is no accident.
+    // The whole torque or force changed by the same factor as the inertia, which is no accident.
     const bool by_one_factor = std::abs(inertia / scale - 1.0) < kAlike;
     const bool all_of_it = left < kRigid && std::abs(scale - 1.0) > std::max(kScale, 2.0 * left) && by_one_factor &&
                            off > kLeastKnown * doubt;
@@ -165,7 +166,7 @@ std::optional<Disagreement> record_disagreement(const std::vector<const Record*>
     if (!here || !there) continue;
     const double factor = here->gain.value / there->gain.value, off = std::abs(factor - 1.0);
     const double doubt = here->gain.half_width() + there->gain.half_width();
-    // Where the speed hardly changes, a gain beside an offset is that of the clock's jitter; a scale turns the whole.
+    // If the speed hardly changes, a gain with an offset comes from clock jitter; a wrong scale affects everything.
     const double whole = std::abs(here->proportion / there->proportion - 1.0);
     if (off < kTachometer || off < kStandsOut * doubt || whole < 0.5 * off) continue;
     if (!worst || off > std::abs(worst->factor - 1.0)) worst = Disagreement{r, &Record::w, factor, false};

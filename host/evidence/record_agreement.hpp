@@ -1,4 +1,4 @@
-// Whether records describe one machine, with its channels in one set of units.
+// Checks that records describe one machine, with all channels in the same units.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,14 @@ namespace host {
 struct Disagreement {
   std::size_t record;  ///< the one that disagrees with the others
   std::vector<double> Record::*channel;
-  double factor;      ///< by which inertia, or the tachometer's gain, comes out larger than from the others
-  bool friction_too;  ///< friction comes out larger by the same factor: the command's scale, not the load
+  double factor;      ///< ratio of the inertia, or of the tachometer's gain, to that of the other records
+  bool friction_too;  ///< friction changes by the same factor: the command's scale is wrong, not the load
 };
 
-/// Compares what each of `judged` says of inertia and friction, and of the tachometer against the encoder, with what
-/// the records of `by` other than itself say. Inertia is what hidden effects disturb least: on drives with any single
-/// effect of the catalogue records agree about it within 3 %, unless the effect limits the current, which shows in
-/// every record. Names the record that disagrees most; empty where none does or the records cannot tell.
+/// Compares inertia, friction and tachometer gain of each of `judged` with those of the records `by`, except itself.
+/// Hidden effects disturb inertia least: on drives with any single effect of the catalogue, records agree about it
+/// within 3 %, unless the effect limits the current, which shows in every record. Names the record that disagrees most;
+/// empty if none does or the records do not determine it.
 std::optional<Disagreement> record_disagreement(const std::vector<const Record*>& by,
                                                 const std::vector<const Record*>& judged, const sim::DataSheet& data);
 

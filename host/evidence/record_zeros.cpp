@@ -18,24 +18,24 @@ namespace {
 
 using Amplitude = std::complex<double>;
 
-/// Part of what a rigid axis leaves that the strongest period must carry in both records, and each further one.
+/// Least part of a rigid model's residual that the strongest period must explain in both records, and each further one.
 constexpr double kStrong = 0.1, kFurther = 0.03;
-/// Sizes agree within this factor, and the two halves of a record within this part of the size: nothing but what is
-/// fixed to the travel does, however little of the whole it is.
+/// Amplitudes agree within this factor, and the halves of a record within this part of the amplitude. Only what is
+/// fixed to the travel does so, even if it is a small part of the residual.
 constexpr double kAlikeFriction = 1.5, kSteady = 0.5;
-/// Patterns agree, at the best shift. Without one they differ for sure where the phase is off by 45 degrees; once a
-/// zero is known to be lost, 15 degrees tell.
+/// Correlation of two patterns at the best shift. Without a shift they certainly differ at 45 degrees of phase; once a
+/// zero is known to be lost, 15 degrees suffice.
 constexpr double kAgrees = 0.9, kDiffers = 0.7, kSame = 0.97;
-/// Part of a period that a phase may be open by.
+/// Largest uncertainty of a phase, as a part of the period.
 constexpr double kMostOpen = 0.1;
-/// What explains less than this part of what the best explanation does is none.
+/// A period that explains less than this part of what the strongest explains is ignored.
 constexpr double kAsGood = 0.8;
 constexpr double kPeriodsOfTravel = 4.0;
 constexpr std::size_t kPeaks = 5;
-/// Rows of a record beyond this many say nothing new and cost time.
+/// More rows than this add cost and no information.
 constexpr std::size_t kMostRows = 3000;
 
-/// What the pattern is in proportion to: nothing (cogging), the direction (friction) or the effort (torque ripple).
+/// The pattern is proportional to: nothing (cogging), the direction (friction) or the torque (torque ripple).
 constexpr std::size_t kWeights = 3;
 
 struct TravelResidual {
@@ -44,7 +44,7 @@ struct TravelResidual {
   std::array<std::vector<PeriodPeak>, kWeights> peaks;
   double middle = 0.0, travel = 0.0;     ///< of x, mm or m
   double size = 0.0;                     ///< norm of `left`, Nm or N
-  double shortest = 0.0, longest = 0.0;  ///< periods that the record may show, mm or m
+  double shortest = 0.0, longest = 0.0;  ///< candidate periods of the record, mm or m
 
   TravelSignal signal(std::size_t w, std::size_t begin, std::size_t end) const {
     const auto part = [&](const std::vector<double>& values) {
@@ -56,7 +56,7 @@ struct TravelResidual {
   TravelSignal signal(std::size_t w) const { return signal(w, 0, x.size()); }
 };
 
-/// What inertia and friction of this record alone leave of its effort, where the axis slides.
+/// Residual of inertia and friction fitted to this record alone, while the axis slides.
 std::optional<TravelResidual> travel_residual(const Record& record, const sim::DataSheet& data, bool by_speed) {
   constexpr double kSlow = 0.01, kHighest_Hz = 100.0, kRateShare = 0.1;
   constexpr std::size_t kFewestRows = 300;
@@ -102,7 +102,7 @@ std::optional<TravelResidual> travel_residual(const Record& record, const sim::D
   return residual;
 }
 
-/// By the channel whose motion leaves less.
+/// By the channel whose motion leaves the smaller residual.
 std::optional<TravelResidual> travel_residual(const Record& record, const sim::DataSheet& data) {
   if (!record.has_position()) return {};
   std::optional<TravelResidual> residual = travel_residual(record, data, false);
@@ -133,7 +133,7 @@ struct Pattern {
   }
 };
 
-/// How alike two patterns are when the second one's travel is shifted, -1..1.
+/// Correlation of two patterns when the second one's travel is shifted, -1 to 1.
 double agreement(const Pattern& a, const Pattern& b, double shift) {
   double sum = 0.0;
   for (std::size_t n = 0; n < a.amplitude.size(); ++n)
@@ -150,7 +150,7 @@ bool is_steady(const TravelResidual& residual, std::size_t weight, double period
   return std::abs(first - second) < kSteady * std::min(std::abs(first), std::abs(second));
 }
 
-/// What both records show of one size, as far as it is in proportion to a weight.
+/// Periods that both records show with one amplitude, in proportion to a weight.
 struct SharedPattern {
   Pattern here, there;
   double share = 0.0;  ///< the smaller one, of the strongest period
@@ -164,7 +164,7 @@ SharedPattern shared_pattern(const TravelResidual& first, const TravelResidual& 
   for (const PeriodPeak& peak : first.peaks[weight]) {
     const auto off = [&](const PeriodPeak& other) { return std::abs(1.0 / other.period - 1.0 / peak.period); };
     const auto same = std::ranges::min_element(second.peaks[weight], {}, off);
-    // What the two records' own periods differ by tells how well the phase of one is known where the other is.
+    // The difference of the two records' own periods gives the uncertainty of one phase at the other record's travel.
     if (same == second.peaks[weight].end() || off(*same) * apart > kMostOpen) continue;
     const double period = first.travel > second.travel ? peak.period : same->period;
     const PeriodPeak here = peak_at(signals[0], period), there = peak_at(signals[1], period);

@@ -1,4 +1,4 @@
-// Whether records that were homed one by one share their zero, as far as what repeats along the travel shows it.
+// Checks that records that were homed separately share their zero, by patterns that repeat along the travel.
 #pragma once
 
 #include <vector>
@@ -11,13 +11,13 @@ namespace host {
 struct AnotherZero {
   std::size_t record = 0;     ///< whose zero differs
   std::size_t reference = 0;  ///< from this one's, which shows the pattern best
-  double shift = 0.0;         ///< to add to its position, mm or m; a whole number of `period` more would do as well
-  double period = 0.0;        ///< the longest that stands out of both records, mm or m
+  double shift = 0.0;         ///< to add to its position, mm or m; unknown by whole multiples of `period`
+  double period = 0.0;        ///< longest significant period of both records, mm or m
 };
 
-/// Holds what a rigid axis leaves of each record's effort against its travel. Where one period and its orders stand out
-/// of two records alike in size but not in phase, their zeros differ. Records without such a period, or too short to
-/// show it four times, say nothing.
+/// Analyses the residual of a rigid model over the travel. If a period and its orders are significant in two records
+/// with equal amplitude but different phase, their zeros differ. Records without such a period, or with less than four
+/// periods of travel, give no answer.
 std::vector<AnotherZero> other_zeros(const std::vector<const Record*>& records, const sim::DataSheet& data);
 
 }  // namespace host

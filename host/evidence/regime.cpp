@@ -11,16 +11,16 @@ namespace {
 
 constexpr double kReversalTravel_m = 50e-6;
 
-/// Speeds below this part of the record's top speed are low: friction curves fall within some 5 rad/s of 100.
+/// Speeds below this part of the record's top speed count as low: friction curves fall within some 5 rad/s of 100.
 constexpr double kLowSpeed = 0.05;
 
-/// Speed is constant where the acceleration stays below this part of the record's large ones (their 95 % quantile).
+/// The speed counts as constant while the acceleration is below this part of its 95 % quantile.
 constexpr double kConstantSpeed = 0.1;
 
-/// A reversal is believed once the axis has come back by so many encoder steps.
+/// A reversal counts once the axis has moved back by this many encoder steps.
 constexpr double kBelievedSteps = 2.0;
 
-/// Acceleration is taken over so many samples to each side.
+/// The acceleration uses this many samples on each side.
 constexpr std::size_t kRowsAround = 3;
 
 std::vector<double> acceleration_of(const std::vector<double>& w, double period_s) {
@@ -32,7 +32,7 @@ std::vector<double> acceleration_of(const std::vector<double>& w, double period_
   return acceleration;
 }
 
-/// Rows within `reach` of travel after each turning point that the axis has come back from by `believed`.
+/// Rows within `reach` of travel after each turning point from which the axis has moved back by `believed`.
 std::vector<bool> rows_after_reversals(const std::vector<double>& x, double reach, double believed) {
   std::vector<bool> after(x.size(), false);
   std::size_t extreme = 0;

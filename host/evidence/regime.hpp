@@ -1,4 +1,4 @@
-// What the axis does at each sample of a record: stands, has just reversed, creeps, cruises, speeds up, brakes.
+// Classifies each sample: standstill, reversal, low speed, constant speed, acceleration, braking.
 #pragma once
 
 #include <string_view>

@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::RowVector3d;
 using Eigen::Vector3d;
 
-/// One sample of what the smoother is told.
+/// One measurement for the smoother.
 struct MotionSmoother::Observation {
   double value;     ///< travel or speed
   double variance;  ///< of `value`
@@ -27,26 +27,26 @@ struct MotionSmoother::Observation {
 
 namespace {
 
-/// Step of the disturbance's random walk while nothing happens, per sample at 1 kHz, as a part of the friction level:
-/// on the paper's x axis 0.03 V, a tenth of the on-line variance (48), since a smoother sees both sides of a sample;
-/// the speed is then averaged over some 5 ms. Of a drive of little friction, as a part of its command's rms.
+/// Step of the disturbance's random walk per sample at 1 kHz, as a part of the friction level: 0.03 V on the paper's x
+/// axis. That is a tenth of the on-line variance (48), since a smoother uses both sides of a sample, and averages the
+/// speed over some 5 ms. Without much friction, a part of the command's RMS.
 constexpr double kQuietPartOfFriction = 0.045;
 constexpr double kQuietPartOfCommand = 0.01;
 
-/// Signals farther from a sample do not reach its smoothed state, s: ten times the time over which the speed is
-/// averaged.
+/// Signals farther than this from a sample do not affect its smoothed state, s: ten times the averaging time of the
+/// speed.
 constexpr double kReach_s = 0.05;
 
-/// Part of a recent change of the command that may not have arrived as the model says (dead time, current loop).
+/// Part of a recent change of the command that may arrive otherwise than the model says (dead time, current loop).
 constexpr double kCommandDoubt = 0.3;
 
-/// For so long after a change of the command that doubt lasts, s.
+/// That uncertainty lasts this long after a change of the command, s.
 constexpr double kCommandMemory_s = 0.004;
 
-/// An axis that passes no encoder edge for so long is taken to stand.
+/// An axis without an encoder edge for this long counts as standing, s.
 constexpr double kStanding_s = 0.06;
 
-/// Before the first edge that a starting axis passes it has moved already; so long a part is not counted as standing.
+/// A starting axis moves before its first encoder edge; this time before the edge does not count as standing, s.
 constexpr double kStart_s = 0.006;
 
 /// Speeds are known to be zero at standstill, up to creep below one count: this fraction of a count per standing time.
@@ -69,7 +69,7 @@ std::vector<bool> find_standing(const std::vector<double>& x, double resolution,
   return standing;
 }
 
-/// What a quantised position tells: at an edge much (the axis is between two counts), on a count little.
+/// Information of a quantised position: much at an edge (the axis is between two counts), little on a count.
 template <typename Observations>
 void observe_counts(const std::vector<double>& x, double resolution, double period_s, double lead,
                     const std::vector<double>& w, Observations& observed) {
@@ -88,11 +88,11 @@ void observe_counts(const std::vector<double>& x, double resolution, double peri
   }
 }
 
-/// Where friction turns over, the disturbance may jump by its level.
+/// At a reversal the disturbance may jump by the friction level.
 template <typename Observations>
 void doubt_friction(const std::vector<double>& w, const std::vector<bool>& standing, double level_V,
                     Observations& observed) {
-  constexpr std::size_t kReach = 2;  // the instant of a start or a reversal is known to some samples only
+  constexpr std::size_t kReach = 2;  // the instant of a start or reversal is known to within some samples only
   for (std::size_t k = 1; k < w.size(); ++k) {
     if (!(w[k] * w[k - 1] < 0.0 || standing[k] != standing[k - 1])) continue;
     for (std::size_t row = k - std::min(k, kReach + 1); row < std::min(w.size(), k + kReach); ++row)
@@ -165,8 +165,8 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   for (std::size_t k = 0; k < record.size(); ++k) observed[k] = {measured[k], noise, quiet_V, false};
   doubt_command(u_V, period_s, observed);
   const Vector3d start(by_position_ ? measured[0] : 0.0, by_position_ ? 0.0 : measured[0], u_V[0]);
-  // What a start may be off by: an unknown disturbance as large as friction or command, and what it does in a tenth of
-  // a second.
+  // Uncertainty of the initial state: a disturbance as large as friction or command, and its effect over a tenth of a
+  // second.
   constexpr double kUnknown_s = 0.1;
   const double unknown_V = std::max({level_V, rms_V, quiet_V});
   const double unknown_w = gain * unknown_V * kUnknown_s;
@@ -176,7 +176,7 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   smooth(observed, u_V, start);
   if (!by_position_) return;
 
-  // A first pass finds where the axis turns over; the second knows it.
+  // The first pass finds the reversals; the second uses them.
   const std::vector<double> rough_w = motion_.w;
   const std::vector<bool> standing = find_standing(record.x, resolution, period_s);
   for (std::size_t k = 0; k < record.size(); ++k) observed[k].standing = standing[k];
@@ -252,7 +252,7 @@ void MotionSmoother::smooth(const std::vector<Observation>& observed, const std:
 }
 
 ShiftWeights MotionSmoother::shift_weights(std::size_t row) const {
-  // The smoother's two passes, transposed: from the state of one row back to everything that reaches it.
+  // The two passes transposed: from the state of one row back to every input that affects it.
   const Eigen::Index seen = by_position_ ? 0 : 1;
   ShiftWeights weights;
   weights.first = row - std::min(row, reach_);

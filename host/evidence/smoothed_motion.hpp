@@ -1,4 +1,4 @@
-// The motion behind a record: travel and speed smoothed from encoder and command, with what is left uncertain.
+// The motion of a record: travel and speed smoothed from encoder and command, with their uncertainty.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,20 +14,21 @@ namespace host {
 struct SmoothedMotion {
   std::vector<double> x;
   std::vector<double> w;
-  std::vector<double> disturbance;  ///< effort that the linear drive does not explain, Nm or N (friction included)
-  std::vector<double> x_variance;   ///< of the errors of x and w, and their covariance
+  std::vector<double>
+      disturbance;  ///< torque or force that the linear drive does not explain, Nm or N (friction included)
+  std::vector<double> x_variance;  ///< of the errors of x and w, and their covariance
   std::vector<double> w_variance;
   std::vector<double> xw_covariance;
-  std::vector<bool> standing;  ///< the encoder shows no motion at all
-  double hidden_creep = 0.0;   ///< speed at which it would not show any either, rad/s or m/s
+  std::vector<bool> standing;  ///< the encoder shows no motion
+  double hidden_creep = 0.0;   ///< speed below which it could not show any, rad/s or m/s
 };
 
-/// Commands in volts as the drive's amplifier gets them: u_V, or the logged current over the amplifier's gain.
-/// Throws Failure(bad_input) where neither can be had.
+/// Commands in volts at the amplifier's input: u_V, or the logged current over the amplifier's gain. Throws
+/// Failure(bad_input) if neither is available.
 std::vector<double> command_volts(const Record& record, const sim::DataSheet& data);
 
-/// How the smoothed state of one row shifts when the encoder's readings and the command change around it. The smoother
-/// is linear: one weight a row, and shifts add up.
+/// Sensitivity of one row's smoothed state to encoder readings and commands around it. The smoother is linear: one
+/// weight per row, and contributions add up.
 struct ShiftWeights {
   std::size_t first = 0;                           ///< row of the first weight
   std::vector<double> x_of_reading, w_of_reading;  ///< per mm (m) of change of a row's reading
@@ -41,26 +42,26 @@ struct ShiftWeights {
 };
 
 /// Rauch-Tung-Striebel smoother of the model (15): travel, speed and a random-walk disturbance, driven by the command
-/// and corrected by the encoder alone, so that errors of the tachometer stay out of it. A record without a position is
-/// smoothed from its speed. The gains belong to the record: further signals pass through the same filter.
+/// and corrected by the encoder only, so that tachometer errors do not enter. A record without a position is smoothed
+/// from its speed. The gains depend on the record; further signals pass through the same filter.
 class MotionSmoother {
  public:
-  /// `inertia` and `viscous` need to be right within some 30 %: the disturbance takes the rest. `friction_level` (Nm or
-  /// N) is about what friction jumps by where the motion starts, stops or reverses.
+  /// `inertia` and `viscous` must be right within some 30 %; the disturbance takes the rest. `friction_level` (Nm or
+  /// N): approximate jump of the friction at a start, stop or reversal.
   MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
                  double friction_level);
 
   const SmoothedMotion& motion() const { return motion_; }
 
-  /// Rows before and after a row whose signals still reach its smoothed state (some ten times the smoother's memory).
+  /// Number of rows before and after a row that affect its smoothed state (some ten times the smoother's memory).
   std::size_t reach() const { return reach_; }
 
-  /// How the smoothed state of one row answers changes around it, as far as reach() on both sides.
+  /// Sensitivity of one row's smoothed state to changes around it, within reach() on both sides.
   ShiftWeights shift_weights(std::size_t row) const;
 
  private:
   struct Observation;
-  /// Gains of one sample: of its measurement, of the knowledge that it stands, and of the backward pass.
+  /// Gains of one sample: of its measurement, of known standstill, and of the backward pass.
   struct Gains {
     Eigen::Vector3d measurement;
     Eigen::Vector3d standstill;

@@ -1,4 +1,4 @@
-// Which constant speeds a set of records lacks: friction at speeds that were never held can only be guessed.
+// Finds constant speeds that a set of records lacks; friction at these speeds is extrapolated.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,17 @@
 
 namespace host {
 
-/// Speeds of the table between which no record holds its speed, mm/s.
+/// Speeds of the table, mm/s, between which no record has a constant speed.
 struct SpeedGap {
   double low_mm_s;
   double high_mm_s;
 };
 
-/// The widest gap, on a logarithmic scale, between 0.5 mm/s (the slowest Stribeck speeds) and the top speed; nothing
-/// where at most a factor of three is missing.
+/// The widest gap, on a logarithmic scale, between 0.5 mm/s (the slowest Stribeck speeds) and the top speed; empty if
+/// it is less than a factor of three.
 std::optional<SpeedGap> widest_speed_gap(const std::vector<const PreparedRecord*>& records, const sim::DataSheet& data);
 
-/// What to record so that the friction curve is seen there too, as a sentence.
+/// A sentence that says what to record to cover this gap.
 std::string speeds_to_record(const SpeedGap& gap);
 
 }  // namespace host

@@ -18,7 +18,7 @@
 
 namespace host {
 
-/// No machine goes farther, or faster, than this many mm (m), rad/s (m/s).
+/// Upper bound of position and speed, mm (m), rad/s (m/s), beyond any machine.
 inline constexpr double kMostOfPlant = 1e9;
 
 /// The first line, with its line feed.
@@ -27,7 +27,7 @@ std::string plant_greeting(std::size_t axes, double period_s);
 /// The line of period `k`, with its line feed; an empty command: the drive is disabled.
 std::string plant_line(std::uint64_t k, std::span<const std::optional<double>> commands_V);
 
-/// What such a first line says.
+/// Content of such a first line.
 struct PlantGreeting {
   std::size_t axes = 0;
   double period_s = 0.0;
@@ -37,14 +37,14 @@ struct PlantGreeting {
 /// s.
 PlantGreeting parse_plant_greeting(std::string_view line);
 
-/// Reads the line of a period: an axis each, a voltage, or nothing where the drive is disabled. Throws
-/// Failure(protocol) saying what is wrong with it and how it ought to look.
+/// Reads the line of a period: for each axis a voltage, or nothing if the drive is disabled. Throws Failure(protocol)
+/// with the fault and the expected form.
 std::vector<std::optional<double>> parse_plant_line(std::string_view line, std::uint64_t k, std::size_t axes);
 
 /// The answer of period `k`, with its line feed.
 std::string plant_answer(std::uint64_t k, std::span<const sim::ForeignReading> readings);
 
-/// Takes an answer apart. Throws Failure(protocol) saying what is wrong with it and how it ought to look.
+/// Parses an answer. Throws Failure(protocol) with the fault and the expected form.
 std::vector<sim::ForeignReading> parse_plant_answer(std::string_view line, std::uint64_t k, std::size_t axes);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// Another program, asked line by line.
+// Another program that answers line by line.
 #pragma once
 
 #include <sys/types.h>
@@ -9,12 +9,11 @@
 
 namespace host {
 
-/// Runs in a process group of its own, so that a Ctrl-C meant for this program leaves it running. Its errors go where
-/// this program's go. Its input ends when the object dies; if it does not end by itself within half a second then, it
-/// is killed.
+/// Runs in its own process group, so that a Ctrl-C for this program leaves it running. It shares this program's
+/// standard error. Its input ends with this object; if it does not end within half a second, it is killed.
 class PlantProgram {
  public:
-  /// `command`: for /bin/sh. Throws Failure(no_such_device) where nothing can be started.
+  /// `command`: for /bin/sh. Throws Failure(no_such_device) if it cannot be started.
   explicit PlantProgram(std::string command);
   PlantProgram(const PlantProgram&) = delete;
   PlantProgram& operator=(const PlantProgram&) = delete;

@@ -9,9 +9,9 @@
 
 namespace host {
 
-/// Greets, then answers line by line, until the input ends: what encoder and tachometer of each drive show. Each drive
-/// stands at 0 at first. `seed`: of the tachometers' noise. Throws Failure(protocol) for any other line, or a
-/// greeting for another number of axes.
+/// Sends the greeting, then answers line by line until the input ends, with the readings of each drive's encoder and
+/// tachometer. Each drive starts at 0. `seed`: of the tachometers' noise. Throws Failure(protocol) for any other line,
+/// or a greeting for another number of axes.
 void serve_plant(const std::vector<sim::DriveDescription>& drives, std::uint64_t seed, std::istream& in,
                  std::ostream& out);
 

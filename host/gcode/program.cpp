@@ -19,7 +19,7 @@ constexpr double kInch_mm = 25.4;
 constexpr double kUsualTolerance_mm = 0.05;
 // As LinuxCNC has it: an arc's radii at its begin and its end may differ by that much, or by a thousandth.
 constexpr double kRadiusTolerance_mm = 0.0127, kRadiusShare = 0.001;
-constexpr double kFarthest_mm = 1e6;  ///< nobody's machine is larger, and every sum is still exact enough
+constexpr double kFarthest_mm = 1e6;  ///< beyond any machine, and every sum is still exact enough
 
 /// The words of one line, in their order.
 struct Word {
@@ -66,13 +66,13 @@ class Reader {
       if (line[i] == ';') break;
       if (line[i] == '(') {
         const std::size_t close = line.find(')', i);
-        if (close == std::string_view::npos) fail("a comment begins with ( and has no )");
+        if (close == std::string_view::npos) fail("comment without a closing )");
         i = close + 1;
         continue;
       }
       const char letter = static_cast<char>(line[i] >= 'a' && line[i] <= 'z' ? line[i] - 'a' + 'A' : line[i]);
       if (letter < 'A' || letter > 'Z')
-        fail(fmt::format("'{}' is no word; variables and expressions are not known", printable(line[i])));
+        fail(fmt::format("unexpected '{}': variables and expressions are not supported", printable(line[i])));
       ++i;
       skip_space();
       const std::size_t begin = i;
@@ -81,9 +81,9 @@ class Reader {
       const auto [end, error] =
           std::from_chars(line.data() + i, line.data() + line.size(), value, std::chars_format::fixed);
       if (error != std::errc() || !std::isfinite(value) || std::abs(value) > 1e9)
-        fail(fmt::format("{} needs a number behind it", letter));
+        fail(fmt::format("{} needs a number after it", letter));
       i = static_cast<std::size_t>(end - line.data());
-      if (i == begin) fail(fmt::format("{} needs a number behind it", letter));
+      if (i == begin) fail(fmt::format("{} needs a number after it", letter));
       words.push_back({letter, value});
     }
     return words;
@@ -102,14 +102,14 @@ class Reader {
   }
 
   void set_once(std::optional<double>& place, const Word& word) const {
-    if (place) fail(fmt::format("{} stands twice in this line", word.letter));
+    if (place) fail(fmt::format("{} occurs twice in this line", word.letter));
     place = word.value;
   }
 
   void take_word(const Word& word, bool is_first) {
     switch (word.letter) {
       case 'N':
-        if (!is_first) fail("N stands at the beginning of a line");
+        if (!is_first) fail("N must be at the beginning of a line");
         return;
       case 'X':
       case 'Y':
@@ -133,18 +133,18 @@ class Reader {
       case 'M':
         return take_m(word.value);
       default:
-        fail(fmt::format("{} is not known: words are F G I J M N P R X Y Z", word.letter));
+        fail(fmt::format("{} is not supported; the words are F G I J M N P R X Y Z", word.letter));
     }
   }
 
-  /// Two of a group in one line contradict each other.
+  /// Refuses two words of one group in one line, because they contradict each other.
   void claim(const char* group) {
-    if (!block_.groups.insert(group).second) fail(fmt::format("two words of the group '{}' in one line", group));
+    if (!block_.groups.insert(group).second) fail(fmt::format("two words of group '{}' in one line", group));
   }
 
   void take_g(double value) {
     const long tenths = std::lround(value * 10.0);
-    if (std::abs(value * 10.0 - static_cast<double>(tenths)) > 1e-9) fail(fmt::format("G{:g} is not known", value));
+    if (std::abs(value * 10.0 - static_cast<double>(tenths)) > 1e-9) fail(fmt::format("G{:g} is not supported", value));
     switch (tenths) {
       case 0:
       case 10:
@@ -184,7 +184,7 @@ class Reader {
         is_relative_ = tenths == 910;
         return;
       default:
-        fail(fmt::format("G{:g} is not known: G0 G1 G2 G3 G4 G17 G20 G21 G28 G54 G61 G64 G90 G91 are", value));
+        fail(fmt::format("G{:g} is not supported; G0 G1 G2 G3 G4 G17 G20 G21 G28 G54 G61 G64 G90 G91 are", value));
     }
   }
 
@@ -195,7 +195,7 @@ class Reader {
     else if (value == 0.0 || value == 1.0)
       block_.pauses = true;
     else
-      fail(fmt::format("M{:g} is not known: M0 M1 M2 M30 are", value));
+      fail(fmt::format("M{:g} is not supported; M0 M1 M2 M30 are", value));
   }
 
   void run() {
@@ -203,7 +203,7 @@ class Reader {
     const bool has_target = block_.axis[0] || block_.axis[1] || block_.axis[2];
     const bool is_arc = motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise;
     if (block_.blends) {
-      if (block_.p && *block_.blends && !(*block_.p >= 0.0)) fail("P of G64 must not be below 0");
+      if (block_.p && *block_.blends && !(*block_.p >= 0.0)) fail("P of G64 must be at least 0");
       if (block_.p && !*block_.blends) fail("G61 has no P");
       tolerance_mm_ = !*block_.blends ? 0.0 : block_.p ? *block_.p * unit_mm_ : kUsualTolerance_mm;
     }
@@ -212,17 +212,17 @@ class Reader {
     if (block_.goes_home) {
       go_home();
     } else if (has_target || (is_arc && (block_.centre[0] || block_.centre[1]))) {
-      if (block_.dwells) fail("G4 stands in a line of its own");
+      if (block_.dwells) fail("G4 must be alone in its line");
       move();
     } else if (block_.centre[0] || block_.centre[1] || block_.radius) {
-      fail("I, J and R belong to an arc, G2 or G3");
+      fail("I, J and R are for arcs only, G2 or G3");
     }
     if (block_.pauses) stand(0.0, PathMoveKind::stop);
     if (block_.ends) has_ended_ = true;
   }
 
   void dwell(const std::optional<double>& seconds) {
-    if (!seconds || !(*seconds >= 0.0) || *seconds > 86'400.0) fail("G4 needs P, seconds, 0 to a day");
+    if (!seconds || !(*seconds >= 0.0) || *seconds > 86'400.0) fail("G4 needs P, 0 to 86400 seconds");
     stand(*seconds);
   }
 
@@ -242,13 +242,13 @@ class Reader {
       if (!block_.axis[i]) continue;
       to[axis] = *block_.axis[i] * unit_mm_ + (is_relative_ ? at_[axis] : 0.0);
       if (!is_relative_) program_.is_absolute = is_known_[i] = true;
-      if (!(std::abs(to[axis]) < kFarthest_mm)) fail("farther than any machine reaches");
+      if (!(std::abs(to[axis]) < kFarthest_mm)) fail(fmt::format("the position is beyond {:g} mm", kFarthest_mm));
     }
     return to;
   }
 
   void add(const PathCurve& curve, bool is_rapid) {
-    if (!is_rapid && !(feed_mm_s_ > 0.0)) fail("no feed: F, in units a minute, before the first G1, G2 or G3");
+    if (!is_rapid && !(feed_mm_s_ > 0.0)) fail("no feed: give F, in units per minute, before the first G1, G2 or G3");
     PathMove move;
     move.curve = curve;
     move.feed_mm_s = is_rapid ? (machine_.rapid_mm_s > 0.0 ? machine_.rapid_mm_s : 1e9) : feed_mm_s_;
@@ -261,10 +261,10 @@ class Reader {
   void append(const PathMove& move, double least_s) {
     duration_s_ += least_s;
     if (duration_s_ > kLongestPath_s)
-      fail(fmt::format("the program lasts longer than {:g} h, the most that one may; raise F, or divide it",
+      fail(fmt::format("the program lasts longer than {:g} h, the limit: raise F or split the program",
                        kLongestPath_s / 3600.0));
     if (program_.moves.size() == kMostPathMoves)
-      fail(fmt::format("more than {} moves, the most that a program may have; divide it", kMostPathMoves));
+      fail(fmt::format("the program has more than {} moves, the limit: split it", kMostPathMoves));
     program_.moves.push_back(move);
   }
 
@@ -286,10 +286,10 @@ class Reader {
     const PathPoint to = target();
     switch (motion_) {
       case Motion::none:
-        fail("a position without G0, G1, G2 or G3 before it");
+        fail("position without G0, G1, G2 or G3 before it");
       case Motion::rapid:
       case Motion::feed:
-        if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R belong to an arc, G2 or G3");
+        if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R are for arcs only, G2 or G3");
         add(PathCurve::line(at_, to), motion_ == Motion::rapid);
         break;
       default:
@@ -341,10 +341,10 @@ class Reader {
     const double begin = std::hypot(at_.x() - centre.x(), at_.y() - centre.y());
     const double end = std::hypot(to.x() - centre.x(), to.y() - centre.y());
     if (!(begin > 0.0)) fail("the arc's radius is 0");
-    if (!(begin < kFarthest_mm)) fail("the arc's radius is larger than any machine: a line?");
+    if (!(begin < kFarthest_mm)) fail(fmt::format("the arc's radius exceeds {:g} mm; use a line", kFarthest_mm));
     const double difference = std::abs(begin - end);
     if (difference > kRadiusTolerance_mm && difference > kRadiusShare * begin)
-      fail(fmt::format("the arc's end is {:.4f} mm from its centre, and its begin {:.4f} mm", end, begin));
+      fail(fmt::format("the arc starts {:.4f} mm and ends {:.4f} mm from its centre; both must be equal", begin, end));
     return centre;
   }
 
@@ -352,8 +352,8 @@ class Reader {
     const double radius = std::abs(*block_.radius) * unit_mm_;
     const double dx = to.x() - at_.x(), dy = to.y() - at_.y(), chord = std::hypot(dx, dy);
     if (!(radius > 0.0)) fail("R must not be 0");
-    if (!(radius < kFarthest_mm)) fail("the arc's radius is larger than any machine: a line?");
-    if (!(chord > 0.0)) fail("an arc by R needs another end than its begin: use I and J for a whole circle");
+    if (!(radius < kFarthest_mm)) fail(fmt::format("the arc's radius exceeds {:g} mm; use a line", kFarthest_mm));
+    if (!(chord > 0.0)) fail("an arc by R must end elsewhere than it starts; use I and J for a full circle");
     const double half = chord / 2.0;
     if (half > radius * (1.0 + kRadiusShare) && half - radius > kRadiusTolerance_mm)
       fail(fmt::format("the arc's ends are {:.4f} mm apart, more than twice its radius", chord));

@@ -10,12 +10,12 @@
 
 namespace host {
 
-/// What a program may use of the machine.
+/// Properties of the machine that a program may use.
 struct GcodeMachine {
   std::size_t axes = 2;                ///< X, Y and, with 3, Z
   PathPoint home = PathPoint::Zero();  ///< that G28 goes to, mm
-  bool begins_anywhere = false;  ///< nobody knows where it stands: arcs are not examined before a line has said so
-  double rapid_mm_s = 0.0;       ///< above 0: no rapid is faster; limits of axes hold anyway
+  bool begins_anywhere = false;        ///< the start position is unknown: arcs are not checked before a line has set it
+  double rapid_mm_s = 0.0;             ///< above 0: no rapid is faster; limits of axes hold anyway
 };
 
 struct GcodeProgram {

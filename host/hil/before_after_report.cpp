@@ -15,7 +15,7 @@ struct Measured {
   double before = 0.0, after = 0.0;
 };
 
-/// The largest errors; first the one that the page is headed with.
+/// The largest errors; the first is in the page's headline.
 std::vector<Measured> largest_errors(const ScenarioRun& before, const ScenarioRun& after) {
   std::vector<Measured> all;
   if (!before.contour_um.empty() && !after.contour_um.empty())
@@ -30,7 +30,7 @@ std::string change(const Measured& one) {
   return fmt::format("{} {} → {} µm", one.what, format_value(one.before), format_value(one.after));
 }
 
-/// What the new model of an axis holds and the old one did not.
+/// Effects in the new model of an axis that the old one lacked.
 std::string what_is_new(const ScenarioRun& before, const ScenarioRun& after, const ReplacedModel& model) {
   std::string kinds;
   for (const sim::EffectEntry& effect : after.believed[model.axis].effects)

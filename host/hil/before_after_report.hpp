@@ -1,4 +1,4 @@
-// One page of a scenario that was run twice: with the controllers that it has, and with others.
+// One page of a scenario that was run twice: with its own controllers and with others.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace host {
 
-/// A model that took the place of the scenario's.
+/// A model that replaced the scenario's.
 struct ReplacedModel {
   std::size_t axis = 0;
   std::string path;
 };
 
-/// "contour error 12.6 → 4.7 µm", or of the larger tracking error where there is no path.
+/// "contour error 12.6 → 4.7 µm"; without a path, the larger tracking error.
 std::string before_and_after(const ScenarioRun& before, const ScenarioRun& after);
 
 Report before_after_report(const Scenario& scenario, const ScenarioRun& before, const ScenarioRun& after,

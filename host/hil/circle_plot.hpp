@@ -1,4 +1,4 @@
-// What became of a circle, as machinists look at it: the deviation about the circle, magnified.
+// Deviation from a circle, magnified, as in ISO 230-4.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct CircleRun {
   const ScenarioRun* run = nullptr;
 };
 
-/// Of the scenario's last path; nothing where that is no circle, or was not followed.
+/// Of the scenario's last path; empty if it is not a circle or was not followed.
 std::optional<PolarPlot> circle_plot(const Scenario& scenario, const std::vector<CircleRun>& runs);
 
 }  // namespace host

@@ -11,8 +11,8 @@
 
 namespace host {
 
-/// What is identified from experiments on `machine`, whose effects are not looked at: inertia and viscous friction from
-/// open-loop steps at Ku = 15 (p. 1499), the friction curve from jogs at the paper's eleven speeds (section 3.2).
+/// Identifies `machine` from experiments, without using its effects: inertia and viscous friction from open-loop steps
+/// at Ku = 15 (p. 1499), the friction curve from jogs at the paper's eleven speeds (section 3.2).
 sim::DriveDescription commission(const sim::DriveDescription& machine, std::uint64_t seed);
 
 /// The open-loop steps alone, `scaling` (Ku of the paper) times its series of doublets.
@@ -21,10 +21,10 @@ Record commissioning_steps(const sim::DriveDescription& machine, double scaling,
 struct CompensationSwitches {
   bool friction = false;
   bool cancellation = false;
-  bool effects = true;  ///< what else the board can compensate of the model's effects
+  bool effects = true;  ///< further effects of the model that the board can compensate
 };
 
-/// What a design may choose otherwise than the paper did.
+/// Choices of a design that differ from the paper.
 struct LoopTuning {
   double bandwidth_Hz = DesignOptions{}.bandwidth_Hz;
   ControlFilterChoice filters;

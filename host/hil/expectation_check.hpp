@@ -1,4 +1,4 @@
-// Whether a run did what its scenario expects.
+// Checks a run against the expectations of its scenario.
 #pragma once
 
 #include "host/hil/scenario_run.hpp"

@@ -19,7 +19,8 @@ using firmware::SupervisorState;
 
 using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 
-/// A brake of twice what the paper's motor needs against friction: Nm. 20 Nm stop it from 250 mm/s in 9 mm.
+/// A brake with twice the torque that the paper's motor needs against friction: Nm. 20 Nm stop it from 250 mm/s in 9
+/// mm.
 constexpr double kBrake_Nm = 20.0;
 
 MachineAxes design_paper_axes(bool tachometer, bool under_weight) {
@@ -123,12 +124,12 @@ class Trial {
       axes()[i].jog(static_cast<float>((i == 0 ? sense : -sense) * trial_.speed_mm_s));
   }
 
-  /// Samples that a jog lasts before it is turned round: enough to reach its speed from the opposite one.
+  /// Samples of a jog before it reverses: enough to reach its speed from the opposite one.
   int stretch() const {
     return 400 + static_cast<int>(2000.0 * std::abs(trial_.speed_mm_s) / trial_.acceleration_mm_s2);
   }
 
-  /// What a fault hides while the axes stand, shows when they move both ways.
+  /// A motion both ways, which shows faults that are hidden at rest.
   void keep_moving(int k) {
     constexpr int kPatience = 1000;
     const bool path_runs = place_ < path_.size();
@@ -205,7 +206,7 @@ class Trial {
   std::array<double, hal::kAxisCount> begin_mm_{}, injected_at_mm_{};
   std::array<bool, hal::kAxisCount> was_on_{}, must_latch_{};
   AxisFault fault_ = AxisFault::none;
-  bool second_counts_ = false;  ///< the second fault came before the first had been found
+  bool second_counts_ = false;  ///< the second fault came before the first was found
   double distance_mm_ = 0.0, whole_way_mm_ = 0.0, speed_mm_s_ = 0.0;
 };
 
@@ -267,7 +268,7 @@ std::string fault_page() {
       kStatedExtra_mm, kStatedExtra_s);
   for (const InjectionInfo& info : injections()) {
     for (const TrialMotion motion : {TrialMotion::starting, TrialMotion::standing, TrialMotion::jog}) {
-      if (info.kind == "motor_reversed" && motion == TrialMotion::jog) continue;  // nobody swaps leads in motion
+      if (info.kind == "motor_reversed" && motion == TrialMotion::jog) continue;  // nobody swaps cables in motion
       const bool is_start = motion == TrialMotion::starting;
       if (is_start ? info.kind != "dac_stuck" && info.needs == InjectionInfo::Needs::nothing
                    : info.needs == InjectionInfo::Needs::open_loop)

@@ -1,4 +1,4 @@
-// One fault, injected at one sample of one motion: what the supervisor made of it.
+// One fault, injected at one sample of one motion, and the supervisor's reaction.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace host {
 
-/// What the machine is doing when it happens.
+/// The motion during the injection.
 enum class TrialMotion { self_test, ready, starting, standing, jog, move, circle, stopping };
 inline constexpr std::array<std::string_view, 8> kTrialMotions{"self-test", "ready", "starting", "standing",
                                                                "jog",       "move",  "circle",   "stopping"};
 
-/// What an axis waits for between its enable and motion, and at its end.
+/// Waiting times of an axis between its enable and motion, and at its end.
 struct TrialStart {
-  int ready_ms = 0;          ///< amplifier.ready_time; the amplifier drives at once, and says so after half of it
+  int ready_ms = 0;  ///< amplifier.ready_time; the amplifier drives at once and reports it after half of that time
   bool ready_input = false;  ///< the contact is wired
   bool brake = false;        ///< one is fitted
 };
@@ -33,40 +33,39 @@ struct FaultTrial {
   TrialInjection second;  ///< without an injection: one fault alone
   int delay = 0;          ///< samples from the first to the second
   TrialMotion motion = TrialMotion::jog;
-  int sample = 300;                    ///< of the injection, since the motion began; starting: since the enable
+  int sample = 300;                    ///< of the injection, since the start of the motion; starting: since the enable
   int since_disable = 0;               ///< stopping: samples from the disable to the injection
   double speed_mm_s = 100.0;           ///< of jogs, with its sign
   bool tachometer = true;              ///< both axes have one
   double acceleration_mm_s2 = 2000.0;  ///< the references' limit
   TrialStart start{};
-  double weight_Nm = 0.0;  ///< what pulls on both motors; not 0: a brake is fitted
+  double weight_Nm = 0.0;  ///< load that pulls on both motors; if not 0, a brake is fitted
   std::uint64_t seed = 1;
 
   std::string text() const;
 };
 
 struct TrialOutcome {
-  firmware::AxisFault fault = firmware::AxisFault::none;  ///< the first that was found on any axis
+  firmware::AxisFault fault = firmware::AxisFault::none;  ///< first fault that was found on any axis
   double reaction_s = 0.0;                                ///< from the first injection to the fault
-  double stop_s = 0.0;                                    ///< from the fault until both axes stand, outputs off
-  double distance_mm = 0.0;                               ///< the longest way of an axis since the fault
-  double whole_way_mm = 0.0;                              ///< likewise, since the first injection
-  double speed_mm_s = 0.0;                                ///< of the faster axis when the fault was found
-  /// The fault is one of those that name the cause: the first injection, or the second where that came before the
-  /// first had been found.
+  double stop_s = 0.0;        ///< from the fault until both axes are at rest with outputs off
+  double distance_mm = 0.0;   ///< longest travel of an axis since the fault
+  double whole_way_mm = 0.0;  ///< the same, since the first injection
+  double speed_mm_s = 0.0;    ///< of the faster axis when the fault was found
+  /// The fault names the cause: the first injection, or the second if it came before the first was found.
   bool is_named = false;
-  bool is_safe = false;  ///< both axes stand, D/A at 0 V, enables dropped
-  /// Every axis that was enabled, or had the fault itself, has ended in the state fault.
+  bool is_safe = false;  ///< both axes are at rest, D/A at 0 V, enables dropped
+  /// Every axis that was enabled, or had the fault itself, is in the state fault.
   bool is_latched = false;
 };
 
-/// The paper's axes with parameters designed from Table 1. What does not show while the axes stand is given a motion:
-/// they are enabled, and jog both ways.
+/// The paper's axes with parameters designed from Table 1. Faults that do not show at rest get a motion: the axes are
+/// enabled and jog both ways.
 TrialOutcome run_trial(const FaultTrial& trial);
 
-/// What the paper's axes promise, by their speed when the fault is found: the way and the time of a ramp within the
-/// references' limits, and what finding a second fault meanwhile, coasting against friction alone after it, and holding
-/// an axis until it stands may add.
+/// Upper bounds of distance and time for the paper's axes, by their speed when the fault is found: of a ramp within the
+/// references' limits, plus what may be added by a second fault, coasting against friction alone after it, and holding
+/// an axis until it is at rest.
 struct StatedStop {
   double distance_mm;
   double time_s;

@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// Runs the open-loop steps of the commissioning (its `seed`) again, scaled as the paper scaled them, and adds: the
-/// steps and the speeds they give, the estimates over the scaling, and the predicted speeds with their errors.
+/// Repeats the open-loop steps of the commissioning (with its `seed`) at the paper's scalings, and adds: the steps and
+/// their speeds, the estimates over the scaling, and the predicted speeds with their errors.
 void add_identification_figures(const sim::DriveDescription& machine, std::string_view axis, std::uint64_t seed,
                                 Report& report);
 

@@ -1,5 +1,4 @@
-// The faults that can be injected into a machine, as one table: scenario files, the random tests and the documentation
-// use it.
+// Table of the faults that can be injected into a machine, for scenario files, random tests and the documentation.
 #pragma once
 
 #include <span>
@@ -14,12 +13,12 @@ struct InjectionInfo {
   std::string_view kind;  ///< name in scenario files
   std::string_view what;
   std::string_view unit;  ///< of the value; "" where it has none
-  double usual = 0.0;     ///< value where a scenario gives none
-  double least = 0.0;     ///< smallest magnitude that must be found
+  double usual = 0.0;     ///< value if the scenario gives none
+  double least = 0.0;     ///< smallest magnitude that must be detected
   bool of_board = false;  ///< concerns both axes
-  /// Shows only with what a machine may lack, or only then: see FaultTrial.
+  /// Shows only with optional parts of a machine, or only in that phase: see FaultTrial.
   enum class Needs { nothing, ready_input, brake, open_loop } needs = Needs::nothing;
-  /// The faults that name this cause.
+  /// The faults that identify this cause.
   std::vector<firmware::AxisFault> named_by;
   void (*apply)(Machine& machine, std::size_t axis, double value);
   void (*heal)(Machine& machine, std::size_t axis);

@@ -41,7 +41,7 @@ Machine::Machine(const std::array<MachineAxis, hal::kAxisCount>& axes, std::uint
       throw Failure(ExitCode::bad_input, fmt::format("axis {} rejects its parameters (parameter error {})",
                                                      kAxisNames[i], static_cast<int>(error)));
     }
-    axes_[i].set_position(0);  // a machine begins where its plants do
+    axes_[i].set_position(0);  // a machine starts at its plants' positions
   }
 }
 

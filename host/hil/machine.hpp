@@ -1,4 +1,4 @@
-// Two simulated drives behind the simulated board, and the firmware's axes closing their loops, sample by sample.
+// Two simulated drives on the simulated board, with the firmware's axes in closed loop, sample by sample.
 #pragma once
 
 #include <algorithm>
@@ -19,21 +19,21 @@ namespace host {
 
 using MachineGroup = firmware::AxisGroup<float, hal::pc::FaultyAxis, hal::kAxisCount>;
 
-/// One axis of a machine: the drive as it is, and what its controller is told.
+/// One axis of a machine: the true drive, and its controller's parameters.
 struct MachineAxis {
   sim::DriveDescription drive;
   firmware::AxisParameters<float> parameters;
   hal::pc::AxisWiring wiring{};
-  std::shared_ptr<sim::ForeignMotion> motion{};  ///< moves in place of the drive's effects, where there is one
+  std::shared_ptr<sim::ForeignMotion> motion{};  ///< external plant that replaces the drive's effects, if set
 };
 
-/// What can go wrong with the board itself.
+/// Faults of the board itself.
 struct BoardDefects {
-  bool emergency_stop = false;  ///< the stop circuit is open; it also takes the enable lines away in hardware
-  bool power_lost = false;      ///< amplifiers without power; the board's supply sinks below its threshold
+  bool emergency_stop = false;  ///< the stop circuit is open, which also removes the enable lines in hardware
+  bool power_lost = false;      ///< amplifiers without power; the board's supply falls below its threshold
   bool store_damaged = false;
-  bool host_silent = false;  ///< no heart-beat any more
-  /// The interpolator adds this acceleration to its path, on and on; mm/s^2.
+  bool host_silent = false;  ///< no more heartbeat
+  /// The interpolator adds this acceleration to its path permanently; mm/s^2.
   std::array<double, hal::kAxisCount> runaway_mm_s2{};
 };
 
@@ -49,10 +49,10 @@ class Machine {
   void step();
   void step_with(const std::array<firmware::Increment, hal::kAxisCount>& increments);
 
-  /// The control interrupt fails to come for as many periods; the machine runs on with the last words.
+  /// The control interrupt is missing for this many periods; the machine continues with the last D/A codes.
   void lose_periods(int periods);
 
-  /// Runs the self-test, then enables both axes. Throws Failure(device_fault) where an axis does not become enabled.
+  /// Runs the self-test, then enables both axes. Throws Failure(device_fault) if an axis does not become enabled.
   void enable();
 
   MachineGroup& axes() { return axes_; }
@@ -61,7 +61,7 @@ class Machine {
   hal::pc::FaultyAxis const& wires(std::size_t axis) const { return *wires_[axis]; }
   const sim::Plant& plant(std::size_t axis) const { return *plants_[axis]; }
   double sample_period_s() const { return period_s_; }
-  /// Since the machine was made.
+  /// Since the machine was created.
   std::uint64_t samples() const { return samples_; }
 
   BoardDefects defects;
@@ -80,7 +80,7 @@ class Machine {
   std::uint64_t samples_ = 0;
 };
 
-/// "x" and "y": how messages, records and scenario files call the axes.
+/// "x" and "y": names of the axes in messages, records and scenario files.
 inline constexpr auto kAxisNames = [] {
   std::array<std::string_view, hal::kAxisCount> names;
   std::copy_n(firmware::kAxisNames.begin(), names.size(), names.begin());

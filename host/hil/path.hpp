@@ -1,4 +1,4 @@
-// Paths in the plane, made of lines and arcs, and the references that lead two axes along them.
+// Plane paths of lines and arcs, and the references that move two axes along them.
 #pragma once
 
 #include <array>
@@ -24,13 +24,13 @@ struct PathSegment {
 
   double length() const;
   PlanePoint at(double distance) const;
-  /// The nearest distance of a point to this piece, >= 0.
+  /// Smallest distance of a point to this piece, >= 0.
   double distance_to(const PlanePoint& point) const;
 };
 
 class Path {
  public:
-  /// From the origin to `end`, which is another point.
+  /// From the origin to `end`, which must differ from it.
   static Path line(const PlanePoint& end);
   /// Starts and ends at the origin; the centre lies at (radius, 0). `turns` full turns, counter-clockwise; negative
   /// ones clockwise.
@@ -43,7 +43,7 @@ class Path {
   PlanePoint at(double distance) const;
   double distance_to(const PlanePoint& point) const;
   const std::vector<PathSegment>& segments() const { return segments_; }
-  /// The circle that the path is; nothing for other paths.
+  /// The path as a circle; empty for other paths.
   std::optional<PathSegment> whole_circle() const;
 
  private:
@@ -57,8 +57,8 @@ struct PathLimits {
   double jerk = 50'000.0;        // likewise
 };
 
-/// Increments of both axes, sample by sample, from rest to rest, as the board's own follower makes them of nodes that
-/// are jerk-limited along the path; exact at its end. Throws Failure(bad_input) for limits outside the references'
+/// Increments of both axes, sample by sample, from rest to rest, as the board's path follower computes them from nodes
+/// that are jerk-limited along the path; exact at its end. Throws Failure(bad_input) for limits outside the references'
 /// range.
 std::vector<std::array<firmware::Increment, 2>> follow_path(const Path& path, const PathLimits& limits,
                                                             double sample_period_s,

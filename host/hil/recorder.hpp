@@ -1,4 +1,4 @@
-// Rows of a machine's run: one record an axis, as a board would log them.
+// Records a machine's run: one record per axis, as a board would.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@ class Recorder {
  public:
   explicit Recorder(const Machine& machine);
 
-  /// The control period that has just run.
+  /// Records the control period that has just ended.
   void take();
 
   std::size_t size() const { return records_[0].size(); }
   const Record& record(std::size_t axis) const { return records_[axis]; }
-  /// Reference less encoder, µm; the encoder's step is taken at its middle.
+  /// Reference minus encoder, µm, with the middle of the encoder's step.
   std::vector<double> tracking_error_um(std::size_t axis) const;
 
  private:

@@ -1,4 +1,4 @@
-// A scenario: what is done to a machine, what goes wrong, and what must hold (`axis-scenario/1`).
+// A scenario: the commands to a machine, the injected faults, and the expectations (`axis-scenario/1`).
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace host {
 
-/// Where the controller's parameters come from.
+/// Source of the controller's parameters.
 enum class Knowledge {
-  truth,       ///< designed from the drive as it is, its effects included where the board can compensate them
+  truth,       ///< designed from the true drive, including effects that the board can compensate
   identified,  ///< commissioned by experiments on this drive: steps, jogs
   model,       ///< a model file
 };
@@ -50,17 +50,17 @@ struct ScenarioMove {
 
 struct ScenarioFault {
   double at_s = 0.0;
-  std::optional<double> until_s;  ///< healed then
+  std::optional<double> until_s;  ///< ends then
   const InjectionInfo* injection = nullptr;
   std::size_t axis = 0;
   double value = 0.0;
 };
 
-/// One thing that must hold: a fault by a time, a state at the end, or a bound on a signal between two times.
+/// One expectation: a fault by a time, a state at the end, or a bound on a signal between two times.
 struct Expectation {
   std::size_t line = 0;
   std::size_t axis = 0;
-  bool aim = false;  ///< what is wished for: a run that misses it does not fail
+  bool aim = false;  ///< desired only: a run that misses it does not fail
   std::optional<firmware::AxisFault> fault;
   std::optional<double> by_s;
   std::optional<firmware::SupervisorState> state;
@@ -72,7 +72,7 @@ struct Expectation {
   std::optional<double> at_most_share;  ///< of the same signal of `of_axis`
 };
 
-/// Signals that expectations may bound; magnitudes count.
+/// Signals that expectations may bound, as magnitudes.
 inline constexpr std::array<std::string_view, 7> kSignals{"tracking_um", "contour_um",  "speed_rad_s", "disturbance_V",
                                                           "command_V",   "position_mm", "table_um"};
 
@@ -86,13 +86,13 @@ struct Scenario {
   std::vector<ScenarioMove> moves;
   std::vector<ScenarioFault> faults;
   std::vector<Expectation> expectations;
-  bool programs_allowed = false;  ///< set by whoever agreed to what programs_of() names
+  bool programs_allowed = false;  ///< set by the user's consent to what programs_of() names
 };
 
-/// The command lines that it runs, each once. A scenario may come from anywhere: nothing runs them unasked.
+/// The command lines that it runs, each once. A scenario may come from anywhere: they run only with consent.
 std::vector<std::string> programs_of(const Scenario& scenario);
 
-/// Throws Failure(bad_input) naming file, line, field and remedy. Models named in it are read beside it.
+/// Throws Failure(bad_input) naming file, line, field and remedy. Models named in it are read from its folder.
 Scenario read_scenario(const std::string& path);
 Scenario parse_scenario(std::string_view text, const std::string& path);
 

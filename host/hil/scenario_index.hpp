@@ -1,4 +1,4 @@
-// The pages of several scenarios, as one page that leads to them.
+// One page with links to the pages of several scenarios.
 #pragma once
 
 #include <string>
@@ -19,10 +19,10 @@ struct IndexLine {
 
 IndexLine index_line(const Scenario& scenario, const ScenarioRun& run, const std::string& page);
 
-/// "34 of 36 scenarios hold; fault-late: …, …": the total, and what does not.
+/// "34 of 36 scenarios hold; fault-late: …, …": the total, and what failed.
 Verdict index_verdict(const std::vector<IndexLine>& lines);
 
-/// A line each with a link, those that fail first; the total above.
+/// One row with a link for each, failures first; the total above.
 Report scenario_index(const std::vector<IndexLine>& lines);
 
 }  // namespace host

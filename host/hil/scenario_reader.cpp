@@ -144,7 +144,7 @@ class ScenarioReader {
     else
       drive.effects.push_back(std::move(entry));
     try {
-      parse_model(format_model(drive), "the drive");  // its own checks: parameters that are missing, or exclude others
+      parse_model(format_model(drive), "the drive");  // checks parameters that are missing or exclude others
     } catch (const Failure& error) {
       from.fail("kind", fmt::format("{}; see axistool effects {}", error.what(), info.kind));
     }

@@ -62,7 +62,7 @@ TimePlot error_plot(const ScenarioRun& run) {
   return plot;
 }
 
-/// As the paper's Fig. 9: speed, command and the disturbance that the Kalman filter sees.
+/// As in the paper's Fig. 9: speed, command and the disturbance that the Kalman filter estimates.
 TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
   const Record& record = run.records[axis];
   TimePlot plot;
@@ -81,7 +81,7 @@ TimePlot motion_plot(const ScenarioRun& run, std::size_t axis) {
   return plot;
 }
 
-/// The path that was travelled, and where it deviates.
+/// The path that was travelled, and its deviation.
 ScatterPlot plane_plot(const ScenarioRun& run) {
   ScatterPlot plot;
   plot.title = "The path in the plane";
@@ -110,7 +110,7 @@ ScatterPlot plane_plot(const ScenarioRun& run) {
   return plot;
 }
 
-/// As the paper's Fig. 10: what the controller believes of friction, over what the drive's friction is.
+/// As in the paper's Fig. 10: the controller's friction curve over the drive's true friction.
 ScatterPlot friction_plot(const Scenario& scenario, const ScenarioRun& run, std::size_t axis) {
   ScatterPlot plot;
   plot.title = fmt::format("Axis {}: friction curve (as Fig. 10)", kAxisNames[axis]);

@@ -1,4 +1,4 @@
-// What a scenario's run shows: report, JSON, text for the terminal.
+// Results of a scenario's run: report, JSON, text for the terminal.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// Good, an aim missed, or something that must hold does not.
+/// Good, an aim missed, or a requirement not met.
 struct ScenarioOutcome {
   Tone tone = Tone::neutral;
   std::string word;

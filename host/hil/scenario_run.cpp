@@ -41,7 +41,7 @@ MachineAxis machine_axis(const ScenarioAxis& axis, const sim::DriveDescription& 
   return {axis.drive, parameters, axis.wiring};
 }
 
-/// Programs in place of drives: axes that name the same one share it.
+/// Starts the programs that replace drives, once for all axes with the same program.
 void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxisCount>& axes) {
   constexpr std::chrono::seconds kPatience{10};
   std::map<std::string, std::vector<std::size_t>> served;

@@ -1,4 +1,4 @@
-// Experiments on a simulated machine, recorded as a board would record them.
+// Experiments on a simulated machine, recorded as on a board.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,20 @@
 
 namespace host {
 
-/// What is known of a machine before it has been identified: its data sheet, and no effect.
+/// What is known of a machine before identification: its data sheet, without effects.
 sim::DriveDescription data_sheet_of(const sim::DriveDescription& machine);
 
 /// Open loop: holds each value of `command` (V) for one sample period on a plant made of `machine`. `seed` fixes the
 /// tachometer's noise.
 Record record_open_loop(const sim::DriveDescription& machine, const std::vector<double>& command, std::uint64_t seed);
 
-/// Speed that a model reaches when it is given the record's commands, from rest to the end without restart, rad/s
-/// (m/s).
+/// Speed of a model with the record's commands, from rest to the end without restart, rad/s (m/s).
 std::vector<double> free_run_speed(const sim::DriveDescription& model, const Record& record);
 
-/// Closed loop: the control core with `design` (made from what is believed of the machine) jogs a plant made of
-/// `machine` through the programme, without friction feed-forward or disturbance cancellation, as section 3.2 does.
-/// Between jogs the axis rests for 0.2 s. The record has reference columns.
-/// Throws Failure(bad_input) when the core rejects the parameters, Failure(device_fault) when the axis faults.
+/// Closed loop: the control core with `design` (from the assumed model of the machine) jogs a plant made of `machine`
+/// through the programme, without friction feed-forward or disturbance cancellation, as in section 3.2. Between jogs
+/// the axis rests for 0.2 s. The record has reference columns. Throws Failure(bad_input) when the core rejects the
+/// parameters, Failure(device_fault) when the axis faults.
 Record record_jogs(const sim::DriveDescription& machine, const AxisDesign& design, const std::vector<Jog>& programme,
                    std::uint64_t seed, const ReferenceLimits& limits = {});
 

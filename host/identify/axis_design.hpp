@@ -11,9 +11,9 @@ namespace host {
 
 /// Tuning parameters of the design. Defaults are the paper's: eqs. (10), (12), (47), (48) and p. 1504.
 struct DesignOptions {
-  std::optional<double> tach_variance;     ///< Rw, (rad/s)^2 or (m/s)^2; default 0.05 rotary, the drive's own if linear
-  double disturbance_variance = 0.01;      ///< Rwd, V^2 a sample, > 0: how lively the disturbance estimate is
-  std::optional<double> command_variance;  ///< Ru, V^2; default du^2/12
+  std::optional<double> tach_variance;  ///< Rw, (rad/s)^2 or (m/s)^2; default 0.05 rotary, the drive's own if linear
+  double disturbance_variance = 0.01;  ///< Rwd, V^2 per sample, > 0: larger values make the disturbance estimate faster
+  std::optional<double> command_variance;   ///< Ru, V^2; default du^2/12
   std::optional<double> position_variance;  ///< Rx, mm^2 or m^2, > 0; default dx^2/12
   double bandwidth_Hz = 30.0;               ///< of the closed loop's poles, > 0 and below half the sampling rate
   double damping = 0.7;                     ///< of the closed loop's poles, > 0

@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Samples [begin, end) of a record in which the axis moves at one speed, transients left out.
+/// Samples [begin, end) of a record with a constant speed, without transients.
 struct ConstantSpeed {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -17,7 +17,7 @@ struct ConstantSpeed {
 
 struct ConstantSpeedOptions {
   double settle_s = 0.3;    ///< dropped at the start, as in the paper; at most half of a stretch
-  double shortest_s = 0.3;  ///< a stretch must hold its speed for this long, the dropped part included
+  double shortest_s = 0.3;  ///< shortest duration of a constant speed, including the dropped part
   double tolerance = 0.03;  ///< relative change of the smoothed speed that still counts as constant
 };
 

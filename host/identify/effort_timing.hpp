@@ -1,4 +1,5 @@
-// When a logged current acts, in parts of a sample: loggers hold, average, filter or sample before the output.
+// Time at which a logged current acts, in parts of a sample: loggers hold, average, filter, or sample before the
+// output.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,39 +10,39 @@
 
 namespace host {
 
-/// The middle of the time over which a logged effort acts, in samples after its row, with its standard deviation; 0
-/// where it is known. What is held from its row to the next acts half a sample after it.
+/// Middle of the time over which a logged torque, force or current acts, in samples after its row, with its standard
+/// deviation; 0 if it is known. A value held from its row to the next acts half a sample after it.
 struct EffortTiming {
   double samples = 0.5;
   double deviation = 0.0;
 };
 
-/// Prior for a logged current: it is held from its row on, like a command, within about a sample (loggers average over
-/// the period before, or take the current of one or two periods ago).
+/// Prior for a logged current: held from its row on, like a command, within about a sample (loggers average over the
+/// previous period, or log the current of one or two periods ago).
 inline constexpr EffortTiming kBelievedTiming{0.5, 1.0};
 
-/// Largest deviation from the prior, in samples, that a logger explains.
+/// Largest deviation from the prior, in samples, that a logger can cause.
 inline constexpr double kLargestTiming = 2.5;
 
-/// Of a command: known. Of a current: what the record's header says, `# effort_timing_samples:` with
-/// `# effort_timing_deviation:` (0 where it is absent); else that it is held, as nobody has looked yet.
+/// Of a command: known. Of a current: that of the record's header, `# effort_timing_samples:` with `#
+/// effort_timing_deviation:` (0 if absent); otherwise the prior.
 EffortTiming effort_timing_of(const Record& record);
 
-/// Finds when the record's current acts and writes that to its header, where it does not stand already; from the
-/// inverse model: inertia, friction by direction with a bend over the speed, a curve over the travel and the instant
-/// are found together, on the samples that slide, and combined with the belief. The belief alone where the record does
-/// not tell, or tells of an instant that no logger's habits explain.
+/// Estimates when the record's current acts and writes that to its header, unless the header states it. Fits the
+/// inverse model (inertia, friction by direction with a curve over the speed, a curve over the travel) together with
+/// the time, on the samples that slide, and combines the result with the prior. Uses the prior alone if the record does
+/// not determine the time, or gives one that no logger can cause.
 void settle_effort_timing(Record& record, const sim::DataSheet& data);
 
-/// The current that acts, on average, from each row to the next one, A. Interpolates between rows; beyond the ends the
-/// first and last row hold.
+/// The current that acts, on average, from each row to the next, A. Interpolates between rows; beyond the ends the
+/// first and last row apply.
 std::vector<double> acting_current(const Record& record);
 
-/// Whether the timing was estimated from each record, so that it gives no information on the drive.
+/// Whether the timing was estimated from each record, so that it contains no information on the drive.
 bool timing_explains_delays(const std::vector<const Record*>& records);
 
-/// {"samples", "ci95"} of all records together: weighed by what each tells; as uncertain as they scatter where that is
-/// more.
+/// {"samples", "ci95"} of all records together, weighted by their uncertainty; the interval is widened to their scatter
+/// if that is larger.
 nlohmann::json effort_timing_json(const std::vector<const Record*>& records);
 
 }  // namespace host

@@ -69,7 +69,7 @@ ExcitationSummary summarise_excitation(const std::vector<Record>& records, const
     for (const double i : record.i_A) summary.peak_current_A = std::max(summary.peak_current_A, std::abs(i));
   }
   summary.peak_effort = percentile_of_magnitude(std::move(efforts), 0.99);
-  // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can fake in 0.1 s.
+  // Without a dead band: a hundredth of the top speed, and more than the encoder's last digit can imitate in 0.1 s.
   const double fake = data.encoder_resolution / data.lead / kLeastSliding_s * 10.0;
   summary.threshold = motions.front().deadband;
   if (!(summary.threshold > 0.0)) summary.threshold = std::max(0.01 * summary.top_speed, fake);

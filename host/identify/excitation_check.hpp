@@ -20,7 +20,7 @@ struct ExcitationSummary {
   double top_speed = 0.0;
   double peak_effort = 0.0;     ///< of the motor: 99 % of the samples lie below, Nm or N
   double peak_command_V = 0.0;  ///< largest |u|; 0 where only a current was logged
-  double peak_current_A = 0.0;  ///< largest |i|; 0 where none was
+  double peak_current_A = 0.0;  ///< largest |i|; 0 without a current
 };
 
 ExcitationSummary summarise_excitation(const std::vector<Record>& records, const std::vector<Motion>& motions,

@@ -142,6 +142,12 @@ void warn_of_other_effects(FrictionIdentification& result) {
 
 std::string_view method_name(FrictionMethod method) { return method == FrictionMethod::joint ? "joint" : "paper"; }
 
+FrictionMethod friction_method_named(std::string_view name) {
+  for (const FrictionMethod method : {FrictionMethod::joint, FrictionMethod::paper})
+    if (name == method_name(method)) return method;
+  throw Failure(ExitCode::usage, fmt::format("--method: {} not in {{joint,paper}}", name));
+}
+
 FrictionIdentification identify_friction(const Measurements& measured, const sim::DriveDescription& model,
                                          FrictionMethod method, const ConstantSpeedOptions& options) {
   const std::vector<Record>& records = measured.training();

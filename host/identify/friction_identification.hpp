@@ -21,13 +21,16 @@ enum class FrictionMethod {
 
 std::string_view method_name(FrictionMethod method);  ///< "joint", "paper"
 
+/// Finds a method by its name. Throws Failure(usage) with the known names.
+FrictionMethod friction_method_named(std::string_view name);
+
 struct FrictionIdentification {
   FrictionMethod method{};
   sim::DriveDescription model;  ///< as given, with viscous, coulomb and stribeck from the fit
   FrictionFit fit;
   std::vector<FrictionPoint> points;
   double observer_viscous = 0.0;                    ///< B of the observer's design
-  std::optional<Estimate> viscous_by_disturbance;   ///< what the joint fit makes of the Kalman disturbance instead
+  std::optional<Estimate> viscous_by_disturbance;   ///< the same from the Kalman disturbance instead of the command
   std::optional<TachometerCalibration> tachometer;  ///< against the encoder
   std::vector<std::string> warnings;
 };

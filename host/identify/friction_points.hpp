@@ -17,9 +17,9 @@ std::vector<double> observe_disturbance(const Record& record, const AxisDesign& 
 /// Friction of one stretch of constant speed, viscous part included, with its sign.
 struct FrictionPoint {
   double speed = 0.0;           ///< rad/s or m/s
-  double effort = 0.0;          ///< Nm or N: mean control effort less what is left of J dw/dt
+  double effort = 0.0;          ///< Nm or N: mean control torque or force minus the remaining J dw/dt
   double standard_error = 0.0;  ///< of `effort`, from the scatter of its parts
-  /// From the disturbance: Ka Kt d + B w, with the B of the observer's design; empty where there is no position.
+  /// From the disturbance: Ka Kt d + B w, with the B of the observer's design; empty without a position.
   std::optional<double> observed_effort;
   double duration_s = 0.0;  ///< averaged over
   double turns = 0.0;       ///< of the screw; whole where at least one fits, 0 for a linear drive

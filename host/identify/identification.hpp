@@ -20,10 +20,10 @@ enum class IdentificationMethod {
 
 std::string_view method_name(IdentificationMethod method);  ///< "ls", "unbiased-ls", "sliding-ls"
 
-/// The method where the user names none: sliding_ls with a tachometer, unbiased_ls with an encoder only.
+/// Default method: sliding_ls with a tachometer, unbiased_ls with an encoder only.
 IdentificationMethod default_method(const std::vector<Record>& records);
 
-/// By its name; where that is empty the default. Throws Failure(usage) with the names that there are.
+/// Finds a method by its name; an empty name gives the default. Throws Failure(usage) with the known names.
 IdentificationMethod method_named(std::string_view name, const std::vector<Record>& records);
 
 struct Identification {
@@ -32,7 +32,7 @@ struct Identification {
   RigidEstimate estimate;
   double relative_error = 0.0;  ///< of the inverse model on the same records
   bool by_speed = false;        ///< the motion was taken from the speed channel
-  bool beside_travel = false;   ///< what goes with the position was taken out by a curve along the travel
+  bool beside_travel = false;   ///< a curve along the travel absorbed effects that depend on position
   double cutoff_Hz = 0.0;       ///< of the zero-phase filter
   std::size_t decimation = 1;
   ExcitationSummary excitation;

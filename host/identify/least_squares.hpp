@@ -10,7 +10,7 @@ namespace host {
 /// Two-sided 95 % quantile of Student's t for `degrees` >= 1 degrees of freedom.
 double student_t_95(double degrees);
 
-/// What a regression found.
+/// Result of a regression.
 struct Regression {
   Eigen::VectorXd parameters;
   Eigen::MatrixXd covariance;      ///< of the parameters, by block sums (see BlockedRegression)

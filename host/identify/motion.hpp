@@ -1,4 +1,4 @@
-// Speed, acceleration and effort of a record, free of delay: what the inverse model T = J dw/dt + friction(w) needs.
+// Speed, acceleration and torque or force of a record, without delay, for the inverse model T = J dw/dt + friction(w).
 #pragma once
 
 #include <optional>

@@ -11,8 +11,8 @@ namespace host {
 /// A value that is impossible, or that the records do not determine.
 struct Doubt {
   std::string effect;   ///< kind
-  std::string message;  ///< names the parameter and its value, says what it means and what to do
-  bool refuses = true;  ///< no controller may be designed from it; else it is only to be said
+  std::string message;  ///< names the parameter, its value, the consequence and the remedy
+  bool refuses = true;  ///< no controller may be designed from it; otherwise only a warning
 };
 
 /// Signs and ranges of all parameters; of the fitted ones also: on a bound of the fit, interval wider than the value;

@@ -25,7 +25,7 @@ struct RigidEstimate {
   std::optional<Estimate> positive;  ///< Coulomb level forward, > 0, Nm (N); empty when friction was left out
   std::optional<Estimate> negative;  ///< Coulomb level backward, < 0
   double condition_number = 0.0;
-  double relative_residual = 0.0;  ///< of what was regressed, 0 to 1
+  double relative_residual = 0.0;  ///< of the regressed quantity, 0 to 1
   std::size_t rows = 0;
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 /// Degrees of freedom of the innovations (Lange et al. 1989).
 constexpr double kDegrees = 4.0;
-/// A memory of this part of its usual size counts as none: its prior leans there, like two earlier observations.
+/// A memory below this part of its usual size counts as none: the prior favours that, like two earlier observations.
 constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
 /// Where a fit that looks for a large memory begins.
 constexpr double kLargeSize = 0.1;

@@ -1,11 +1,11 @@
-// How probable measured rows are under one hypothesis: log p(y | columns), everything that is not known averaged out.
+// Evidence of one hypothesis for measured rows: log p(y | columns), integrated over all unknowns.
 //
 //   y = sum_j theta_j column_j + memory + noise
-//   theta_j ~ N(0, deviation_j^2)                 what a data sheet or usual sizes say before the measurement
+//   theta_j ~ N(0, deviation_j^2)                 prior from a data sheet or usual sizes
 //   memory  = smooth functions of some coordinates, one size a coordinate, found for each hypothesis
 //   noise   = first-order autoregressive with Student-t innovations of 4 degrees of freedom
 //
-// The memory takes what no column takes: no hypothesis wins by being the nearest to something that is none of them.
+// The memory explains what no column does, so that no hypothesis wins only because it is closest to an unknown effect.
 // Linear parameters are integrated in closed form (Laplace's approximation at the weights of the t distribution).
 // Sources: D. MacKay, "Information Theory, Inference, and Learning Algorithms" (2003), ch. 27 and 28; Lange, Little,
 // Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989) 881-896, whose data want 4 degrees.
@@ -18,32 +18,32 @@
 
 namespace host {
 
-/// Rows [first, end) follow one another without a gap: the noise's correlation runs through them.
+/// Rows [first, end) are consecutive: the noise is correlated through them.
 struct RowRun {
   Eigen::Index first, end;
 };
 
-/// Columns of the memory that lie over one coordinate and share one size.
+/// Columns of the memory over one coordinate, which share one size.
 struct MemoryGroup {
   std::string coordinate;
   Eigen::Index first, count;
 };
 
-/// Smooth functions, as columns of hats between knots. Columns are of size 1; `usual` is what their factors compare to.
+/// Smooth functions, as columns of hats between knots. Columns have size 1; `usual` is the scale of their factors.
 struct Memory {
   Eigen::MatrixXd columns;
   std::vector<MemoryGroup> groups;
-  double usual = 1.0;  ///< in the unit of y; a hundredth of it counts as nothing
+  double usual = 1.0;  ///< in the unit of y; a hundredth of it counts as zero
 };
 
-/// One hypothesis fitted: sizes of memory and noise at their most probable, parameters with their covariance.
+/// One fitted hypothesis: most probable sizes of memory and noise, parameters with their covariance.
 struct EvidenceFit {
   double log_evidence = 0.0;   ///< ln p(y | hypothesis), nats
   double correlation = 0.0;    ///< of the noise from row to row, 0 to 0.98
   double noise = 0.0;          ///< scale of the innovations, in the unit of y
   Eigen::VectorXd sizes;       ///< of each memory group, in the unit of y
   Eigen::VectorXd factors;     ///< of the hypothesis' columns
-  Eigen::VectorXd remembered;  ///< what the memory takes of every row
+  Eigen::VectorXd remembered;  ///< part of every row that the memory explains
   Eigen::VectorXd weights;     ///< of the whitened rows: 1/variance
 
   /// For further columns on top of these: whitened columns times their prior deviations, their information matrix's
@@ -53,12 +53,12 @@ struct EvidenceFit {
   Eigen::VectorXd residual;
 };
 
-/// Where a fit begins: sizes that are found can be large or small, and the better of both is kept.
+/// Starting point of a fit: the resulting sizes can be large or small, and the better fit is kept.
 struct EvidenceStart {
   double correlation = 0.5;
   Eigen::VectorXd sizes;
-  bool hold_sizes = false;  ///< the sizes stay as they are
-  /// A fit whose log evidence lies below this after three rounds, from where rounds change little, ends there, nats.
+  bool hold_sizes = false;  ///< the sizes are held
+  /// A fit whose log evidence is below this after three rounds, when further rounds change little, ends there, nats.
   double give_up = -HUGE_VAL;
 };
 
@@ -67,15 +67,15 @@ class Evidence {
   /// `least_noise`: of the sensors alone, in the unit of y, > 0.
   Evidence(Eigen::VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise);
 
-  /// Columns with the standard deviation that each factor has before the measurement (> 0).
+  /// Columns with the prior standard deviation (> 0) of each factor.
   EvidenceFit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations, const EvidenceStart& start) const;
 
-  /// The best of fits from a large and a small memory.
+  /// The better of two fits, from a large and a small memory.
   EvidenceFit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations) const;
   EvidenceFit fit_from(const EvidenceFit& before, const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations,
                        double give_up = -HUGE_VAL) const;
 
-  /// Sizes at which there is no memory.
+  /// Sizes without any memory.
   Eigen::VectorXd no_memory() const;
 
   /// Gain of the log evidence by further columns of prior deviation 1, at the noise and the memory of `fit`, for each

@@ -1,4 +1,4 @@
-// From log evidence to probabilities, and from these to what is claimed.
+// Converts log evidence to probabilities, and these to claims.
 #pragma once
 
 #include <algorithm>
@@ -8,20 +8,20 @@
 
 namespace host {
 
-/// What is named must hold this probability together: a wrong name sends a mechanic to the wrong part, which costs some
-/// twenty times what another record does.
+/// Least probability of named effects together: a wrong name sends a mechanic to the wrong part, which costs some
+/// twenty times as much as another record.
 inline constexpr double kClaimed = 0.95;
-/// Of the squared error that is left on held-back records, what an effect must take to be named first: with less the
-/// error itself (its root) falls by less than 5 %, which nobody sees in the machine's work.
+/// Least part of the remaining squared error on held-back records that the first named effect must explain: with less,
+/// the error itself (its root) falls by less than 5 %, which is not noticeable on the machine.
 inline constexpr double kWorthNaming = 0.1;
-/// And of the squared error that the base leaves there: beside what was found first, a tenth of the error is not seen.
+/// The same for the squared error of the base: after the first effect, a tenth of the error is not noticeable.
 inline constexpr double kWorthOfAll = 0.01;
-/// Unless it takes the larger part of what is left.
+/// Unless it explains the larger part of the remaining error.
 inline constexpr double kWorthOfLeft = 0.5;
-/// Before the measurement, that nothing (more) is missing is as probable as that something is.
+/// Prior: that nothing (more) is missing is as probable as that something is.
 inline constexpr double kNothingMore = 0.5;
 
-/// Probability of what has these log odds, nats.
+/// Probability for these log odds, nats.
 inline double logistic(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
 /// ln(sum(exp(values))).

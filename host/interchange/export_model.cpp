@@ -63,7 +63,7 @@ sim::DriveDescription invertible(const sim::DriveDescription& model) {
   return part;
 }
 
-/// One level for both directions, where a program has no other.
+/// Notes that the format has only one friction level for both directions.
 void note_levels(const sim::DriveDescription& model, const PortableModel& formulas, const Record* record,
                  std::vector<NotExpressed>& out) {
   if (formulas.friction[0].coulomb == formulas.friction[1].coulomb) return;

@@ -14,7 +14,7 @@ namespace host {
 
 enum class ExportTarget { mjcf, urdf, linuxcnc, c, modelica, python };
 
-/// "mjcf", "urdf", …; empty for what is none of them.
+/// "mjcf", "urdf", …; empty for an unknown name.
 std::optional<ExportTarget> export_target(std::string_view name);
 
 struct NotExpressed {

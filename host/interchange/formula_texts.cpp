@@ -77,7 +77,7 @@ Units units(const PortableModel& model) {
   return model.rotary() ? Units{"Nm", "rad/s", "mm", "kg m^2"} : Units{"N", "m/s", "m", "kg"};
 }
 
-/// exp, pow and sines without a library: exp and log by halving and series, sines folded to a quarter turn.
+/// exp, pow and sines without the C library: exp and log by halving and series, sines reduced to a quarter turn.
 constexpr std::string_view kFreestandingMath = R"(
 static inline double axis_exp(double a) {
   double sum = 1.0, term = 1.0, whole = 1.0;

@@ -1,4 +1,4 @@
-// What of a model other programs can take: a curve of friction over speed, and torques over the travel.
+// The part of a model that other programs support: a friction curve over speed, and torques over the travel.
 #pragma once
 
 #include <array>

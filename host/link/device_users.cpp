@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 0 where the folder of /proc is no process.
+/// Process number of a folder in /proc; 0 if it is not a process.
 int process_of(const fs::path& folder) {
   const std::string name = folder.filename().string();
   int number = 0;

@@ -1,4 +1,4 @@
-// Which other programs have a board open.
+// Lists other programs that have a board open.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// --device: which board, and the way to it.
+// Option --device: selects a board and opens a link to it.
 #pragma once
 
 #include <memory>

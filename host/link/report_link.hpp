@@ -1,4 +1,4 @@
-// A way to a board: 64-byte reports both ways, over USB or a socket.
+// A link to a board: 64-byte reports in both directions, over USB or a socket.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 
 namespace host {
 
-/// The link keeps reports in order and loses none on the way to the program: an implementation reads in a thread of its
-/// own, because hidapi drops what is not fetched in time.
+/// Keeps reports in order and loses none on the way to the program: an implementation reads in its own thread, because
+/// hidapi drops reports that are not fetched in time.
 class ReportLink {
  public:
   ReportLink() = default;
@@ -26,14 +26,14 @@ class ReportLink {
   /// that it had sent has been fetched.
   virtual std::optional<hal::HidReport> receive(std::chrono::milliseconds limit) = 0;
 
-  /// The clock that the board's time goes by: the computer's, unless the board is simulated within this process.
+  /// Clock of the board's time: the computer's, unless the board is simulated within this process.
   virtual std::chrono::steady_clock::time_point now() const { return std::chrono::steady_clock::now(); }
   virtual void wait(std::chrono::milliseconds duration) { std::this_thread::sleep_for(duration); }
 
   /// As --device names it: usb:SERIAL, socket:PATH.
   virtual std::string name() const = 0;
 
-  /// What other programs that use the board have open too; empty where that cannot be told.
+  /// Other programs that have the board open; empty if that is unknown.
   virtual std::string file() const { return ""; }
 };
 

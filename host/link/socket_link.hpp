@@ -29,7 +29,7 @@ class OwnedDescriptor {
 /// Throws Failure(no_such_device) when nobody listens at `path`, Failure(permission) when the user may not.
 std::unique_ptr<ReportLink> connect_to_socket(const std::string& path);
 
-/// Where `axistool sim` listens unless it is told otherwise: in the user's own runtime folder.
+/// Default socket of `axistool sim`: in the user's own runtime folder.
 std::string default_socket_path();
 
 /// A listening socket; one that a program left behind at `path` is replaced. Throws Failure(refused) when another

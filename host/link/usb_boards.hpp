@@ -1,4 +1,4 @@
-// The boards on this computer's USB, and the way to one of them.
+// Lists the boards on this computer's USB, and opens one of them.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace host {
 
 struct UsbBoard {
-  std::string serial_number;  ///< empty where only the board's owner may read it (libusb without permission)
+  std::string serial_number;  ///< empty if only the board's owner may read it (libusb without permission)
   std::string product;
   std::string path;  ///< hidapi's name for it
 };

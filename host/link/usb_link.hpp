@@ -1,4 +1,4 @@
-// The way to one board over USB.
+// Link to one board over USB.
 #pragma once
 
 #include <condition_variable>

@@ -1,4 +1,4 @@
-// The fields of `[drive]`: where each stands in the file, what it fills, and what it may hold.
+// The fields of `[drive]`: position in the file, target, and permitted values.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct DataSheetField {
   std::string_view key;
   std::optional<sim::DriveKind> only;  ///< the kind of drive that has it; empty: both
   double sim::DataSheet::*value;
-  bool zero_allowed;  ///< all are physical sizes: none is negative
+  bool zero_allowed;  ///< all are physical quantities and never negative
   Presence presence;
   std::string_view meaning;  ///< with where its value stands on paper
   double divisor = 1.0;      ///< from the key's unit to the data sheet's

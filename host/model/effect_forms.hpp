@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// The ids that a one-for-both-directions parameter stands for ("positive negative" -> two ids).
+/// The ids that a common parameter of both directions sets ("positive negative" -> two ids).
 std::vector<std::string_view> ids_of_pair(const sim::ParameterInfo& both);
 
 /// A drive may have several effects of one kind: each has a period or a time of its own.
@@ -23,7 +23,7 @@ constexpr std::string_view curve_deviation_key(sim::DriveKind kind) {
 /// All kinds of the catalogue, for messages.
 std::vector<std::string_view> effect_kinds();
 
-/// Throws Failure(usage) with the nearest kind where the catalogue has none of this name.
+/// Throws Failure(usage), naming the closest kind, if the catalogue has none of this name.
 const sim::EffectInfo& known_effect(std::string_view kind);
 
 /// Whether an interval is one of this value: it holds it, to the rounding of its ends.

@@ -1,4 +1,4 @@
-// What is known of a drive before any record: parameters that a fit leaves alone, or moves only against a belief.
+// Prior knowledge of a drive: parameters that a fit holds, or that have a prior.
 #pragma once
 
 #include <string>

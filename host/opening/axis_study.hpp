@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// A column of the log with what its name says.
+/// A column of the log with the meaning of its name.
 struct NamedChannel {
   std::size_t column = 0;
   ChannelName name;

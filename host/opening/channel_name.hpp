@@ -31,9 +31,9 @@ struct ChannelName {
   bool is_second = false;           ///< of the load side: a scale on the table
   bool is_weak = false;             ///< one letter, or a word that may mean something else ("enc", "u", "q")
   bool makes_torque = false;        ///< q current, torque-making
-  std::string axis;                 ///< "X1", "2"; empty: the name says none
+  std::string axis;                 ///< "X1", "2"; empty: not in the name
   std::string unit_text;            ///< as the log gives it
-  std::optional<UnitMeaning> unit;  ///< empty: none, or one that is not known here
+  std::optional<UnitMeaning> unit;  ///< empty: none, or unknown
 };
 
 /// By words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and controllers' own names.

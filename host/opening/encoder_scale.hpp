@@ -18,7 +18,7 @@ std::optional<NeatScale> neat_counts_per_mm(double measured, double tolerance);
 /// The same for counts a radian: a usual encoder alone.
 std::optional<NeatScale> neat_counts_per_rad(double measured, double tolerance);
 
-/// A factor to rad/s within 2 % of what a usual unit of speed has ("1/min", 0.10472).
+/// A factor to rad/s within 2 % of that of a usual unit of speed ("1/min", 0.10472).
 std::optional<NeatScale> neat_angular_speed(double measured);
 
 /// The same to mm/s.

@@ -62,7 +62,7 @@ class HalReader {
     return ns && *ns > 0.0 ? std::optional(*ns * 1e-9) : std::nullopt;
   }
 
-  /// The signal's name, and the other pins on it: they tell what it is.
+  /// Reads the signal's name and the other pins on it, which identify it.
   void take_net(const std::vector<std::string_view>& words) {
     for (std::size_t k = 2; k < words.size(); ++k) {
       const auto pin = sampler_pin(words[k]);

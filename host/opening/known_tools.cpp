@@ -108,7 +108,7 @@ bool are_counts(const Log& log) {
   return false;
 }
 
-/// "x-output": the letter of an axis that a signal's name begins with; empty where it does not.
+/// "x-output": the axis letter at the beginning of a signal's name; empty if there is none.
 std::string axis_of_signal(std::string_view name) {
   const std::vector<std::string> words = words_of(name);
   const bool letter = words.size() > 1 && words.front().size() == 1 &&

@@ -256,6 +256,14 @@ std::vector<const OpenedRecord*> Opening::records() const {
   return all;
 }
 
+void take_map(OpeningOptions& options, const std::string& map) {
+  if (map.empty()) return;
+  if (std::filesystem::exists(map))
+    options.mapping_path = map;
+  else
+    options.hints.mappings = parse_mappings(map);
+}
+
 Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& options) {
   std::vector<Log> logs;
   for (const std::string& path : paths) {

@@ -16,6 +16,9 @@ struct OpeningOptions {
   std::string mapping_path{};  ///< an accepted mapping (axis-mapping/1); empty: none
 };
 
+/// `map`: an accepted mapping's file, or what --map takes: `x_mm=pos*0.001,…`. Throws Failure(usage).
+void take_map(OpeningOptions& options, const std::string& map);
+
 struct OpenedRecord {
   std::string name;  ///< of its file, "log-x.csv"
   std::string axis;

@@ -35,7 +35,7 @@ struct TimeBase {
 TimeBase time_base_of(const Log& log, const LogColumn* stamps, const ChannelName* name,
                       std::optional<double> given_period_s);
 
-/// Whether all values increase by the same positive step within a thousandth: a counter or a clock that nobody named.
+/// Whether all values increase by the same positive step within a thousandth: an unnamed counter or clock.
 bool is_ramp(const std::vector<double>& values);
 
 }  // namespace host

@@ -49,12 +49,12 @@ struct Understanding {
   TimeBase time;
   std::vector<OpenedChannel> channels;  ///< of every column of the log
   std::vector<OpenedAxis> axes;
-  std::vector<std::string> asks;          ///< what is not sure, and what to say instead
+  std::vector<std::string> asks;          ///< uncertain points, and how to correct them
   std::vector<std::string> missing;       ///< of the whole log and of its axes
   std::optional<double> lead_mm_per_rad;  ///< that position and speed show together
 };
 
-/// Replaces numbers of sign and magnitude by their values, and says so in the log's header.
+/// Converts numbers of sign and magnitude to their values, and notes it in the log's header.
 void decode_signs(Log& log);
 
 /// Understands `log`. Others of the same controller (same channels in the same order) help: a scale that shows in one

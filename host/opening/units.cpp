@@ -21,7 +21,7 @@ struct NamedUnit {
   UnitMeaning meaning;
 };
 
-/// Names whose letters' size matters: M is not m.
+/// Case-sensitive names: M is not m.
 constexpr NamedUnit kExact[] = {
     {"s", {Dimension::time}},
     {"S", {Dimension::time}},

@@ -30,10 +30,10 @@ struct UnitMeaning {
   double offset = 0.0;
 };
 
-/// Of "mm", "°", "U/min", "мс", "r.p.m.", "rad_s", "1/min" …; empty for what is no unit that is known here.
+/// Meaning of "mm", "°", "U/min", "мс", "r.p.m.", "rad_s", "1/min" …; empty for an unknown unit.
 std::optional<UnitMeaning> unit_named(std::string_view text);
 
-/// The unit in which a dimension is told, "rad/s".
+/// Unit used for a dimension, "rad/s".
 std::string_view unit_of(Dimension dimension);
 
 }  // namespace host

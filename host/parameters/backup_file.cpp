@@ -21,7 +21,7 @@ constexpr std::string_view kCountKey = "count = ", kCrcKey = "crc32 = \"0x";
 /// Programs whose backups had no CRC knew boards of two axes.
 constexpr std::size_t kOldBoard = firmware::parameter_rows::kBoardRows + 2 * firmware::parameter_rows::kAxisRows;
 
-/// Ends of lines as this program writes them: an editor or a mail that made CR LF of them has not changed a value.
+/// Normalises line ends first: an editor or a mail that writes CR LF has not changed a value.
 std::uint32_t crc_of(std::string_view text) {
   std::string plain(text);
   std::erase(plain, '\r');

@@ -1,4 +1,4 @@
-// All parameters of a board in a file that tells whether it is whole.
+// All parameters of a board in a file with a checksum.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a board is told of a design: the parameters of one axis (`axis-params/1`).
+// A design as the parameters of one axis (`axis-params/1`).
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a board is told of a model's effects that it can compensate (firmware/core/compensation).
+// Board parameters that compensate a model's effects (firmware/core/compensation).
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ namespace host {
 struct Notch {
   double f_Hz = 0.0;
   double damping = 0.5;  ///< half its width over its frequency
-  double depth = 0.1;    ///< what it leaves there
+  double depth = 0.1;    ///< remaining gain at its frequency
 };
 struct LowPass {
   double f_Hz = 0.0;

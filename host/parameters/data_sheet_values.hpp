@@ -12,7 +12,7 @@ namespace host {
 firmware::ParameterValues with_data_sheet(firmware::ParameterValues values, std::size_t axis,
                                           const sim::DataSheet& data);
 
-/// Nobody has said yet what a count of this axis is.
+/// The scale of this axis's counts has not been set.
 bool has_initial_scales(const firmware::ParameterValues& values, std::size_t axis);
 
 }  // namespace host

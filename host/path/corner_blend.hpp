@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// A curve that leads from the end of one piece into the beginning of the next, and what it takes of both.
+/// A curve from the end of one piece into the beginning of the next, and the lengths that it replaces.
 struct CornerBlend {
   PathCurve curve;
   double taken = 0.0;  ///< mm of either
@@ -18,7 +18,7 @@ struct CornerBlend {
 std::optional<CornerBlend> blend_corner(const PathCurve& before, const PathCurve& after, double tolerance_mm,
                                         double most_mm);
 
-/// Whether tangent and curvature go on as they were.
+/// Whether tangent and curvature are continuous.
 bool is_smooth(const PathCurve& before, const PathCurve& after);
 /// Between the tangents, rad.
 double corner_angle(const PathCurve& before, const PathCurve& after);

@@ -32,10 +32,10 @@ class PathCurve {
   PathPoint end() const { return at(length_).point; }
   /// The nearest distance of a point, >= 0; of a blend to within its 64th part.
   double distance_to(const PathPoint& point) const;
-  /// Of the bend over the whole curve, rad: how much the tangent turns.
+  /// Total angle by which the tangent turns, rad.
   double turning() const;
 
-  /// What is left between two lengths.
+  /// The part between two lengths.
   PathCurve part(double from, double to) const;
 
  private:

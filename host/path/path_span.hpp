@@ -1,4 +1,4 @@
-// A way from rest to rest along curves, and its course of time.
+// A part of a path from rest to rest along curves, and its timing.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct SpanCurve {
   double begin = 0.0;  ///< along the span
 };
 
-/// What a curve allows of the motion along it.
+/// Limits of a curve for the motion along it.
 SpeedInterval interval_of(const SpanCurve& span, const AxisLimits& limits);
 
 /// First the profile, which has one acceleration and jerk a phase; where curves take part of the limits it leaves some

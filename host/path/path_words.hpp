@@ -12,7 +12,7 @@ namespace host {
 struct PathScale {
   std::vector<std::size_t> axes;  ///< of the board, for each coordinate of the path; all different
   std::vector<double> count_mm;   ///< of each of them
-  std::vector<double> unit_mm;    ///< that each axis's parameters stand in: 1, or 1000 for metres
+  std::vector<double> unit_mm;    ///< unit of each axis's parameters: 1, or 1000 for metres
   double rate_Hz = 1000.0;
 };
 

@@ -1,4 +1,4 @@
-// How fast a path is followed: jerk-limited, from rest to rest, within what each part of it allows.
+// Speed along a path: jerk-limited, from rest to rest, within the limits of each part.
 #pragma once
 
 #include <functional>

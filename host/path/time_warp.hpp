@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// What a motion asks of the axes at a time of it, and how fast it may be there.
+/// Load of the axes at one time of a motion, and the highest speed there.
 struct WarpDemand {
   PathPoint velocity, acceleration, jerk;
   double fastest = 0.0;  ///< the rate at which the feed is reached

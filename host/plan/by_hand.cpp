@@ -1,4 +1,4 @@
-// What separates two explanations that no motion does.
+// Manual tests for two explanations that no motion separates.
 #include <fmt/format.h>
 
 #include <algorithm>

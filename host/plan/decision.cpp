@@ -14,7 +14,7 @@ namespace host {
 
 namespace {
 
-/// Another motion may bring out twice the error that a good model leaves; more is another effect.
+/// Another motion may double the error of a good model; a larger error is another effect.
 constexpr double kFar = 2.0;
 
 /// chi^2 per observation of the best rival, at least 1.
@@ -51,7 +51,7 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
     sim::DriveDescription& model = decision.rivals[k].model;
     const double known = chi_square(model, before);
     model = refitted(model, both);
-    // A fit that leaves a local minimum by the run explains earlier records better, too: that is not counted.
+    // If the run frees a fit from a local minimum, earlier records fit better, too; that is not counted.
     decision.chi_square[k] = chi_square(model, both) - std::min(known, chi_square(model, before));
   });
   decision.dispersion = dispersion_of(decision.rivals, both);
@@ -68,7 +68,7 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
   double sum = 0.0;
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     Rival& rival = decision.rivals[k];
-    // Neither a belief nor a run makes anything impossible.
+    // Neither prior odds nor a run make anything impossible.
     rival.probability = std::max(rival.probability, 1.0 / kHighestOdds) *
                         std::max(std::exp(-0.5 * (decision.chi_square[k] - least)), 1.0 / kHighestOdds);
     sum += rival.probability;

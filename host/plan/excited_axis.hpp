@@ -1,4 +1,4 @@
-// The board's own axis on a plant within this process: excitations as a board makes them, without its protocol.
+// The board's own axis on a plant within this process: excitations as on a board, without its protocol.
 #pragma once
 
 #include <cmath>
@@ -17,8 +17,8 @@ namespace host {
 template <firmware::SupervisedHal Hal>
 class ExcitedAxis {
  public:
-  /// `values`: the board's parameters, those of a design on its first axis. `advance` lets a control period of the
-  /// plant's time pass. The rows of the record begin with the first piece.
+  /// `values`: the board's parameters, with a design on its first axis. `advance` advances the plant by one control
+  /// period. The record's rows begin with the first piece.
   ExcitedAxis(Hal& hal, const firmware::ParameterValues& values, const sim::DriveDescription& drive,
               std::function<void()> advance)
       : data_(drive.data),
@@ -40,7 +40,7 @@ class ExcitedAxis {
     record_.w.clear();
   }
 
-  /// From standstill to standstill, with a short rest behind it. Its end is `refused` where the axis does not take it.
+  /// From standstill to standstill, followed by a short rest. Its end is `refused` if the axis does not accept it.
   firmware::ExcitationStatePayload run(const Excitation& excitation) {
     const auto refused = static_cast<std::uint8_t>(firmware::ExcitationEnd::refused);
     constexpr firmware::ClientToken kClient = 1;  // the only one
@@ -64,12 +64,12 @@ class ExcitedAxis {
     return state;
   }
 
-  /// Of the encoder, from where the axis stood at first, mm (m).
+  /// Of the encoder, relative to the axis's first position, mm (m).
   double offset() const {
     return static_cast<double>(axes_[0].telemetry().encoder_counts - start_counts_) * data_.encoder_resolution;
   }
 
-  /// What was recorded so far, a row a control period; the axis is of no use afterwards.
+  /// The record so far, one row per control period; the axis must not be used afterwards.
   Record take() { return std::move(record_); }
 
  private:

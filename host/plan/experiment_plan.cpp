@@ -17,32 +17,31 @@ namespace host {
 
 namespace {
 
-/// Log odds that are expected to stay above kHighestOdds whatever the noise: 7 for the odds, and twice their standard
-/// deviation, the square root of twice themselves.
+/// Log odds that stay above kHighestOdds whatever the noise: 7 for the odds, and twice their standard deviation, the
+/// square root of twice themselves.
 constexpr double kEnough = 20.0;
-/// With so much left after a rival has bent in earnest the odds will reach kHighestOdds: half as much again as they
-/// are.
+/// At this value after a complete re-fit of a rival, the odds will reach kHighestOdds if increased by half.
 const double kSure = 1.5 * std::log(kHighestOdds);
-/// Less than this is no hope of a decision.
+/// Less than this cannot lead to a decision.
 const double kHope = std::log(kDecided / (1.0 - kDecided));
-/// A run stays this share of the box's half away from its edge, for what the simulated machines do not know.
+/// Distance of a run from the edge, as a part of the box's half, for what the simulated machines lack.
 constexpr double kBoxShare = 0.95;
-/// What a piece costs beside its own time: enabling, stopping, resting.
+/// Time of a piece in addition to its own: enabling, stopping, resting.
 constexpr double kOverhead_s = 0.3;
 
-/// A rival at one place of its parameters: where the training records put it, or where it has bent to since.
+/// A rival with one set of parameters: that of the training records, or of a later re-fit.
 struct Incarnation {
   sim::DriveDescription model;
   Information known;  ///< of the training records
 };
 
-/// chi^2 of every incarnation on the record that a piece makes with one of the rivals being true: [rival][incarnation].
+/// chi^2 of every incarnation on the record of a piece with one rival true: [rival][incarnation].
 using Testimony = std::vector<std::vector<Information>>;
 
 struct TriedPiece {
   RunPiece piece;
   std::vector<Record> records;       ///< [rival that is true]
-  std::vector<Testimony> testimony;  ///< [rival that is true]; empty where the piece is of no use
+  std::vector<Testimony> testimony;  ///< [rival that is true]; empty if the piece cannot be used
 };
 
 class Planner {
@@ -69,7 +68,7 @@ class Planner {
   Plan make() {
     try_pieces(candidate_pieces(model_, box_));
     choose();
-    // A rival that bends further than its slope foretold is held against the pieces from where it went.
+    // A rival whose re-fit goes farther than its slope predicted is compared with the pieces from there.
     constexpr int kRounds = 4;
     for (int round = 0; round < kRounds && !chosen_.empty(); ++round) {
       if (verify() || round + 1 == kRounds) break;
@@ -81,7 +80,7 @@ class Planner {
 
  private:
   void try_pieces(const std::vector<RunPiece>& pieces) {
-    constexpr std::size_t kBatch = 8;  // the budget ends between batches, on every machine between the same
+    constexpr std::size_t kBatch = 8;  // the budget ends between batches, at the same point on every machine
     for (std::size_t begin = 0; begin < pieces.size(); begin += kBatch) {
       if (plan_.steps >= options_.most_steps) {
         plan_.cut_short = true;
@@ -121,7 +120,7 @@ class Planner {
     return tried;
   }
 
-  /// Nothing where the run leaves the box, comes near its edge, or is refused.
+  /// Empty if the run leaves the box, comes near its edge, or is refused.
   std::optional<Record> simulated(const RunPlan& run, std::size_t truth, std::uint64_t seed) const {
     try {
       RunOutcome outcome = simulate_run(run, rivals_[truth].model, board_, seed);
@@ -132,7 +131,7 @@ class Planner {
     }
   }
 
-  /// Log odds of the rival that is true to another after some pieces, the other bent as far as it can.
+  /// Log odds of the true rival to another after some pieces, with the other re-fitted.
   double log_odds(const std::vector<std::size_t>& pieces, std::size_t truth, std::size_t other) const {
     const auto cost = [&](std::size_t rival) {
       double least = HUGE_VAL;
@@ -164,7 +163,8 @@ class Planner {
     return value;
   }
 
-  /// The pieces that bring most a second, until every pair that any of them separates has enough or the time is over.
+  /// The pieces with the largest gain per second, until every pair that any of them separates has enough or the time is
+  /// used up.
   void choose() {
     plan_.pairs = all_pairs();
     chosen_.clear();
@@ -198,8 +198,8 @@ class Planner {
     }
   }
 
-  /// Simulates the whole run with noise of its own, lets every rival bend in earnest, and notes the odds. True where
-  /// they are what was expected; otherwise the bent rivals are incarnations from now on.
+  /// Simulates the whole run with new noise, re-fits every rival completely, and notes the odds. True if they are as
+  /// expected; otherwise the re-fitted rivals become incarnations.
   bool verify() {
     plan_.run.pieces.clear();
     for (const std::size_t piece : chosen_) plan_.run.pieces.push_back(tried_[piece].piece);
@@ -211,7 +211,7 @@ class Planner {
     for (std::size_t truth = 0; truth < rivals_.size(); ++truth) {
       constexpr std::uint64_t kOtherNoise = 1000;
       std::optional<Record> record = simulated(plan_.run, truth, options_.seed + kOtherNoise + truth);
-      if (!record) {  // the pieces one after the other leave the box: the last is one too many
+      if (!record) {  // the sequence of pieces leaves the box: drop the last one
         chosen_.pop_back();
         return chosen_.empty() || verify();
       }

@@ -1,4 +1,4 @@
-// The run that best separates the explanations that are left of a machine's records.
+// Plans the run that best separates the remaining explanations of a machine's records.
 #pragma once
 
 #include <string>
@@ -10,27 +10,28 @@
 namespace host {
 
 struct PlanOptions {
-  /// Steps of the integrator after which no further piece is tried: no clock, so that every machine plans the same.
+  /// Limit of integrator steps, after which no further piece is tried. Not a time limit, so that every machine plans
+  /// the same.
   double most_steps = 600e6;
   std::uint64_t seed = 1;  ///< of the noise in simulated runs
 };
 
-/// How two of the rivals fare in the run.
+/// Outlook of the run for two of the rivals.
 struct PairOutlook {
   std::size_t a = 0, b = 0;  ///< indices of rivals
   bool separable = false;
-  /// What the run is expected to make of even odds, of the true one to the other, up to kHighestOdds.
+  /// Expected odds of the true one to the other after the run, from even odds, up to kHighestOdds.
   double odds_if_a = 1.0, odds_if_b = 1.0;
-  std::string by_hand = {};  ///< where no motion in the box separates them: what does
+  std::string by_hand = {};  ///< test that separates them if no motion in the box does
 };
 
-/// A piece that was simulated, and what it alone would do.
+/// A piece that was simulated, and its effect alone.
 struct ConsideredPiece {
   RunPiece piece;
-  double expected_log_odds = 0.0;  ///< of the pair that it separates worst, among those that anything separates
+  double expected_log_odds = 0.0;  ///< of the pair that it separates least, among those that any piece separates
 };
 
-/// The run as it would be with one rival true, and all rivals bent to it.
+/// The run with one rival true, and all rivals re-fitted to it.
 struct PredictedRun {
   Record record;
   std::vector<sim::DriveDescription> bent;  ///< as many as there are rivals
@@ -40,22 +41,22 @@ struct Plan {
   std::vector<Rival> rivals;
   std::vector<PairOutlook> pairs;
   bool separable = false;  ///< some pair is
-  std::string by_hand;     ///< for the pairs that are not, in words; empty where all are
-  RunPlan run;             ///< without pieces where nothing is separable
-  /// Of the true one to the next that the run can tell from it: the geometric mean over what may be true.
+  std::string by_hand;     ///< tests for the pairs that are not, in words; empty if all are
+  RunPlan run;             ///< without pieces if nothing is separable
+  /// Of the true rival to the most similar one that the run separates from it: geometric mean over the possible truths.
   double expected_odds = 1.0;
   std::vector<ConsideredPiece> considered;  ///< best first
   std::vector<PredictedRun> predicted;      ///< with each rival true in turn
   double steps = 0.0;                       ///< of the integrator
-  bool cut_short = false;                   ///< pieces were left untried
+  bool cut_short = false;                   ///< some pieces were not tried
 };
 
-/// What a person can do where no motion separates two explanations.
+/// A manual test for two explanations that no motion separates.
 std::string separation_by_hand(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
-/// `model`: whose design the board runs. `rivals`: of fit_rivals() on the same training records, or what a Decision
-/// left of them; two at least. In each simulated run one of them is true, and the others bend to it as far as the
-/// training records let them. Throws Failure(usage) for fewer than two rivals; what design and records may throw.
+/// `model`: its design runs on the board. `rivals`: of fit_rivals() on the same training records, or the remaining ones
+/// of a Decision; at least two. In each simulated run one of them is true, and the others are re-fitted as far as the
+/// training records allow. Throws Failure(usage) for fewer than two rivals, and what design and records throw.
 Plan plan_run(const sim::DriveDescription& model, const std::vector<const Record*>& training,
               const std::vector<Rival>& rivals, const ExcitationLimits& box, const PlanOptions& options = {},
               const ShareDone& progress = {});

@@ -19,8 +19,8 @@ Information& Information::operator+=(const Information& other) {
 
 double Information::least() const {
   if (slope.size() == 0) return square;
-  // A parameter that nothing determines is held by the smallest of weights: a change as large as its own scale costs
-  // one observation in a hundred.
+  // A very small weight holds parameters that the data do not determine: a change as large as a parameter's own scale
+  // costs a hundredth of one observation.
   constexpr double kLoose = 0.01;
   Eigen::MatrixXd held = curvature;
   held.diagonal().array() += kLoose;

@@ -1,4 +1,4 @@
-// What a piece of a run says about a rival: its squared error there, and how that changes when the rival bends.
+// Information of a piece of a run about a rival: its squared error, and its change when the rival is re-fitted.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,8 @@
 
 namespace host {
 
-/// chi^2 of a model about its present parameters: square + 2 slope' d + d' curvature d for a change d of the parameters
-/// in units of their scales. Those of independent records add up.
+/// chi^2 of a model near its present parameters: square + 2 slope' d + d' curvature d for a change d of the parameters
+/// in units of their scales. The values of independent records add up.
 struct Information {
   Eigen::MatrixXd curvature;
   Eigen::VectorXd slope;
@@ -16,16 +16,16 @@ struct Information {
 
   Information& operator+=(const Information& other);
 
-  /// The smallest chi^2 that any change of the parameters reaches: what is left where the rival has bent as far as what
-  /// is known of it allows (T-optimality with the inner fit linearised; with the curvature of the training records
-  /// this is the quadratic form with the parameters' covariance of Buzzi-Ferraris and Forzatti).
+  /// The smallest chi^2 for any change of the parameters: that of a rival re-fitted as far as prior knowledge allows
+  /// (T-optimality with a linearised inner fit; with the curvature of the training records this is the quadratic form
+  /// with the parameters' covariance of Buzzi-Ferraris and Forzatti).
   double least() const;
 };
 
-/// About the model's parameters, on a set. Nothing where the model runs away.
+/// At the model's parameters, on a set. Empty if the model diverges.
 Information information_of(const sim::DriveDescription& model, const RecordSet& set);
 
-/// Steps of the integrator that information_of() takes.
+/// Integrator steps of information_of().
 double steps_of_information(const sim::DriveDescription& model, const RecordSet& set);
 
 }  // namespace host

@@ -48,7 +48,7 @@ void add_pairs(Report& report, const Plan& plan) {
   report.add(table);
 }
 
-/// What both rivals of a pair predict of the run that one of them would make.
+/// Predictions of both rivals of a pair for the run in which one of them is true.
 void add_parting(Report& report, const Plan& plan, const PairOutlook& pair) {
   const PredictedRun& run = plan.predicted[pair.a];
   const RecordSet set = common_ground({&run.record}, plan.rivals);

@@ -1,4 +1,4 @@
-// What a plan shows before anything moves: the run, what is expected of it, and how the rivals part.
+// Report of a plan before anything moves: the run, its expected result, and how the rivals' predictions differ.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Writes a self-contained HTML report. `run_file` stands in the command that makes the run.
+/// Writes a self-contained HTML report. `run_file` is the file in the command that makes the run.
 void write_plan_report(const Plan& plan, const std::string& model_name, const std::string& run_file,
                        const std::string& path);
 

@@ -19,7 +19,7 @@ namespace {
                             path, what));
 }
 
-/// The candidates of a diagnosis among which it could not tell.
+/// The candidates that a diagnosis could not separate.
 void take_diagnosis(const nlohmann::json& document, Beliefs& beliefs) {
   const auto effects = document.at("verdict").at("effects").get<std::vector<std::string>>();
   if (document.at("verdict").at("status") != "ambiguous") return;

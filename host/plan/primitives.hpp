@@ -1,4 +1,4 @@
-// The pieces that a plan chooses from: the kinds of excitation that a board has, with numbers that suit drive and box.
+// The pieces for plans: the board's kinds of excitation, with numbers that suit drive and box.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace host {
 
-/// Ladders of jogs, micro-reversals, dwells between jogs that end at several phases of a turn, slow sines beneath which
-/// the axis rides one way, accelerations over one stroke, steps at two voltages, multisines and coast-downs, each with
-/// a few sizes between what moves the axis at all and the box. Whether a piece stays in the box a simulation must tell.
+/// Ladders of jogs, micro-reversals, dwells between jogs that end at several phases of a turn, slow sines on a jog in
+/// one direction, accelerations over one stroke, steps at two voltages, multisines and coast-downs. Each comes in a few
+/// sizes between the smallest that moves the axis and the box. A simulation must show whether a piece stays in the box.
 std::vector<RunPiece> candidate_pieces(const sim::DriveDescription& model, const ExcitationLimits& box);
 
 }  // namespace host

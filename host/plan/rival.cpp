@@ -16,10 +16,10 @@ namespace host {
 
 namespace {
 
-/// As long as the last word of a diagnosis' search has.
+/// As many iterations as the last fit of a diagnosis.
 constexpr FitOptions kFit{.most_iterations = 15, .least_gain = 1e-5, .most_steps = 40e6};
 
-/// The best fit of the effect from any of its starts, where a search that asks for a promise found none.
+/// The best fit of the effect from any of its starts, if the search found no promising one.
 sim::DriveDescription best_start(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                  const RecordSet& training) {
   constexpr std::size_t kStarts = 3;
@@ -54,8 +54,8 @@ sim::DriveDescription with_effect(const std::string& kind, const sim::DriveDescr
   return found.empty() ? best_start(*info, model, training) : found.front().model;
 }
 
-/// The effect added where everything else stands well already: its own parameters are fitted before the others give
-/// way. Nothing where the model cannot take it.
+/// Adds the effect to a model that already fits well: first only the effect's own parameters are fitted. Empty if the
+/// model cannot take it.
 std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, const sim::DriveDescription& model,
                                                        const RecordSet& training) {
   constexpr FitOptions kAlone{.most_iterations = 8, .least_gain = 1e-3, .freedom = Freedom::last_effect};
@@ -69,8 +69,8 @@ std::optional<sim::DriveDescription> with_effect_alone(const std::string& kind, 
   return best.model;
 }
 
-/// Other kinds in place of those of a fitted rival that they do not share, re-fitted; nothing where that cannot be, or
-/// where both are about the same part of the drive: a gap of nothing is a spring, and would be no other explanation.
+/// A fitted rival with its other kinds replaced, re-fitted. Empty if that is impossible, or if both concern the same
+/// part of the drive: a gap of zero width is a spring, and would be no other explanation.
 std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vector<std::string>& kinds,
                                                const RecordSet& training) {
   const auto has = [](const std::vector<std::string>& list, const std::string& kind) {
@@ -91,7 +91,7 @@ std::optional<sim::DriveDescription> exchanged(const Rival& from, const std::vec
   return model;
 }
 
-/// Takes for every rival what is better: its own fit, or one that starts from `from`.
+/// Takes the better fit for every rival: its own, or one that starts from `from`.
 void start_again(std::vector<Rival>& rivals, const Rival& from, const RecordSet& ground) {
   for_each_in_parallel(rivals.size(), [&](std::size_t k) {
     std::optional<sim::DriveDescription> other = exchanged(from, rivals[k].kinds, ground);
@@ -142,6 +142,21 @@ std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const std::vector<const
     rival.probability = sum > 0.0 ? rival.probability / sum : 1.0 / static_cast<double>(rivals.size());
   const RecordSet ground = common_ground(records, rivals);
   for (Rival& rival : rivals) rival.model = refitted(rival.model, ground);
+  return rivals;
+}
+
+std::vector<Rival> rivals_for(const sim::DriveDescription& model, const Measurements& measured,
+                              const std::vector<const Record*>& records,
+                              const std::vector<std::vector<std::string>>& kinds, const ShareDone& progress) {
+  if (!kinds.empty()) return fit_rivals(model, records, kinds, progress);
+  const Diagnosis diagnosis = diagnose(model, measured, progress);
+  std::vector<Rival> rivals = rivals_of(diagnosis, records);
+  if (rivals.empty())
+    throw Failure(ExitCode::answer_is_no,
+                  fmt::format("nothing is left to separate: the verdict on these records is {}{}{}. --rivals A,B plans "
+                              "a run for two explanations anyway",
+                              status_name(diagnosis.verdict.status), diagnosis.verdict.effects.empty() ? "" : ": ",
+                              fmt::join(diagnosis.verdict.effects, " + ")));
   return rivals;
 }
 

@@ -9,22 +9,22 @@
 
 namespace host {
 
-/// What a run left behind.
+/// Result of a run.
 struct RunOutcome {
   Record record;
-  bool completed = false;  ///< every piece came to its end within its box
-  std::string ended;       ///< how the last piece ended, in words
-  double farthest = 0.0;   ///< from where the run began, mm (m)
+  bool completed = false;  ///< every piece ended within its box
+  std::string ended;       ///< end of the last piece, in words
+  double farthest = 0.0;   ///< relative to the run's start, mm (m)
 };
 
-/// The parameters that `axistool design` gives a board for this model, on its first axis. Throws Failure(bad_input) for
-/// a model that cannot be designed for.
+/// The parameters of `axistool design` for this model, on the board's first axis. Throws Failure(bad_input) for a model
+/// without a design.
 firmware::ParameterValues design_values(const sim::DriveDescription& model);
 
 /// Units of a drive with such a design.
 ExcitationScale scale_of_drive(const sim::DataSheet& data);
 
-/// Carries the pieces out, one after the other; ends with the first that does not complete.
+/// Runs the pieces one after the other; ends with the first that does not complete.
 template <firmware::SupervisedHal Hal>
 RunOutcome run_on(ExcitedAxis<Hal>& axis, const RunPlan& run, const ExcitationScale& scale) {
   RunOutcome outcome;
@@ -44,7 +44,7 @@ RunOutcome run_on(ExcitedAxis<Hal>& axis, const RunPlan& run, const ExcitationSc
   return outcome;
 }
 
-/// On a plant made of `machine`; `board`: of design_values(). `seed` fixes the tachometer's noise. Throws Failure where
+/// On a plant made of `machine`; `board`: from design_values(). `seed` fixes the tachometer's noise. Throws Failure if
 /// a piece does not fit its box.
 RunOutcome simulate_run(const RunPlan& run, const sim::DriveDescription& machine,
                         const firmware::ParameterValues& board, std::uint64_t seed);

@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "host/compare/comparison_figures.hpp"
+#include "host/compare/comparison_report.hpp"
 #include "host/diagnose/addition.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
+#include "host/diagnose/diagnosis_report.hpp"
+#include "host/diagnose/improvement_report.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/identify/design_json.hpp"
 #include "host/identify/effort_timing.hpp"
@@ -15,10 +17,12 @@
 #include "host/identify/paper_drives.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
-#include "host/model/known_parameters.hpp"
 #include "host/parameters/design_file.hpp"
+#include "host/plan/plan_json.hpp"
+#include "host/plan/posterior.hpp"
 #include "host/python/bindings.hpp"
 #include "host/python/listening.hpp"
+#include "host/python/question.hpp"
 #include "host/python/sources.hpp"
 
 namespace axistool_python {
@@ -27,11 +31,8 @@ namespace py = pybind11;
 
 namespace {
 
-using Names = std::vector<std::string>;
-/// The document of a result, and the file that goes with it: a model, or parameters.
-using Answer = std::pair<std::string, std::string>;
-
-Answer identify(const py::sequence& given, const py::object& sheet, const std::string& method) {
+Answer identify(const py::sequence& given, const py::object& sheet, const std::string& method,
+                const std::string& report) {
   const std::vector<RecordSource> sources = record_sources(given, "record");
   const auto drive_file = sheet.is_none() ? std::nullopt : std::optional<ModelSource>(sheet);
   return result_of(py::none(), "identify", [&](const auto&) {
@@ -41,6 +42,11 @@ Answer identify(const py::sequence& given, const py::object& sheet, const std::s
     const host::Measurements measured = host::MeasurementGate(drive).admit(read_all(sources));
     host::Identification found = host::identify_drive(measured, drive, host::method_named(method, measured.training()));
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    if (!report.empty()) {
+      const host::ComparedModel fit =
+          host::compare_with(found.model.name, found.model, read_all(sources), host::kWindow_s, {});
+      host::comparison_report({&fit, 1}).write(report);
+    }
     nlohmann::json document = host::identification_json(found);
     document["effort_timing"] = host::effort_timing_json(measured.training_records());
     document["log"] = host::log_faults_json(measured.log());
@@ -53,15 +59,13 @@ host::ComparedModel compared(const ModelSource& model, const std::vector<RecordS
   return host::compare_with(model.name(), drive, read_all(sources), window_s, {});
 }
 
-std::string compare(const py::object& model, const py::sequence& given, double window_s) {
+std::string compare(const py::object& model, const py::sequence& given, double window_s, const std::string& report) {
   const ModelSource source(model);
   const std::vector<RecordSource> sources = record_sources(given, "record");
   return result_of(py::none(), "compare", [&](const auto&) {
     const host::ComparedModel one = compared(source, sources, window_s);
-    nlohmann::json document = host::comparison_json(one.comparison);
-    document["effort_timing"] = host::effort_timing_json(one.measured.training_records());
-    document["model"] = source.name();
-    return document.dump();
+    if (!report.empty()) host::comparison_report({&one, 1}).write(report);
+    return host::comparison_document({&one, 1}).dump();
   });
 }
 
@@ -74,46 +78,39 @@ py::tuple predict(const py::object& model, const py::object& given, double windo
   }));
 }
 
-/// What diagnose and improve begin with.
-struct Question {
-  ModelSource model;
-  std::vector<RecordSource> train, validate;
-  Names held, believed, absent;
-
-  Question(const py::object& model_given, const py::sequence& train_given, const py::sequence& validate_given,
-           Names hold, Names prior, Names without)
-      : model(model_given),
-        train(record_sources(train_given, "training record")),
-        validate(record_sources(validate_given, "validation record")),
-        held(std::move(hold)),
-        believed(std::move(prior)),
-        absent(std::move(without)) {}
-
-  sim::DriveDescription drive() const {
-    for (const std::string& kind : absent) host::known_effect(kind);
-    return host::with_knowledge(model.read(), held, believed);
-  }
-  host::Measurements measurements(const sim::DriveDescription& drive) const {
-    return host::MeasurementGate(drive).admit(read_all(train), read_all(validate));
-  }
-};
-
 std::string diagnose(const py::object& model, const py::sequence& train, const py::sequence& validate, Names hold,
-                     Names prior, Names absent, const py::object& progress) {
+                     Names prior, Names absent, const std::string& believed, const std::string& report,
+                     const py::object& progress) {
   const Question asked(model, train, validate, std::move(hold), std::move(prior), std::move(absent));
   return result_of(progress, "diagnose", [&](const host::ShareDone& done) {
     const sim::DriveDescription drive = asked.drive();
-    return host::to_json(host::diagnose(drive, asked.measurements(drive), done, nullptr, asked.absent)).dump();
+    const host::Measurements measured = asked.measurements(drive);
+    std::optional<host::Beliefs> beliefs;
+    std::optional<host::Decision> decision;
+    if (!believed.empty()) {
+      beliefs = host::read_beliefs(believed);
+      decision = host::decide(drive, *beliefs, measured);
+    }
+    host::Diagnosis diagnosis = host::diagnose(drive, measured, done, nullptr, asked.absent);
+    if (decision) host::apply(*decision, *beliefs, diagnosis);
+    if (!report.empty()) host::write_diagnosis_report(diagnosis, asked.model.name(), report);
+    nlohmann::json document = host::to_json(diagnosis);
+    if (decision) document["decision"] = host::to_json(*decision);
+    return document.dump();
   });
 }
 
 Answer improve(const py::object& model, const py::sequence& train, const py::sequence& validate, Names hold,
-               Names prior, Names absent, const py::object& progress) {
+               Names prior, Names absent, const std::string& output, const std::string& report,
+               const py::object& progress) {
   const Question asked(model, train, validate, std::move(hold), std::move(prior), std::move(absent));
   return result_of(progress, "improve", [&](const host::ShareDone& done) {
     const sim::DriveDescription drive = asked.drive();
-    const host::Improvement improvement = host::improve(drive, asked.measurements(drive), done, asked.absent);
-    nlohmann::json document = host::to_json(improvement, "");
+    const host::Measurements measured = asked.measurements(drive);  // the result refers to them
+    const host::Improvement improvement = host::improve(drive, measured, done, asked.absent);
+    if (!output.empty()) host::write_model(improvement.model, output);
+    if (!report.empty()) host::write_improvement_report(improvement, {asked.model.name(), output}, report);
+    nlohmann::json document = host::to_json(improvement, output);
     document["warnings"] = host::messages_of(host::doubts_of(improvement.model));
     return Answer{document.dump(), host::format_model(improvement.model)};
   });

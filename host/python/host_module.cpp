@@ -75,5 +75,7 @@ PYBIND11_MODULE(_host, module) {
   });
   axistool_python::bind_records(module);
   axistool_python::bind_analysis(module);
+  axistool_python::bind_logs(module);
+  axistool_python::bind_studies(module);
   axistool_python::bind_boards(module);
 }

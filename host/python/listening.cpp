@@ -65,7 +65,7 @@ class Listener {
     }
   }
 
-  /// With Python's lock: signals, and progress where there is some.
+  /// With Python's lock held: handles signals, and reports progress if there is any.
   void tell() {
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();

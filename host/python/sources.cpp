@@ -40,10 +40,21 @@ host::Record RecordSource::read() const {
   return host::record_of(std::get<host::RecordColumns>(given_), name_);
 }
 
+const std::string& RecordSource::name() const {
+  const Path* path = std::get_if<Path>(&given_);
+  return path != nullptr ? path->text : name_;
+}
+
 std::vector<RecordSource> record_sources(const py::sequence& given, const std::string& role) {
   std::vector<RecordSource> sources;
   for (const py::handle& one : given) sources.emplace_back(one, fmt::format("{} {}", role, sources.size() + 1));
   return sources;
+}
+
+std::string names_of(const std::vector<RecordSource>& sources) {
+  std::string names;
+  for (const RecordSource& source : sources) names += (names.empty() ? "" : ", ") + source.name();
+  return names;
 }
 
 std::vector<host::Record> read_all(const std::vector<RecordSource>& sources) {

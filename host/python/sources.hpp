@@ -23,6 +23,8 @@ class RecordSource {
   /// messages on what is in memory.
   RecordSource(const pybind11::handle& given, std::string name);
   host::Record read() const;
+  /// The path; of what is in memory, its name for messages.
+  const std::string& name() const;
 
  private:
   std::string name_;
@@ -31,6 +33,8 @@ class RecordSource {
 
 /// Of a sequence of such.
 std::vector<RecordSource> record_sources(const pybind11::sequence& given, const std::string& role);
+/// Their names, with commas.
+std::string names_of(const std::vector<RecordSource>& sources);
 std::vector<host::Record> read_all(const std::vector<RecordSource>& sources);
 
 /// Columns as NumPy arrays, and the header.

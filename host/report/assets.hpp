@@ -1,4 +1,4 @@
-// The files that every report carries within itself, taken into the program when it is built.
+// Files that every report contains; the build embeds them in the program.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// What a report shows: each struct is one figure or block, filled by the caller in physical units.
+// Content of a report: each struct is one figure or block, filled by the caller in physical units.
 #pragma once
 
 #include <algorithm>
@@ -142,7 +142,7 @@ struct BarChart {
   std::optional<std::pair<std::string, double>> reference;  ///< a vertical line: name and value
   bool folded = false;                                      ///< the title alone is shown until the reader opens it
 
-  /// What the longest bar stands for; above 0.
+  /// Value of the longest bar, or the reference if larger; above 0.
   double longest() const {
     double most = reference ? reference->second : 0.0;
     for (const BarRow& row : rows)

@@ -1,4 +1,4 @@
-// Fewer samples for the eye, without losing a spike.
+// Reduces the number of samples without losing a spike.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Which columns of a table hold numbers and are therefore aligned right.
+// Finds the columns of a table that hold numbers, which are aligned right.
 #pragma once
 
 #include <cstddef>

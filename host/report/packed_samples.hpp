@@ -1,4 +1,4 @@
-// A trace as text: four characters a sample.
+// A trace as text: four characters per sample.
 #pragma once
 
 #include <span>

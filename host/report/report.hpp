@@ -12,13 +12,13 @@ namespace host {
 /// Collects what to show, in reading order. All text is plain text: it is escaped on its way out.
 class Report {
  public:
-  /// `subtitle`: what was looked at, e.g. the model's and the records' names.
+  /// `subtitle`: names of the model and the records.
   explicit Report(std::string title, std::string subtitle = "");
 
   /// The verdict; always shown at the top.
   void verdict(Verdict verdict);
 
-  /// Begins a section; `text` (may be empty) says what the reader should see in it.
+  /// Begins a section; `text` (may be empty) explains it to the reader.
   void section(std::string heading, std::string text = "");
 
   /// Figures and tables stand in the section begun last. Throws std::invalid_argument when the lengths of a plot's

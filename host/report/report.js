@@ -157,7 +157,8 @@
       legendFormatter: legendOf(plot, panel, xUnit),
       xlabel: isLowest ? plot.xLabel : null,
       axes: {
-        x: { drawAxis: isLowest, axisLabelWidth: 70, valueFormatter: formatted, axisLabelFormatter: formatted },
+        x: { drawAxis: isLowest, axisLabelWidth: 70, pixelsPerLabel: innerWidth < 600 ? 40 : 70, valueFormatter: formatted,
+          axisLabelFormatter: formatted },
         y: { axisLabelWidth: VALUE_AXIS_WIDTH, valueFormatter: formatted, axisLabelFormatter: formatted },
       },
       axisLabelFontSize: 12,

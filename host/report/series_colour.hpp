@@ -1,4 +1,4 @@
-// Colours that mean the same in every figure and stay apart for colour-blind readers.
+// Colours with one meaning in every figure, distinguishable for colour-blind readers.
 #pragma once
 
 #include "host/report/content.hpp"

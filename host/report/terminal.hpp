@@ -1,4 +1,4 @@
-// Figures for a terminal: bars, tables, colour where it is wanted.
+// Figures for a terminal: bars, tables, colour if wanted.
 #pragma once
 
 #include <cstdio>
@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// What a stream can show. Colour only on a terminal, and not when NO_COLOR is set (https://no-color.org) or TERM is
+/// Capabilities of a stream. Colour only on a terminal, and not when NO_COLOR is set (https://no-color.org) or TERM is
 /// "dumb"; the width is that of the terminal, otherwise COLUMNS, otherwise 100.
 struct Terminal {
   bool is_terminal = false;

@@ -1,4 +1,4 @@
-// Text and numbers on their way into HTML, JSON or a terminal.
+// Formats text and numbers for HTML, JSON and terminals.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -69,7 +69,7 @@ std::complex<double> AxisController::of_reference(double f_Hz) const {
     ahead *= z;
   }
   const std::complex<double> velocity = (1.0 - 1.0 / z) / (lead_ * period_s_);
-  // The estimator is not told of friction feed-forward, which takes the velocity that comes next.
+  // The estimator does not see the friction feed-forward, which uses the next sample's velocity.
   return filter(f_Hz) * (gain_(0) + weight * velocity) * own_response(f_Hz) + viscous_ * z * velocity;
 }
 

@@ -1,4 +1,4 @@
-// The controller that ships, as a frequency response: estimator, feedback, filters (firmware/core/axis.hpp).
+// The board's controller as a frequency response: estimator, feedback, filters (firmware/core/axis.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// With the loop cut at the drive's input, u = -C y for y = [position, speed]. The estimator knows the command that it
-/// helped to make, which is part of C.
+/// With the loop cut at the drive's input, u = -C y for y = [position, speed]. C includes the estimator's use of the
+/// command.
 class AxisController {
  public:
   explicit AxisController(const firmware::AxisParameters<float>& parameters);
@@ -17,11 +17,11 @@ class AxisController {
   /// C at a frequency below half the sample rate: V per mm (m), V per rad/s (m/s).
   Eigen::RowVector2cd at(double f_Hz) const;
 
-  /// What of a command added at its output reaches the drive, while the drive does not answer.
+  /// The part of a command added at its output that reaches the drive, if the drive does not respond.
   std::complex<double> own_response(double f_Hz) const;
 
-  /// Command for a reference, V per mm (m), while the drive does not answer: feedback, feed-forward of the reference
-  /// and of viscous friction.
+  /// Command for a reference, V per mm (m), if the drive does not respond: feedback, feed-forward of the reference and
+  /// of viscous friction.
   std::complex<double> of_reference(double f_Hz) const;
 
   double sample_period_s() const { return period_s_; }

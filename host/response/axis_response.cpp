@@ -70,7 +70,7 @@ json distortion_json(const std::vector<DistortionLine>& lines) {
   return {{"f_Hz", f_Hz}, {"level", level}};
 }
 
-/// A document of a version that did not tell them has none.
+/// Empty in a document of a version without it.
 std::vector<DistortionLine> read_distortion(const json& document, const char* which) {
   std::vector<DistortionLine> lines;
   if (!document.contains("distortion")) return lines;
@@ -80,7 +80,7 @@ std::vector<DistortionLine> read_distortion(const json& document, const char* wh
   return lines;
 }
 
-/// Magnitudes beyond these are no drive's: the widest range of a plant's lines, 1e-9 to 1e9 of its unit, squared.
+/// Magnitudes beyond these are not of a drive: 1e-9 to 1e9 of the plant's unit, squared.
 constexpr double kLeast = 1e-18, kMost = 1e18;
 
 bool is_one_of_a_drive(const ResponseLine& line, const FrequencyResponse& response) {
@@ -94,7 +94,7 @@ bool is_one_of_a_drive(const ResponseLine& line, const FrequencyResponse& respon
          line.coherence <= 1.0 && std::isfinite(std::abs(line.covariance(0, 1)));
 }
 
-/// Throws Failure(bad_input) naming the first entry that no measurement gives.
+/// Throws Failure(bad_input) naming the first impossible entry.
 void require_measured(const FrequencyResponse& response, const std::string& path) {
   const auto refuse = [&](const std::string& what) {
     throw Failure(ExitCode::bad_input, fmt::format("{}: {}; write it again with `axistool bode --json`", path, what));
@@ -118,7 +118,7 @@ void require_measured(const FrequencyResponse& response, const std::string& path
   }
 }
 
-/// Products of the two channels' errors: what the margins' intervals need beside "sd".
+/// Cross-covariance of the two channels: needed with "sd" for the margins' intervals.
 json covariance_json(const ResponseLine& line) {
   const Eigen::Matrix2cd& c = line.covariance;
   return {c(0, 0).real(), c(1, 1).real(), c(0, 1).real(), c(0, 1).imag()};

@@ -1,4 +1,4 @@
-// From records to everything that a frequency response says of an axis.
+// From records to the frequency response of an axis, its fit and its margins.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,21 +14,21 @@ namespace host {
 
 struct AxisResponse {
   FrequencyResponse response;
-  std::optional<PlantFit> fit;         ///< absent where too few lines stand out
+  std::optional<PlantFit> fit;         ///< absent if too few lines are significant
   std::optional<OpenLoop> loop;        ///< with a controller only, and a fit
   std::optional<LoopMargins> margins;  ///< likewise
 };
 
-/// `controller`: what the axis runs, or shall run; nullptr: none is known. Throws what frequency_response(),
-/// open_loop() throw.
+/// `controller`: that of the axis, now or later; nullptr if unknown. Throws what frequency_response() and open_loop()
+/// throw.
 AxisResponse analyse_response(const std::vector<Record>& records, const firmware::AxisParameters<float>* controller);
 
 /// The same response with another controller.
 AxisResponse with_controller(const AxisResponse& measured, const firmware::AxisParameters<float>& controller);
 
-/// `axis-response/1`. "plant" is position (or speed where there is none) over the command; "plant_speed" beside it
-/// where both were recorded. "sd" is the standard deviation of each part of a complex value, with Student's factor in
-/// it: 1.96 sd to either side hold 95 %. "distortion": what even and odd powers answer at lines that are not excited.
+/// `axis-response/1`. "plant" is position (without one: speed) over the command; "plant_speed" beside it if both were
+/// recorded. "sd": standard deviation of the real and of the imaginary part, including Student's factor, so that +-1.96
+/// sd is the 95 % interval. "distortion": response of even and odd nonlinearity at lines without excitation.
 nlohmann::json response_json(const AxisResponse& axis);
 
 /// Reads the measured part of such a document back. Throws Failure(bad_input).

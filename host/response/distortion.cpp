@@ -10,7 +10,7 @@ namespace {
 using Complex = std::complex<double>;
 using Samples = std::vector<std::vector<PeriodicRun::Sample>>;  // [period][line]
 
-/// Power of what repeats from period to period at one line, less what noise adds to it.
+/// Power at one line that repeats from period to period, minus the noise in it.
 double repeated_power(const Samples& samples, std::size_t at, Complex plant, Eigen::Index channel) {
   const double periods = static_cast<double>(samples.size());
   std::vector<Complex> rest;
@@ -25,7 +25,7 @@ double repeated_power(const Samples& samples, std::size_t at, Complex plant, Eig
   return std::norm(mean) - spread / (periods * (periods - 1.0));
 }
 
-/// The response between two lines, along the logarithm of the frequency.
+/// The response between two lines, interpolated over the logarithm of the frequency.
 Complex between(const ResponseLine& below, const ResponseLine& above, double f_Hz, Eigen::Index channel) {
   const double part = std::log(f_Hz / below.f_Hz) / std::log(above.f_Hz / below.f_Hz);
   return below.plant(channel) * std::exp(part * std::log(above.plant(channel) / below.plant(channel)));
@@ -63,7 +63,7 @@ class Gaps {
     return static_cast<double>(line) / (static_cast<double>(run.excitation.period) * run.sample_period_s);
   }
 
-  /// Of the excited lines on either side of a gap, mean of both.
+  /// Mean of the excited lines on both sides of a gap.
   double command_power(std::size_t gap) const {
     double sum = 0.0, count = 0.0;
     for (const PeriodicRun& run : runs_)

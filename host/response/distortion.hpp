@@ -1,4 +1,4 @@
-// The nonlinearity of a drive, even and odd apart, from the lines that a multisine leaves out.
+// Even and odd nonlinearity of a drive, from the lines that a multisine leaves out.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace host {
 
-/// One value each for every gap between excited lines that has such a line in it. What the command holds there of
-/// itself (a loop answers its own distortion) is taken off through `lines`, the response at the excited ones
-/// (Pintelon & Schoukens, 2nd ed., 4.3.1.5); so is what noise leaves, of which periods tell the size. `channel`:
-/// 0 position, 1 speed. `runs` is not empty, and all have the same period and lines.
+/// One value for each gap between excited lines that contains such a line. The command's own content there (a loop
+/// responds to its own distortion) is subtracted by means of `lines`, the response at the excited lines (Pintelon &
+/// Schoukens, 2nd ed., 4.3.1.5), and so is the noise, estimated from the periods. `channel`: 0 position, 1 speed.
+/// `runs` is not empty, and all have the same period and lines.
 struct Distortion {
   std::vector<DistortionLine> even, odd;
 };

@@ -38,7 +38,7 @@ void require_comparable(const std::vector<Record>& records) {
   }
 }
 
-/// Runs by what they excite.
+/// Groups runs with the same excited lines.
 std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicRun>> runs_by_lines(
     const std::vector<Record>& records) {
   std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicRun>> runs;
@@ -52,7 +52,7 @@ std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicR
   return runs;
 }
 
-/// Bands may overlap: what two of them say of one frequency, by their certainty.
+/// Where bands overlap, the mean of both weighted by their variance.
 void merge_equal_lines(std::vector<ResponseLine>& lines) {
   std::ranges::stable_sort(lines, {}, &ResponseLine::f_Hz);
   std::vector<ResponseLine> merged;
@@ -120,7 +120,7 @@ std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel) 
 
 namespace {
 
-/// Standard deviation of either part.
+/// Standard deviation of the real and of the imaginary part.
 double deviation(const ResponseLine& line, const Eigen::Vector2cd& weights) {
   const std::complex<double> power = weights.transpose() * line.covariance * weights.conjugate();
   return std::sqrt(0.5 * std::max(0.0, power.real()));

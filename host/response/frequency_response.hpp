@@ -1,4 +1,4 @@
-// Frequency response of a drive, from the command to position and speed, as records show it.
+// Frequency response of a drive, from the command to position and speed, estimated from records.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,59 +15,58 @@ namespace host {
 struct ResponseLine {
   double f_Hz = 0.0;
   Eigen::Vector2cd plant = Eigen::Vector2cd::Zero();
-  /// Of the estimate: noise and nonlinearity together, E[e e^H].
+  /// Covariance of the estimate by noise and nonlinearity together, E[e e^H].
   Eigen::Matrix2cd covariance = Eigen::Matrix2cd::Zero();
-  /// Of position, or of speed where there is no position: standard deviation of the estimate by noise alone, and of
-  /// what one realisation of the excitation differs from the best linear approximation by, beyond noise.
+  /// Of position, without one of speed: standard deviation of the estimate by noise alone, and deviation of one
+  /// realisation of the excitation from the best linear approximation, beyond noise.
   double noise = 0.0, nonlinearity = 0.0;
-  double coherence = 1.0;  ///< of command and answer; 1 where periods tell noise apart
-  double degrees = 1.0;    ///< of freedom behind the covariance
+  double coherence = 1.0;  ///< of command and response; 1 if repeated periods separate the noise
+  double degrees = 1.0;    ///< degrees of freedom of the covariance
 };
 
-/// What the drive answers at lines that nobody excites, between two that are excited: there noise alone is no cause.
+/// Response at lines without excitation, between two excited lines: beyond noise, it is distortion.
 struct DistortionLine {
   double f_Hz = 0.0;
-  double level =
-      0.0;  ///< root mean square, per volt of the excited lines beside it: as `plant`; 0 where noise hides it
+  double level = 0.0;  ///< RMS per volt of the neighbouring excited lines, in the unit of `plant`; 0 if below the noise
 };
 
-/// Lines are in the order of their frequencies.
+/// Lines are sorted by frequency.
 struct FrequencyResponse {
   enum class Method { periodic, welch };
 
   Method method = Method::periodic;
-  bool is_indirect = false;  ///< against an excitation or a reference; otherwise against the command itself
+  bool is_indirect = false;  ///< relative to an excitation or a reference; otherwise to the command itself
   sim::DriveKind kind = sim::DriveKind::rotary;
   double sample_period_s = 0.0;
   bool has_position = false, has_speed = false;
-  std::size_t realisations = 0, periods = 0;  ///< the fewest of any line
+  std::size_t realisations = 0, periods = 0;  ///< smallest number of any line
   std::vector<ResponseLine> lines;
-  /// Of multisines alone. Even powers of a nonlinearity (friction that falls with speed, a drive stronger to one side)
-  /// and odd ones (backlash, stiction, saturation) show apart (Pintelon & Schoukens, 2nd ed., 3.4).
+  /// Of multisines only. Separates even nonlinearity (friction that falls with speed, a drive that is stronger in one
+  /// direction) from odd (backlash, stiction, saturation) (Pintelon & Schoukens, 2nd ed., 3.4).
   std::vector<DistortionLine> even, odd;
   std::vector<std::string> warnings;
 
-  /// 0 position, 1 speed: what `noise` and `nonlinearity` belong to.
+  /// Channel of `noise` and `nonlinearity`: 0 position, 1 speed.
   Eigen::Index channel() const { return has_position ? 0 : 1; }
 };
 
-/// Of the plant in a channel: "mm/V", "rad/s/V".
+/// Unit of the plant in a channel: "mm/V", "rad/s/V".
 std::string plant_unit(const FrequencyResponse& response, Eigen::Index channel);
 
-/// Half width of a 95 % interval of the real part, the imaginary part or the magnitude of weights' * plant, where
-/// `weights` are taken as known: Student's factor times the standard deviation of one part.
+/// Half width of the 95 % interval of the real part, the imaginary part or the magnitude of weights' * plant, with
+/// exact `weights`: Student's factor times the standard deviation of one part.
 double half_width_95(const ResponseLine& line, const Eigen::Vector2cd& weights);
 
-/// Whether weights' * plant is known well enough to build on: either part to 30 % of it. A line that falls on what the
-/// machine does of itself while it rides (cogging, once a turn) is not.
+/// Whether weights' * plant is known well enough for a fit: both parts to 30 % of it. A line at a frequency that the
+/// machine excites itself while it moves (cogging, once per turn) is not.
 bool stands_out(const ResponseLine& line, const Eigen::Vector2cd& weights);
 
-/// The response that records of one machine show. Those that carry an excitation of whole periods (`axistool excite …
-/// multisine`) are analysed by the robust method (Pintelon & Schoukens, System Identification, 2nd ed., 4.3.1):
-/// averages over periods of equal lines, over realisations of their phases, and in closed loop against the excitation.
-/// Others by Welch's method, against the reference where it moves, otherwise against the command. Records of both sorts
-/// together are refused. Throws Failure(refused) where nothing excites the drive, Failure(bad_input) where a record has
-/// no command or neither position nor speed, or where drives or sample periods differ.
+/// The frequency response of the records of one machine. Records with an excitation of whole periods (`axistool excite
+/// … multisine`) are analysed by the robust method (Pintelon & Schoukens, System Identification, 2nd ed., 4.3.1):
+/// averages over periods of equal lines and over realisations of their phases, in closed loop relative to the
+/// excitation. Other records are analysed by Welch's method, relative to the reference if it moves, otherwise to the
+/// command. Throws Failure(refused) for records of both kinds together or without excitation, Failure(bad_input) for a
+/// record without a command or without both position and speed, and for different drives or sampling periods.
 FrequencyResponse frequency_response(const std::vector<Record>& records);
 
 }  // namespace host

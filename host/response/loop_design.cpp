@@ -14,9 +14,10 @@ namespace host {
 namespace {
 
 constexpr double kLowest_Hz = 3.0;
-constexpr double kHighestShare = 0.12;  ///< of the control rate: what pole placement on a rigid drive is good for
+constexpr double kHighestShare = 0.12;  ///< of the control rate: limit of pole placement on a rigid drive
 constexpr double kStep = 1.04;
-/// A notch is tried on the resonance and beside it (nearer to the crossover it turns the phase less), of these shapes.
+/// A notch is tried at the resonance and beside it (farther from the crossover, it costs less phase), with these
+/// shapes.
 constexpr std::array kPlaces = {0.9, 1.0, 1.12};
 constexpr std::array kDampings = {0.15, 0.3, 0.6};
 constexpr std::array kDepths = {0.05, 0.2, 0.45};
@@ -27,7 +28,7 @@ AxisDesign design_at(const LoopTask& drive, double bandwidth_Hz) {
   return design_axis(drive.model, options);
 }
 
-/// `best_modulus` falls to this drive's, where the loop is stable.
+/// Lowers `best_modulus` to this drive's if the loop is stable.
 bool keeps(const LoopTask& drive, const LoopAim& aim, const ControlFilterChoice& filters, double bandwidth_Hz,
            double& best_modulus) {
   const auto parameters = designed_parameters(drive.model, design_at(drive, bandwidth_Hz), filters);

@@ -19,12 +19,12 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t kFinePoints = 600;
-constexpr int kPerResonance = 41;  ///< further points over five half widths to either side
+constexpr int kPerResonance = 41;  ///< further points within five half widths on both sides
 constexpr std::size_t kNearest = 5;
 constexpr int kRepetitions = 200;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Weights that make the value of a straight line over log f, fitted to the nearest measured lines, out of theirs.
+/// Weights of the nearest measured lines for the value of a straight line over log f fitted to them.
 struct Smoother {
   std::size_t first = 0;
   std::vector<double> weight;
@@ -55,7 +55,7 @@ Smoother smoother_at(double f, const std::vector<double>& lines, const std::vect
   return found;
 }
 
-/// The places of those that stand out; all where these are too few for a straight line.
+/// Indices of the significant lines; all lines if these are too few for a straight line.
 std::vector<std::size_t> places_of(const std::vector<bool>& stands_out) {
   std::vector<std::size_t> places, all;
   for (std::size_t i = 0; i < stands_out.size(); ++i) {
@@ -72,7 +72,7 @@ std::vector<Value> picked(const std::vector<Value>& all, const std::vector<std::
   return some;
 }
 
-/// From the first to the last line evenly over the logarithm, denser about resonances.
+/// From the first to the last line, equally spaced in log f, denser near resonances.
 std::vector<double> fine_frequencies(const std::vector<double>& lines, const PlantFit& fit) {
   const double low = std::log(lines.front()), high = std::log(lines.back());
   std::vector<double> f;
@@ -88,7 +88,7 @@ std::vector<double> fine_frequencies(const std::vector<double>& lines, const Pla
   return f;
 }
 
-/// Everything that repetitions share.
+/// Everything that is the same in each repetition.
 class FineLoop {
  public:
   FineLoop(const FrequencyResponse& response, const PlantFit& fit, const AxisController& controller) {
@@ -150,15 +150,15 @@ class FineLoop {
   std::vector<Smoother> smoothers_;
 };
 
-/// NaN where there is none.
+/// NaN if there is none.
 struct Values {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   bool is_stable = true;
   double gain_dB = kNone, phase_deg = kNone, modulus = kNone, crossover_Hz = kNone, modulus_at_Hz = 0.0;
 };
 
-/// Nyquist: 1 + L turns from where the integrators leave it (a phase between -360 and 0 degrees) to 0, and not round
-/// the origin beyond that. Controllers of AxisController have no unstable poles, drives neither.
+/// Nyquist: the phase of 1 + L goes from its start at the integrators (between -360 and 0 degrees) to 0, without a
+/// further encirclement of the origin. Neither the controllers of AxisController nor drives have unstable poles.
 bool is_stable(const std::vector<Complex>& L) {
   double turned = 0.0;
   for (std::size_t i = 1; i < L.size(); ++i) turned += std::arg((1.0 + L[i]) / (1.0 + L[i - 1]));

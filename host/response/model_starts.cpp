@@ -10,7 +10,7 @@ namespace host {
 
 namespace {
 
-/// Of a sample period: less is what fits and clocks leave.
+/// Of a sampling period: fits and clocks are uncertain by that much.
 constexpr double kLeastDelay = 0.05;
 
 bool is_possible(const sim::EffectInfo& info, const char* id, double value) {
@@ -36,7 +36,7 @@ void put_compliance(const PlantFit& fit, const std::string& from, ModelStarts& s
   if (fit.resonances.empty()) return;
   const Resonance& mode = fit.resonances.front();
   const sim::EffectInfo& info = *sim::find_effect("compliance");
-  // Seen at the motor a mode has the load's inertia over the motor's; the table's own part is -1 and tells neither.
+  // At the motor, the mode's share is load inertia over motor inertia; at the table it is -1 and determines neither.
   const double seen = mode.speed_share > 0.0 ? mode.speed_share : mode.position_share;
   const double load = seen / (1.0 + seen);
   const std::string text = fmt::format("resonance at {:.4g} Hz", mode.f_Hz.value);

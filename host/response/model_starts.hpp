@@ -1,4 +1,4 @@
-// What a frequency response says of a model: starts for effects that it shows.
+// Starting values of effects from a frequency response.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ namespace host {
 
 struct ModelStarts {
   sim::DriveDescription model;
-  std::vector<std::string> said;  ///< what was put in, and what was left out and why
+  std::vector<std::string> said;  ///< effects that were added, and those that were left out with the reason
 };
 
-/// The model with `compliance` from the lowest resonance and `input_delay` from the delay, with their intervals, where
-/// they lie within the catalogue's bounds and stand out of their uncertainty; values that are held stay. A lag of the
-/// current loop of the same time looks alike in phase: `said` mentions it. `from`: the records' name.
+/// The model with `compliance` from the lowest resonance and `input_delay` from the delay, with their intervals, if
+/// they are significant and within the catalogue's bounds; held values stay. A current-loop lag of the same time has
+/// nearly the same phase, and `said` mentions it. `from`: the records' name.
 ModelStarts with_response(const sim::DriveDescription& model, const PlantFit& fit, const std::string& from);
 
 }  // namespace host

@@ -17,11 +17,11 @@ namespace host {
 
 namespace {
 
-constexpr double kSettling = 0.25;  ///< periods after the excitation has its full size
-constexpr double kFade = 1.0;       ///< periods in which a board's excitation grows to it
+constexpr double kSettling = 0.25;  ///< periods after the excitation has reached its full size
+constexpr double kFade = 1.0;       ///< periods in which the board fades the excitation in
 constexpr std::size_t kHops = 8;    ///< of the window that looks for the excitation, in a period
-constexpr double kFullShare = 0.7;  ///< of the largest power: from here on most of a window is at full size
-constexpr double kPartly = 0.6;     ///< of such a window may still belong to the fade
+constexpr double kFullShare = 0.7;  ///< of the largest power: from here on most of the window is at full size
+constexpr double kPartly = 0.6;     ///< part of such a window that may still belong to the fade-in
 
 struct Stretch {
   std::size_t from = 0, to = 0;
@@ -41,7 +41,7 @@ std::vector<Number> numbers_in(const Record& record, const std::string& key) {
   return numbers;
 }
 
-/// The longest stretch of samples for which `fits(k)` holds.
+/// The longest range of samples for which `fits(k)` holds.
 template <typename Fits>
 Stretch longest(std::size_t count, const Fits& fits) {
   Stretch best, now;
@@ -54,7 +54,7 @@ Stretch longest(std::size_t count, const Fits& fits) {
   return best;
 }
 
-/// Where `x` repeats itself after a period, to within `tolerance`.
+/// Where `x` repeats after one period, within `tolerance`.
 Stretch periodic_stretch(const std::vector<double>& x, std::size_t period, double tolerance) {
   if (x.size() <= period) return {};
   Stretch found =
@@ -63,7 +63,7 @@ Stretch periodic_stretch(const std::vector<double>& x, std::size_t period, doubl
   return found;
 }
 
-/// Where the lines have their full size in the command.
+/// Where the command holds the lines at full size.
 Stretch loud_stretch(const Record& record, const MultisineHeader& excitation) {
   const std::size_t hop = std::max<std::size_t>(1, excitation.period / kHops);
   std::vector<double> power;
@@ -104,7 +104,7 @@ Stretch steady_stretch(const Record& record, const MultisineHeader& excitation) 
   const auto begin = std::ranges::find_if(record.w_ref, [&](double speed) { return std::abs(speed) > 1e-6 * most; });
   const auto full = static_cast<std::size_t>(begin - record.w_ref.begin()) +
                     static_cast<std::size_t>(kFade * static_cast<double>(excitation.period));
-  // From the fade's end on; what stands still there does not ride.
+  // After the fade-in; a constant position means that the axis does not jog.
   const Stretch found = longest(record.size(), [&](std::size_t k) {
     if (k < full || k + 1 >= record.size() || std::abs(record.w_ref[k]) < 0.05 * most) return false;
     if (!excitation.is_at_reference) return std::abs(record.w_ref[k + 1] - record.w_ref[k]) <= 1e-3 * most;
@@ -114,7 +114,7 @@ Stretch steady_stretch(const Record& record, const MultisineHeader& excitation) 
   return {found.from + settling, found.to};
 }
 
-/// Takes a polynomial off that the means of the periods show: a jog's travel and a slow drift.
+/// Subtracts a polynomial through the means of the periods: the jog's travel and slow drift.
 void detrend(std::vector<double>& x, std::size_t period) {
   const std::size_t periods = x.size() / period;
   const int degree = periods > 3 ? 2 : 1;

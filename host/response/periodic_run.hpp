@@ -1,4 +1,4 @@
-// What one record of a multisine holds at the frequencies of its lines.
+// Spectra of one multisine record at the frequencies of its lines.
 #pragma once
 
 #include <complex>
@@ -9,16 +9,16 @@
 
 namespace host {
 
-/// A multisine as a record's header tells it (host/device/excitation.hpp writes it there).
+/// A multisine, from a record's header (written by host/device/excitation.hpp).
 struct MultisineHeader {
   std::size_t period = 0;            ///< samples
   std::vector<std::size_t> lines;    ///< multiples of 1/period, increasing
-  std::vector<double> phases_turns;  ///< as many, or none
+  std::vector<double> phases_turns;  ///< as many as lines, or none
   bool is_closed_loop = false;
-  bool is_at_reference = false;  ///< it was added to the reference, not to the command
+  bool is_at_reference = false;  ///< added to the reference instead of the command
 };
 
-/// Empty where the header tells of none. Throws Failure(bad_input) for one that makes no sense.
+/// Empty if the header has none. Throws Failure(bad_input) for an inconsistent one.
 std::optional<MultisineHeader> multisine_of(const Record& record);
 
 /// Spectra of command, position and speed in each whole period of the steady part.
@@ -30,13 +30,13 @@ struct PeriodicRun {
     std::complex<double> u, x, w;
   };
   std::vector<std::vector<Sample>> period;
-  /// The same at the odd lines between them that are not excited, and at the even ones.
+  /// The same at lines between them without excitation: odd ones and even ones.
   std::vector<std::size_t> odd_lines, even_lines;
   std::vector<std::vector<Sample>> odd, even;
 };
 
-/// The steady part is the longest in which the lines have their full size and the jog beneath keeps its speed; a
-/// straight line is taken off the position. Throws Failure(refused) where fewer than two periods are left.
+/// The steady part is the longest range in which the lines have their full size and the jog has a constant speed.
+/// Removes a straight line from the position. Throws Failure(refused) if fewer than two periods remain.
 PeriodicRun periodic_run(const Record& record, const MultisineHeader& excitation);
 
 }  // namespace host

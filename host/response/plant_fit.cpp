@@ -19,23 +19,23 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr int kAliases = 4;            ///< images of the spectrum to either side that are counted
-constexpr double kLeastSpread = 2e-3;  ///< relative: lines that are known better still are not fitted better
+constexpr int kAliases = 4;            ///< images of the spectrum counted on each side
+constexpr double kLeastSpread = 2e-3;  ///< relative: smaller uncertainties of lines are raised to this
 constexpr int kIterations = 100, kTrial = 20;
 constexpr std::size_t kMostModes = 3;
-constexpr double kMostDamping = 0.3;  ///< more is a slope, not a resonance
+constexpr double kMostDamping = 0.3;  ///< above it, it is a slope and no resonance
 constexpr double kStartDamping = 0.03;
-constexpr double kEarns = 14.0;      ///< fall of chi^2 by a mode of four values: chance gives 9.5 one time in twenty
-constexpr double kEarnsShare = 0.1;  ///< and at least so much of what was left
-constexpr double kLeastShare = 0.1;  ///< of the rigid part, at the resonance: less is no mode
+constexpr double kEarns = 14.0;  ///< decrease of chi^2 by a mode with four parameters; 9.5 is the 5 % point of chance
+constexpr double kEarnsShare = 0.1;  ///< and at least this part of the residual
+constexpr double kLeastShare = 0.1;  ///< of the rigid part, at the resonance; less does not count as a mode
 
-constexpr double kLagTells = 4.0;  ///< chi^2 by which a lag has to be better than a delay: 5 % by chance
-constexpr double kNoDelay = 0.05;  ///< of a sample: neither
+constexpr double kLagTells = 4.0;  ///< chi^2 by which a lag must be better than a delay: 5 % by chance
+constexpr double kNoDelay = 0.05;  ///< of a sample; below it there is neither
 
-// Values of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
+// Parameters of the fit: log gains, pole, delays, then (log frequency, log damping, shares) of each mode.
 constexpr std::size_t kRigid = 5, kPerMode = 4, kDelay = 3;
 
-/// What the value at kDelay is.
+/// Meaning of the value at kDelay.
 enum class Late { delay, lag };
 
 PlantFit unpack(const double* value, std::size_t modes, Late late, double sample_period_s) {
@@ -58,7 +58,7 @@ PlantFit unpack(const double* value, std::size_t modes, Late late, double sample
   return fit;
 }
 
-/// Deviations of a response from a fit, each part in standard deviations of its own.
+/// Residuals of a response, the real and imaginary parts each divided by their standard deviation.
 class Deviations {
  public:
   explicit Deviations(const FrequencyResponse& response) : response_(response) {
@@ -95,7 +95,7 @@ class Deviations {
   double highest() const { return response_.lines.back().f_Hz; }
   double sample_period_s() const { return response_.sample_period_s; }
 
-  /// Gain of a double integrator, from lines in the middle.
+  /// Gain of a double integrator, from the middle lines.
   double start_gain(Eigen::Index channel) const {
     std::vector<double> gains;
     for (const Point& point : points_)
@@ -136,7 +136,7 @@ struct Fitted {
   std::size_t modes() const { return (value.size() - kRigid) / kPerMode; }
 };
 
-/// `iterations`: few are enough to compare starts.
+/// `iterations`: a few suffice to compare starting values.
 Fitted solve(const Deviations& deviations, std::vector<double> value, Late late, int iterations) {
   const std::size_t modes = (value.size() - kRigid) / kPerMode;
   auto* cost = new ceres::DynamicNumericDiffCostFunction<Functor, ceres::FORWARD>(new Functor{deviations, modes, late});
@@ -169,9 +169,9 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, Late late,
   return found;
 }
 
-/// The mode that lowers chi^2 most: a grid over frequency, seen at the load, at the motor, or one each, from the best
-/// places of which the solver starts. `plain`: values without any mode; what a fit without one has bent to imitate a
-/// mode (a delay, mostly) misleads the grid.
+/// The mode that lowers chi^2 most: a search on a grid of frequencies, observed at the load, at the motor, or one at
+/// each; the solver starts from the best grid points. `plain`: values of a fit without any mode. A fit without this
+/// mode distorts other parameters (mostly a delay) to imitate it, which misleads the grid.
 Fitted with_one_more(const Deviations& deviations, const Fitted& before, const std::vector<double>& plain) {
   constexpr int kGrid = 120, kStarts = 4;
   constexpr std::array<std::array<double, 2>, 3> kShares{{{-0.95, -0.95}, {-0.95, 0.4}, {0.4, 0.4}}};
@@ -206,14 +206,14 @@ bool is_mode(const double* mode, const Deviations& deviations) {
   return f > deviations.lowest() && f < deviations.highest() && at_resonance > kLeastShare && damping < kMostDamping;
 }
 
-/// An earlier mode within the width of this one: the two share out one resonance.
+/// An earlier mode within the width of this one: both describe one resonance.
 bool has_twin(const std::vector<double>& value, std::size_t at) {
   for (std::size_t other = kRigid; other < at; other += kPerMode)
     if (std::abs(value[other] - value[at]) < std::exp(value[other + 1]) + std::exp(value[at + 1])) return true;
   return false;
 }
 
-/// A mode may have taken over what another explained before.
+/// Removes modes that a later mode has made superfluous.
 void drop_what_is_no_mode(std::vector<double>& value, const Deviations& deviations) {
   for (std::size_t at = kRigid; at < value.size();)
     if (is_mode(value.data() + at, deviations) && !has_twin(value, at))
@@ -223,7 +223,7 @@ void drop_what_is_no_mode(std::vector<double>& value, const Deviations& deviatio
                   value.begin() + static_cast<std::ptrdiff_t>(at + kPerMode));
 }
 
-/// With as many modes as earn it.
+/// Adds modes while each is significant.
 Fitted with_modes(const Deviations& deviations, Late late) {
   const std::vector<double> plain = {std::log(deviations.start_gain(0)), std::log(deviations.start_gain(1)), 1.0, 0.1,
                                      0.0};
@@ -232,7 +232,7 @@ Fitted with_modes(const Deviations& deviations, Late late) {
     if (deviations.count() < fitted.value.size() + kPerMode + 2) break;
     Fitted next = with_one_more(deviations, fitted, plain);
     const double count = static_cast<double>(deviations.count());
-    // Where the fit is not as good as the noise, what is left stands for the noise.
+    // If the fit is worse than the noise, the residual is used as the noise.
     const double unit = std::max(1.0, next.chi2 / (count - static_cast<double>(next.value.size())));
     const double fall = fitted.chi2 - next.chi2;
     if (fall < kEarns * unit || fall < kEarnsShare * fitted.chi2 || next.value.size() == fitted.value.size() ||
@@ -244,7 +244,8 @@ Fitted with_modes(const Deviations& deviations, Late late) {
   return solve(deviations, fitted.value, late, kIterations);
 }
 
-/// With a lag where that explains more, or as much with fewer modes: a delay alone needs modes to bend magnitudes.
+/// Uses a lag if it explains more, or as much with fewer modes: with a delay alone, modes are needed to shape
+/// magnitudes.
 Fitted fitted_best(const Deviations& deviations) {
   Fitted delayed = with_modes(deviations, Late::delay);
   if (delayed.modes() == 0 && delayed.value[kDelay] < kNoDelay) return delayed;

@@ -22,16 +22,16 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kMostTo_Hz = 250.0;
-constexpr double kPeriods = 2.0;  ///< of a run: short runs ride fast, and what friction does is another each time
-constexpr double kRun = kPeriods + 1.4;     ///< periods in which it rides: it grows and settles before
-constexpr double kRunAndStop = kRun + 1.1;  ///< it goes away within one
-constexpr double kShareOfBands = 0.6;       ///< of the time; the rest looks closer at resonances
+constexpr double kPeriods = 2.0;            ///< of a run: short runs jog fast, and friction differs from run to run
+constexpr double kRun = kPeriods + 1.4;     ///< periods of jogging before: the excitation is faded in and settles
+constexpr double kRunAndStop = kRun + 1.1;  ///< it is faded out within one
+constexpr double kShareOfBands = 0.6;       ///< of the time; the rest is for a closer look at resonances
 constexpr double kMostRealisations = 12.0;
-constexpr double kRideOfBox = 0.45;     ///< the excitation adds as much, and noise its share
-constexpr double kAnswerOfRide = 0.5;   ///< peak speed of the answer, so that the axis never turns back
-constexpr double kAnswerOfWatch = 0.4;  ///< peak of its position, of the following error that is watched: the drive may
-                                        ///< answer twice as much as its rigid model says
-constexpr double kWindow = 0.85;        ///< of half the travel that the board turns round in
+constexpr double kRideOfBox = 0.45;      ///< the excitation adds as much, and noise adds to it
+constexpr double kAnswerOfRide = 0.5;    ///< peak speed of the response, so that the axis never reverses
+constexpr double kAnswerOfWatch = 0.4;   ///< peak of its position as a part of the following-error limit; the response
+                                         ///< may be twice that of the rigid model
+constexpr double kWindow = 0.85;         ///< of half the travel at which the board reverses
 constexpr double kLinesPerOctave = 6.0;  ///< wanted
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
@@ -108,7 +108,7 @@ class Planner {
            10.0 * speed / scale_.rate_Hz;
   }
 
-  /// As fast as box and way allow.
+  /// As fast as the box and the travel allow.
   double choose_ride(double run_s) const {
     const double room = kWindow * plan_.box.travel / 2.0;
     double ride = kRideOfBox * plan_.box.speed;
@@ -154,7 +154,7 @@ class Planner {
   double period_ = 0.0, period_s_ = 0.0, run_s_ = 0.0, top_Hz_ = 0.0;
 };
 
-/// A loop that was open is open again afterwards, unless the link is gone.
+/// Opens the loop again at the end if it was open before, unless the link is lost.
 class ClosedMeanwhile {
  public:
   ClosedMeanwhile(BoardClient& board, std::uint8_t axis) : board_(board), mask_(static_cast<std::uint8_t>(1u << axis)) {
@@ -165,7 +165,7 @@ class ClosedMeanwhile {
     if (!was_open_) return;
     try {
       disable_and_wait(board_, mask_);
-    } catch (const Failure&) {  // what went wrong before says more
+    } catch (const Failure&) {  // the earlier failure is more informative
     }
   }
   ClosedMeanwhile(const ClosedMeanwhile&) = delete;

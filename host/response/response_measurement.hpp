@@ -1,4 +1,4 @@
-// Records for a frequency response, made on a board: multisines at the controller's output, on a slow jog.
+// Measures records for a frequency response on a board: multisines at the controller's output, during a slow jog.
 #pragma once
 
 #include <functional>
@@ -11,38 +11,37 @@
 
 namespace host {
 
-/// What the runs may use and should show. The box's time is that of all runs together.
+/// Limits and range of the runs. The box's time is that of all runs together.
 struct ResponsePlan {
   ExcitationLimits box;
   double from_Hz = 2.0;
   double to_Hz = 0.0;            ///< 0: a quarter of the control rate, 250 Hz at most
-  std::size_t realisations = 4;  ///< of the phases, in each band, at least; more where the time allows
+  std::size_t realisations = 4;  ///< realisations of the phases in each band, at least; more if time allows
   unsigned seed = 1;
-  double share = 1.0;  ///< of the amplitude that is otherwise chosen: less where an axis answers more than expected
+  double share = 1.0;  ///< of the usual amplitude: less if an axis responds more than expected
 };
 
-/// One run after the other: bands of at most kExcitationEntries lines, the lowest first, each realisation by turns
-/// forward and backward. The amplitude is less than the box's volts where friction would change its sign (the answer's
-/// speed stays below the jog's) or the following error would come near to what is watched. `parameters`: what the board
-/// runs; they tell how far the axis answers. Throws Failure(refused) where travel or time of the box is too little.
+/// Plans the runs in order: bands of at most kExcitationEntries lines, the lowest first, realisations alternately
+/// forward and backward. The amplitude is below the box's volts if friction would otherwise change its sign (the
+/// response's speed stays below the jog's) or the following error would come near its limit. `parameters`: those of the
+/// board, which give the response. Throws Failure(refused) if the box has too little travel or time.
 std::vector<Excitation> plan_response(const ResponsePlan& plan, const ExcitationScale& scale,
                                       const firmware::AxisParameters<float>& parameters);
 
-/// Likewise one band about a resonance, all odd lines there.
+/// The same for one band around a resonance, with all odd lines.
 std::vector<Excitation> plan_resonance(const ResponsePlan& plan, double f_Hz, const ExcitationScale& scale,
                                        const firmware::AxisParameters<float>& parameters);
 
-/// Closes the loop if it is open, makes the runs and opens it again; appends their records as they come. Throws what
-/// run_excitation() throws, Failure(refused) where a run leaves the box or is interrupted, Failure(device_fault) with
+/// Closes the loop if it is open, makes the runs and opens it again; appends each record as it is made. Throws what
+/// run_excitation() throws, Failure(refused) if a run leaves the box or is interrupted, Failure(device_fault) with
 /// cause and remedy.
 void make_response_runs(BoardClient& board, std::uint8_t axis, const std::vector<Excitation>& runs,
                         const firmware::ParameterValues& values, const ExcitationScale& scale,
                         const std::function<bool()>& stop, std::vector<Record>& records,
                         const std::function<void(std::size_t done, std::size_t of)>& progress = {});
 
-/// All of it: the bands, then a closer look at each resonance that they show, as long as the box's time lasts (each
-/// gets half as much as the bands). Records are appended to `records` as they come, so that they are there when it
-/// fails.
+/// Makes the whole measurement: the bands, then a closer look at each resonance found while the box's time lasts (half
+/// of the bands' time each). Appends each record to `records` as it is made, so that they are kept after a failure.
 void measure_axis(BoardClient& board, std::uint8_t axis, const ResponsePlan& plan,
                   const firmware::ParameterValues& values, const ExcitationScale& scale,
                   const std::function<bool()>& stop, std::vector<Record>& records,

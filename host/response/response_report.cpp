@@ -16,13 +16,13 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
-constexpr double kGoodModulus = 0.5;  ///< usual aim: the sensitivity's peak below 6 dB
+constexpr double kGoodModulus = 0.5;  ///< usual requirement: peak of the sensitivity below 6 dB
 constexpr double kPoorModulus = 0.35;
-constexpr double kNyquistReach = 2.5;  ///< what of the open loop is drawn about -1
+constexpr double kNyquistReach = 2.5;  ///< part of the open loop drawn around -1
 
 double decibels(double value) { return 20.0 * std::log10(std::max(value, std::numeric_limits<double>::min())); }
 
-/// Degrees without jumps of a turn, in the middle between -360 and 0: lines at the ends may be noise.
+/// Degrees, unwrapped, with the middle between -360 and 0: lines at the ends may be noise.
 std::vector<double> unwrapped(const std::vector<Complex>& values) {
   std::vector<double> phase;
   for (const Complex& value : values) {
@@ -258,7 +258,7 @@ Table resonances_table(const PlantFit& fit) {
   return table;
 }
 
-/// Not the same measurement with another controller.
+/// Whether it is another measurement, not the same one with another controller.
 bool is_measured_again(const AxisResponse& axis, const AxisResponse& before) {
   const auto& a = axis.response.lines;
   const auto& b = before.response.lines;

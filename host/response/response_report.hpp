@@ -1,4 +1,4 @@
-// A frequency response for people: a page, and a few lines for a terminal.
+// A frequency response as an HTML page and as text for a terminal.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace host {
 
-/// Verdict, margins, Bode plots with their bands, Nyquist plot with the modulus margin's circle, resonances. `before`:
-/// another state of the axis, drawn beside it; nullptr: none.
+/// Verdict, margins, Bode plots with intervals, Nyquist plot with the circle of the modulus margin, resonances.
+/// `before`: another state of the axis drawn beside it; nullptr: none.
 Report response_report(const AxisResponse& axis, const std::string& subtitle, const AxisResponse* before = nullptr);
 
 /// The margins of both, in columns.

@@ -11,13 +11,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Lines to either side whose disturbances are taken to be as large: in the output's own units they are smooth over
-/// frequency, in a closed loop too.
+/// Neighbouring lines whose disturbances are assumed equal: in the output's units they are smooth over frequency, in
+/// closed loop too.
 constexpr std::size_t kNeighbours = 1;
 
 Complex turned(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * turns); }
 
-/// Mean over periods, as of one period of the excitation with all phases 0.
+/// Mean over periods, referred to a period of the excitation with all phases 0.
 struct Realisation {
   std::vector<Complex> u;
   std::vector<Eigen::Vector2cd> y;
@@ -37,8 +37,8 @@ Realisation mean_of(const PeriodicRun& run) {
   return mean;
 }
 
-/// Records begin at any sample of a period: the turn by whole samples that makes the command answer the excitation as
-/// in the first realisation. Unknown phases are taken from the command itself.
+/// Records begin anywhere within a period: the shift in whole samples that aligns the command's response with that of
+/// the first realisation. Unknown phases are taken from the command itself.
 void align(Realisation& one, const Realisation& first, const MultisineHeader& excitation) {
   const std::size_t lines = excitation.lines.size();
   if (excitation.phases_turns.empty()) {
@@ -74,7 +74,7 @@ void align(Realisation& one, const Realisation& first, const MultisineHeader& ex
   }
 }
 
-/// Covariance of what a mean of `deviations` is off by.
+/// Covariance of a mean of `deviations`.
 struct Spread {
   Eigen::Matrix2cd sum = Eigen::Matrix2cd::Zero();
   double degrees = 0.0;

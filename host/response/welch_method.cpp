@@ -13,13 +13,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kStretch_s = 1.0;  ///< as long as a multisine's period: lines 1 Hz apart
-constexpr std::size_t kFewest = 8;  ///< stretches: shorter ones where a record has no more
+constexpr double kStretch_s = 1.0;  ///< equal to a multisine's period: lines 1 Hz apart
+constexpr std::size_t kFewest = 8;  ///< segments; shorter ones if a record has fewer
 constexpr double kHighest = 0.4;    ///< of the sample rate
 constexpr double kChance = 0.05;
-constexpr std::size_t kLowest = 2;  ///< below, the window's main lobe reaches 0 Hz
+constexpr std::size_t kLowest = 2;  ///< below it, the window's main lobe reaches 0 Hz
 
-/// Products of one frequency's spectra, summed over stretches.
+/// Cross-spectra at one frequency, summed over segments.
 struct Sums {
   double uu = 0.0, rr = 0.0;
   Complex ur = 0.0;
@@ -73,7 +73,7 @@ class Averages {
 
   std::vector<ResponseLine> lines(double sample_period_s) const {
     std::vector<ResponseLine> found;
-    // Of Hann windows that overlap by half (Harris 1978).
+    // For Hann windows with half overlap (Harris 1978).
     const double count =
         18.0 * static_cast<double>(stretches_ * stretches_) / (19.0 * static_cast<double>(stretches_) - 1.0);
     if (count < 2.0) return found;
@@ -86,7 +86,7 @@ class Averages {
       line.f_Hz = share / sample_period_s;
       const Eigen::Vector2cd G = s.yr / s.ur;
       const Eigen::Matrix2cd rest = s.yy - G * s.yu.adjoint() - s.yu * G.adjoint() + G * G.adjoint() * s.uu;
-      // Of increments to position.
+      // Converts increments to position.
       const Complex step = std::polar(1.0, 2.0 * std::numbers::pi * share) - 1.0;
       const Eigen::DiagonalMatrix<Complex, 2> integral(1.0 / step, 1.0);
       line.plant = integral * G;

@@ -1,4 +1,4 @@
-// What the diagnosis answered to a trial, held against the truth.
+// Compares the diagnosis of a trial with the truth.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct Answer {
   Outcome outcome = Outcome::missed;
   std::vector<Forecast> forecasts;  ///< every candidate, nothing, something else
 
-  /// Part of the squared error above the floor that is gone; 0 where there was none.
+  /// Part of the squared error above the noise floor that was removed; 0 if there was none.
   double explained() const;
   bool gives_all_clear() const { return verdict.status == Status::adequate || verdict.status == Status::parameters; }
 };
@@ -45,11 +45,11 @@ Answer answer_of(const std::string& name, const std::string& group, const Truth&
 /// Runs a trial on a case's model.
 Answer run_trial(const Trial& trial, const ShareDone& progress = {});
 
-/// What is left of a catalogue when the effect that a case hides is taken out of it.
+/// Result of a diagnosis without the case's hidden effect in the catalogue.
 struct LeftOut {
-  bool right_coordinate = false;  ///< the one that the hidden effect goes with; or a relative was named
-  Answer answer;       ///< right: no name. Group: near relatives of it alone. Wrong: any other name, or an all-clear
-  std::string over;    ///< coordinate of the free curve that judged best; empty where none lowers the error
+  bool right_coordinate = false;  ///< the coordinate of the hidden effect was named, or a related effect
+  Answer answer;       ///< right: no name. Group: related effects only. Wrong: any other name, or an all-clear
+  std::string over;    ///< coordinate of the best free curve in validation; empty if none lowers the error
   double curve = 0.0;  ///< part of the explainable squared error that it takes, 0..1
 };
 

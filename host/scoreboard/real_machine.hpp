@@ -1,4 +1,4 @@
-// Measured machines with the answers that their records allow: what diagnose makes of them.
+// Diagnoses measured machines with known answers.
 #pragma once
 
 #include <filesystem>

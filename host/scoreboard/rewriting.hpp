@@ -1,4 +1,4 @@
-// The same measurements written another way: what does not change the physics must not change the diagnosis.
+// Equivalent forms of the same measurements: a change that leaves the physics must not change the diagnosis.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace host {
 
-/// What a diagnosis starts from, before the gate.
+/// Input of a diagnosis, before the gate.
 struct Question {
   sim::DriveDescription model;
   std::vector<Record> train, validate;  ///< adapted to the model; `validate` may be empty
@@ -22,7 +22,7 @@ struct Question {
 /// Throws Failure(bad_input) for a bad file.
 Question read_question(const Trial& trial);
 
-/// A way to write a question anew.
+/// A way to rewrite a question.
 struct Rewriting {
   std::string_view name;  ///< "volt x 100"
   std::function<void(Question&)> apply;
@@ -43,7 +43,7 @@ struct Invariance {
   std::string original, rewritten;  ///< both verdicts in words
 };
 
-/// Diagnoses a question and its rewritings; one answer for each of `chosen`.
+/// Diagnoses a question and its rewritten forms; one result for each of `chosen`.
 std::vector<Invariance> try_rewritings(const Question& question, std::span<const Rewriting> chosen);
 
 }  // namespace host

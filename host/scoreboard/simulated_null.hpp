@@ -11,7 +11,7 @@
 namespace host {
 
 struct SimulatedNull {
-  sim::DriveDescription model;   ///< what the engineer has: up to 10 % off, as after a first identification
+  sim::DriveDescription model;   ///< the engineer's model: up to 10 % off, as after a first identification
   std::vector<Record> train;     ///< one to three records of 3 to 10 s
   std::vector<Record> validate;  ///< empty for every other one
 };

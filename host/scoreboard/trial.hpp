@@ -1,4 +1,4 @@
-// Trials of the diagnosis on records whose truth is known: whole cases, and pieces of them as a new user brings first.
+// Trials of the diagnosis on records with a known truth: whole cases, and pieces of them such as a new user has first.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// What is hidden in a case.
+/// Hidden effects of a case.
 struct Truth {
   std::vector<std::string> effects;  ///< kinds; empty where nothing is hidden
   bool alien = false;                ///< something is hidden that no catalogue knows

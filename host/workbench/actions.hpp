@@ -37,8 +37,8 @@ nlohmann::json carry_out(const Folder& folder, const Request& request, const Out
 /// commands. Pieces without enough rows are not written. Throws Failure(refused) where nothing is left.
 nlohmann::json cut_out(const Folder& folder, const CutRequest& request);
 
-/// What `axistool open` understands of logs: { "document": of its --json, "command" }. Where nothing is left to ask,
-/// or what is not sure is accepted, the records lie in a folder of their own.
+/// Result of `axistool open` for logs: { "document": of its --json, "command" }. If no question is open, or uncertain
+/// channels are accepted, the records are in their own folder.
 nlohmann::json open_and_write(const Folder& folder, const OpenRequest& request);
 
 }  // namespace host::workbench

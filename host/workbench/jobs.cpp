@@ -33,7 +33,7 @@ std::int64_t now_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// A state that an earlier session wrote, or somebody since: null unless it is one.
+/// The state of a job, written by this or an earlier session; null if the file is not valid.
 nlohmann::json read_state(const std::string& path) {
   try {
     nlohmann::json state = nlohmann::json::parse(read_file(path), nullptr, false);
@@ -195,7 +195,7 @@ std::vector<nlohmann::json> Jobs::steps_to(std::string model) const {
   std::vector<int> ids;
   {
     const std::lock_guard lock(mutex_);
-    // A step was asked for before the one that went on from it.
+    // A step's job is older than the job that continues from it.
     for (auto item = jobs_.rbegin(); item != jobs_.rend(); ++item) {
       const Job& job = *item->second;
       if (job.state["state"] != "done" || job.state["model"] != model) continue;

@@ -1,6 +1,6 @@
 #!/bin/bash
-# first_build_test.sh: `make` asks for no package of the tests or of the Python module, configures without them, and builds
-# the program alone.
+# first_build_test.sh: `make` requires no package of the tests or of the Python module, configures without them, and
+# builds only the program.
 set -euo pipefail
 project=$(cd "$(dirname "$0")/../.." && pwd)
 build=${AXIS_BUILD:?names the build tree}

@@ -1,5 +1,5 @@
 #!/bin/bash
-# install_test.sh: what is installed works from where it lies: program, shipped scenarios, manual, completions, rule.
+# install_test.sh: the installed files work from their location: program, shipped scenarios, manual, completions, rule.
 set -euo pipefail
 build=${AXIS_BUILD:?names the build tree}
 folder=$(mktemp -d)

@@ -130,7 +130,7 @@ class Bench:
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     def must(self, command: str) -> None:
-        for _ in range(60):  # an axis that was switched off in motion runs out first
+        for _ in range(60):  # an axis that was disabled in motion must first coast to rest
             done = self.run(command)
             if done.returncode == 0 or "it moves" not in done.stdout:
                 break

@@ -1,4 +1,4 @@
-// Compensation inside the control law: switched off it is not there; a move across a gap ends where it was asked to.
+// Compensation in the control law: no effect when switched off; a move across a gap ends at its target.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Several axes in one control period: what is read, and in which order.
+// Several axes in one control period: the sensors that are read, and their order.
 #include "firmware/core/supervision/axis_group.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The board's compensation: sine, harmonics over the travel, presliding, the way across a gap.
+// The board's compensation: sine, harmonics over the travel, presliding, crossing a gap.
 #include <gtest/gtest.h>
 
 #include <algorithm>

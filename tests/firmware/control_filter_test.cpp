@@ -1,4 +1,4 @@
-// Notch and low-pass: their response, their beginning, and which of them a loop may have.
+// Notch and low-pass: response, initial state, and the filters that a loop accepts.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

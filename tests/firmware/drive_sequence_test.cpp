@@ -1,4 +1,4 @@
-// Between a request and motion, and between standstill and no current: amplifier and brake.
+// Amplifier and brake between a request and motion, and between standstill and zero current.
 #include "firmware/core/supervision/drive_sequence.hpp"
 
 #include "tests/firmware/driven_axis.hpp"

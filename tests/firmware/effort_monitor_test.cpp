@@ -1,4 +1,4 @@
-// What the command should have done against what the encoder shows, on drives that do and drives that do not.
+// Expected motion from the command against the encoder, on drives that respond and drives that do not.
 #include "firmware/core/supervision/effort_monitor.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The excitations themselves: what comes out is what was asked for, in float and in fixed point.
+// The excitations: the output equals the request, in float and in fixed point.
 #include <gtest/gtest.h>
 
 #include <array>

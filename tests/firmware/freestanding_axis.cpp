@@ -1,4 +1,4 @@
-// One axis in float, compiled as for the target, for check_freestanding.sh to look at.
+// One axis in float, compiled as for the target; check_freestanding.sh examines the object.
 #include "firmware/core/axis.hpp"
 
 namespace firmware_test {

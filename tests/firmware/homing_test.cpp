@@ -1,4 +1,4 @@
-// The homing sequence alone, on an axis that does at once what it is told.
+// The homing sequence alone, on an axis that responds at once.
 #include "firmware/core/motion/homing.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Homing by switch and index while the index's own monitor looks as well: every pulse is seen by both.
+// Homing by switch and index while the index monitor reads, too: both get every pulse.
 #include <cmath>
 #include <cstdint>
 

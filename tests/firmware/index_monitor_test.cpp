@@ -1,4 +1,4 @@
-// Counts between index pulses: lost ones are found, sound ones never complained of.
+// Counts between index pulses: lost counts are found, and correct ones cause no fault.
 #include "firmware/core/supervision/index_monitor.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Sparks and bouncing contacts trip nothing; what stays does.
+// Noise spikes and bouncing contacts cause no fault; persistent signals do.
 #include "firmware/core/supervision/input_filter.hpp"
 
 #include <functional>

@@ -1,4 +1,4 @@
-// The board's follower of paths, with axes that only add up what they are led.
+// The board's path follower, with axes that only add up their increments.
 #include "firmware/core/path/path_follower.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Pitch error compensation by itself: what it adds to a reference, and that it never jumps.
+// Pitch error compensation alone: its addition to a reference, which never jumps.
 #include "firmware/core/compensation/pitch_correction.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The verdict on poles against their eigenvalues in double precision; sets that must never close a loop.
+// The pole check against eigenvalues in double precision; gains that must never close a loop.
 #include "firmware/core/control/pole_check.hpp"
 
 #include <gtest/gtest.h>

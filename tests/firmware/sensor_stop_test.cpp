@@ -1,4 +1,4 @@
-// A sensor fails in motion: the axis slows down by the one that is left.
+// A sensor fails in motion: the axis slows down with the remaining one.
 #include "firmware/core/supervision/sensor_stop.hpp"
 
 #include <cmath>

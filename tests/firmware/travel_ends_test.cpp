@@ -1,4 +1,4 @@
-// Motion ends inside the limits of travel: jogs by themselves, moves by being refused; enabling is all or nothing.
+// Motion stays inside the limits of travel: jogs stop, moves are refused; enabling is all or nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>

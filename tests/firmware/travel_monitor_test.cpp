@@ -1,4 +1,4 @@
-// Ends of travel: by the motion that the encoder shows, whatever the reference does.
+// Ends of travel by the encoder's motion, independent of the reference.
 #include "firmware/core/supervision/travel_monitor.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Any bytes as a record, and what is read of it through identification, comparison and prediction: answered or refused.
+// Any bytes as a record, through reading, identification, comparison and prediction: a result or a refusal.
 #include <cstdint>
 #include <string_view>
 

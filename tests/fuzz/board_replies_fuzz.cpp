@@ -1,4 +1,4 @@
-// Any bytes as what a board sends: every question of the host ends, with an answer or with a failure that has a name.
+// Any bytes as replies of a board: every request of the host ends with a result or a named failure.
 #include <cstdint>
 #include <cstring>
 #include <memory>

@@ -1,4 +1,4 @@
-// Any bytes as a controller's log: channels that are told, and records that can be written, or a refusal.
+// Any bytes as a controller's log: recognised channels and records that can be written, or a refusal.
 #include <cstdint>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Any text behind --map: understood or refused, never a column that does not depend on its source.
+// Any text after --map is accepted or refused; a resulting column always depends on its source.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Any bytes as a model file: read or refused, and what was read survives being written.
+// Any bytes as a model file: read or refused; a model that was read survives writing.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Any bytes as what was measured of a screw: a table that the board takes and that reads back as it is, or a refusal.
+// Any bytes as measured errors of a screw: a table that the board takes and returns unchanged, or a refusal.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Any line of either side of axis-plant/1: finite numbers of as many axes as belong there, or refused.
+// Any line from either side of axis-plant/1: the expected number of finite values, or a refusal.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

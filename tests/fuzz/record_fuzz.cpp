@@ -1,4 +1,4 @@
-// Any bytes as a record: read or refused, and what was read survives being written.
+// Any bytes as a record: read or refused; a record that was read survives writing.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

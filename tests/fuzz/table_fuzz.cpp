@@ -1,4 +1,4 @@
-// Any bytes as a table to import, as it is and resampled: a record that can be read again, or a refusal.
+// Any bytes as a table to import, with and without resampling: a record that can be read again, or a refusal.
 #include <cstdint>
 #include <string_view>
 

@@ -31,7 +31,7 @@ class OpenRequests {
       const std::size_t length = hal::usbip::kHeaderSize + (brings_data ? request.length : 0);
       if (stream_.size() < length) return;
       stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(length));
-      // No host gives one number to two requests: the replies could not be told apart.
+      // A host uses a sequence number only once: otherwise the replies could not be distinguished.
       unclear_ = unclear_ || std::any_of(requests_.begin(), requests_.end(), [&](const hal::usbip::Request& one) {
                    return one.sequence == request.sequence;
                  });

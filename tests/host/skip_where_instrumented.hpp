@@ -1,4 +1,4 @@
-// A diagnosis fits some hundred models; code with sanitizers takes many times as long.
+// Skips diagnoses in sanitized builds: they fit some hundred models, which takes many times as long there.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A folder that lives as long as its test.
+// A folder that exists as long as its test.
 #pragma once
 
 #include <gtest/gtest.h>

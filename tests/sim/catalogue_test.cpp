@@ -1,4 +1,4 @@
-// The catalogue as a whole: complete, consistent, and harmless where an effect has no strength.
+// The catalogue as a whole: complete, consistent, and without effect at zero strength.
 #include "sim/catalogue.hpp"
 
 #include <gmock/gmock.h>
@@ -146,7 +146,7 @@ TEST_P(EveryEffect, HasKeysThatEndInAUnitOrAreRatios) {
                      EndsWith("_N_per_m"), EndsWith("_V"), EndsWith("_s"), EndsWith("_Hz"));
   for (const ParameterInfo& parameter : GetParam()->parameters) {
     const std::string rotary(parameter.rotary_key), linear(parameter.linear_key);
-    if (GetParam()->curve && parameter.id == "knot") continue;  // in the unit of the coordinate that the entry names
+    if (GetParam()->curve && parameter.id == "knot") continue;  // its unit is that of the entry's coordinate
     if (ratios.contains(parameter.id) && rotary == parameter.id) {
       EXPECT_EQ(linear, parameter.id);
       continue;

@@ -1,4 +1,4 @@
-// What holds for every drive of a family, whatever its values.
+// Properties that hold for every drive of a family, whatever its values.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

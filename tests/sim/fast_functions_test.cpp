@@ -49,8 +49,8 @@ TEST(Power, IsThePowerInsideAndOutsideItsTable) {
 }
 
 TEST(SlideThroughChange, IsAsGoodAsTwoSteps) {
-  // A dead time of 0.4 ms against the same drive without, in steps of 0.2 ms, five to a command. What steps of 1 ms
-  // cost where the command changes between them says how near they should be.
+  // A dead time of 0.4 ms against the same drive without, in steps of 0.2 ms, five per command. The error of 1 ms steps
+  // when the command changes within them gives the tolerance.
   const Drive late(with(sim_test::stribeck_drive(), "input_delay", {{"delay", 0.0004}}));
   const Drive prompt(sim_test::stribeck_drive());
   const auto command = [](int k) { return 3.0 * std::sin(0.02 * k) + 0.5 * std::sin(0.3 * k); };

@@ -1,4 +1,4 @@
-// Torques that act on the shaft beside the motor's, each against its closed form.
+// Torques on the shaft in addition to the motor's, each against its closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>

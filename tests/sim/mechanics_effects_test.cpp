@@ -89,7 +89,7 @@ TEST(Compliance, AStuckTableTwistsTheSpringOnly) {
   EXPECT_EQ(drive.encoder(state), state.x) << "the encoder sits on the motor";
 }
 
-/// At an even speed the spring carries the load's own friction: dry and viscous in parts of their own.
+/// At constant speed the spring carries the load's own friction: separate parts of dry and viscous friction.
 TEST(Compliance, CarriesTheLoadsPartOfEachFriction) {
   const double torque = 3.0 * kCoulomb, dry = 0.5, viscous = 0.2;
   const auto twist_with = [&](std::map<std::string, double> parts) {

@@ -1,4 +1,4 @@
-// What encoder and tachometer add to the motion, each against its closed form.
+// Errors of encoder and tachometer, each against its closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>

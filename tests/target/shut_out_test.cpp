@@ -1,4 +1,4 @@
-// How long requests keep the control interrupt out of the emulated processor while both axes move.
+// How long requests block the control interrupt of the emulated processor while both axes move.
 #include <gtest/gtest.h>
 
 #include "tests/target/cost/cost.hpp"

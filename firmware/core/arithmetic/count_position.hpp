@@ -57,7 +57,7 @@ class CountRange {
   std::uint64_t span_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Distance from a whole count to a position, counts, as a scalar. Beyond 2^31 counts it stays at that limit.
+/// Distance from a whole count to a position, in counts, as a scalar; limited to +-2^31 counts.
 template <typename Scalar>
 constexpr Scalar counts_from(std::int64_t origin, const CountPosition& position) {
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
@@ -74,7 +74,7 @@ constexpr Scalar counts_near(std::int64_t origin, const CountPosition& position)
          ScalarTraits<Scalar>::from_fraction(position.fraction);
 }
 
-/// Extends a counter that wraps at 2^32 to 64 bits, from a first reading in -2^31..2^31-1. Right while it moves less
+/// Extends a counter that wraps at 2^32 to 64 bits, starting from a reading in -2^31..2^31-1. Correct if it moves less
 /// than 2^31 counts between two readings.
 class CountExtender {
  public:
@@ -91,18 +91,18 @@ class CountExtender {
     return travel;
   }
 
-  /// The same travel as in the last sample comes next, whatever came between.
+  /// Assumes the same travel as in the last sample for the next one, whatever the counter does.
   constexpr void skip(std::int32_t travel) {
     last_reading_ += static_cast<std::uint32_t>(travel);
     counts_ += travel;
   }
 
-  /// What a reading near the last one means.
+  /// The extended position of a reading near the last one.
   constexpr std::int64_t counts_at(std::uint32_t reading) const {
     return counts_ + static_cast<std::int32_t>(reading - last_reading_);
   }
 
-  /// Counts from another origin: what was 0 is `by` now.
+  /// Moves the origin: the former position 0 becomes `by`.
   constexpr void shift(std::int64_t by) { counts_ += by; }
 
   constexpr std::int64_t counts() const { return counts_; }

@@ -10,9 +10,9 @@
 
 namespace firmware {
 
-/// raw / 2^fraction_bits. Sums, differences, products and quotients round to nearest (quotients toward zero) and stay
-/// at the limits of the range instead of wrapping: a control signal far out of range is as saturated as one at its
-/// limit. Constructors take constants; parameters come in through from().
+/// raw / 2^fraction_bits. Sums, differences, products and quotients round to nearest (quotients toward zero) and
+/// saturate instead of wrapping: a control signal far out of range has the same effect as one at its limit.
+/// Constructors take constants; parameters are converted by from().
 template <int fraction_bits>
 class Fixed {
  public:
@@ -96,7 +96,7 @@ struct ScalarTraits<Fixed<fraction_bits>> {
     return Scalar::from_raw(Scalar::saturate(std::int64_t{value} << fraction_bits));
   }
 
-  /// The product of a whole number and a scalar, without first squeezing the number into the scalar's range.
+  /// Product of a whole number and a scalar; the number need not fit the scalar's range.
   static constexpr Scalar times(std::int32_t number, Scalar factor) {
     return Scalar::from_raw(Scalar::saturate(std::int64_t{number} * factor.raw()));
   }
@@ -126,7 +126,7 @@ struct ScalarTraits<Fixed<fraction_bits>> {
   static constexpr bool is_nan(Scalar) { return false; }
   static constexpr Scalar magnitude(Scalar value) { return value.raw() < 0 ? Scalar{} - value : value; }
 
-  /// A value at a limit of the range stands for one that did not fit.
+  /// A value at a limit of the range counts as one that did not fit.
   static constexpr bool is_finite(Scalar value) {
     return value.raw() != Scalar::kMost && value.raw() != Scalar::kLeast;
   }

@@ -1,4 +1,4 @@
-// What the control core asks of its number type: float on a processor with FPU, fixed point elsewhere.
+// Requirements of the control core on its number type: float on a processor with FPU, fixed point elsewhere.
 #pragma once
 
 #include <bit>

@@ -29,7 +29,7 @@ class BacklashCrossing {
     reset();
   }
 
-  /// In the middle of the gap; for an axis whose position has just become known.
+  /// In the middle of the gap; for an axis whose position has just been found.
   constexpr void reset() {
     offsets_ = {};
     begin_ = target_ = 0;
@@ -40,7 +40,7 @@ class BacklashCrossing {
   constexpr bool is_on() const { return parameters_.on; }
   constexpr bool is_crossing() const { return offsets_[kPreviewSamples] != target_ || offsets_[0] != target_; }
 
-  /// What is added to the reference's newest increment.
+  /// Amount added to the reference's newest increment.
   constexpr Increment next(Increment reference) {
     if (reversal_.turns(reference)) {
       begin_ = offsets_[kPreviewSamples];
@@ -52,8 +52,8 @@ class BacklashCrossing {
     return offsets_[kPreviewSamples] - offsets_[kPreviewSamples - 1];
   }
 
-  /// The friction of the table that reaches the motor in the period that begins, -1..1 of it with the sign of its
-  /// effort: none inside the gap, all once the twist has built up.
+  /// Part of the table's friction that acts on the motor in the period that begins, -1..1, with the sign of its torque:
+  /// none inside the gap, all of it after the twist has built up.
   template <typename Scalar>
   constexpr Scalar carried() const {
     const Increment middle = offsets_[0] / 2 + offsets_[1] / 2;
@@ -65,7 +65,7 @@ class BacklashCrossing {
     return side * ScalarTraits<Scalar>::from_increment(share << (kFractionBits - 16));
   }
 
-  /// What has been added to the reference `ahead` samples from now, 2^-48 counts.
+  /// Total amount added to the reference `ahead` samples from now, 2^-48 counts.
   constexpr Increment offset(int ahead) const { return offsets_[ahead]; }
   /// Counts, rounded up, of the largest offset.
   constexpr std::int64_t largest_offset() const {

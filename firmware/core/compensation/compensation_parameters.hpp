@@ -1,4 +1,4 @@
-// What a drive does besides inertia and the friction of eq. (19), as far as feed-forward can take it away.
+// Effects of a drive besides inertia and the friction of eq. (19) that feed-forward can compensate.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct CompensationParameters {
   bool cogging_on = false;
   std::array<TravelHarmonic<Scalar>, kCoggingHarmonics> cogging_V{};  ///< effort that cogging adds to the motor's, V
   bool position_friction_on = false;
-  TravelHarmonic<Scalar> position_friction{};  ///< what friction grows by along the travel, relative
+  TravelHarmonic<Scalar> position_friction{};  ///< relative increase of the friction along the travel
   PreslidingParameters<Scalar> presliding{};
   BacklashParameters backlash{};
   PitchParameters pitch{};

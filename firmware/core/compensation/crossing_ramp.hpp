@@ -1,4 +1,4 @@
-// From one offset of the reference to another in a fixed time, without a jump.
+// A smooth transition from one offset of the reference to another in a fixed time.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace firmware {
 
-/// The speed of the way across rises and falls in a straight line.
+/// The transition's speed rises and falls linearly.
 class CrossingRamp {
  public:
   static constexpr std::int32_t kLongest = 4096;
@@ -24,7 +24,7 @@ class CrossingRamp {
   constexpr void end() { sample_ = samples_; }
   constexpr bool is_under_way() const { return sample_ < samples_; }
 
-  /// A sample farther on the way between these two, while it is under way. Either may move meanwhile.
+  /// One sample farther between these two offsets, while the transition lasts. Either may change meanwhile.
   constexpr Increment next(Increment from, Increment to) {
     if (++sample_ >= samples_) return to;
     // The area under the triangle, in 2^-15 of the whole: 2 s^2 up to the middle, 1 - 2 (1 - s)^2 after it.

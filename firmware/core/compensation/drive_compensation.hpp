@@ -1,4 +1,4 @@
-// Feed-forward of what a drive does besides inertia, from the reference alone.
+// Feed-forward of effects besides inertia, from the reference alone.
 #pragma once
 
 #include "firmware/core/compensation/compensation_parameters.hpp"
@@ -6,8 +6,8 @@
 
 namespace firmware {
 
-/// Friction feed-forward extended by cogging, friction that varies along the travel, presliding, and friction that does
-/// not reach the motor inside a gap. An axis that has none of them asks is_on() and nothing more.
+/// Extends the friction feed-forward by cogging, friction that varies along the travel, presliding, and friction that
+/// does not act on the motor inside a gap. For an axis without any of them, is_on() is the only cost.
 template <typename Scalar>
 class DriveCompensation {
  public:
@@ -24,8 +24,8 @@ class DriveCompensation {
   constexpr bool is_on() const { return is_on_; }
   constexpr void reset() { presliding_.reset(); }
 
-  /// Volts for the period in which the reference moves at `velocity`, with `middle` its position halfway. What is bound
-  /// to places (cogging, friction along the travel) acts only where `middle` is counted from home.
+  /// Volts for the period in which the reference moves at `velocity`; `middle` is its position halfway. Effects that
+  /// depend on the position (cogging, friction along the travel) act only if `middle` is counted from home.
   constexpr Scalar advance(const FrictionFeedforward<Scalar>& friction, const BacklashCrossing& backlash,
                            Scalar velocity, const CountPosition& middle, bool homed) {
     Scalar sum = friction_on_ ? friction_V(friction, backlash, velocity, middle, homed) : Scalar(0);

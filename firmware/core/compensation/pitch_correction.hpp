@@ -1,4 +1,4 @@
-// Pitch error compensation: the reference goes beside the place that is wanted by what the screw is off there.
+// Pitch error compensation: the reference deviates from the wanted position by the screw's error there.
 #pragma once
 
 #include <algorithm>
@@ -19,9 +19,9 @@ struct PitchParameters {
   std::int32_t crossing_samples = 1;  ///< 1..CrossingRamp::kLongest
 };
 
-/// Subtracts the deviation of the side to which the reference moves, in a straight line from point to point; before the
-/// first motion the mean of both sides. Acts once the axis is homed. Wherever the offset would jump (a reversal, a home
-/// found or lost), it crosses over in a fixed number of samples.
+/// Subtracts the deviation for the direction in which the reference moves, interpolated linearly between points; before
+/// the first motion the mean of both directions. Acts once the axis is homed. Where the offset would jump (a reversal,
+/// a home found or lost), it changes over a fixed number of samples.
 class PitchCorrection {
  public:
   constexpr void configure(const PitchParameters& parameters) {
@@ -30,13 +30,13 @@ class PitchCorrection {
     reset();
   }
 
-  /// Of an axis that is off; it must stay where it is as long as it is used.
+  /// For a disabled axis; the table must stay in place while it is used.
   constexpr void use(PitchTable table) {
     table_ = table;
     reset();
   }
 
-  /// For an axis whose position has just become known.
+  /// For an axis whose position has just been found.
   constexpr void reset() {
     reversal_.reset();
     offsets_ = {};
@@ -48,7 +48,7 @@ class PitchCorrection {
   constexpr bool is_on() const { return on_; }
   constexpr bool is_crossing() const { return ramp_.is_under_way(); }
 
-  /// The loop closes where the axis stands: the reference begins at `place`, what is wanted beside it.
+  /// The loop closes at the axis's position: the reference begins at `place`, the wanted position beside it.
   [[gnu::noinline]] constexpr void enter(const CountPosition& place, bool homed) {
     if (!on_) return;
     acts_ = homed;
@@ -64,7 +64,7 @@ class PitchCorrection {
   }
   constexpr void leave() { ramp_.end(); }
 
-  /// What is added to the reference's newest increment.
+  /// Amount added to the reference's newest increment.
   [[gnu::noinline]] constexpr Increment next(Increment reference, bool homed) {
     position_.advance(reference);
     if (reversal_.turns(reference) || homed != acts_) {
@@ -77,13 +77,13 @@ class PitchCorrection {
     return offsets_[kPreviewSamples] - offsets_[kPreviewSamples - 1];
   }
 
-  /// The same place, counted from another origin.
+  /// The same position, counted from another origin.
   constexpr void shift(std::int64_t counts) {
     position_.counts += counts;
     cross();
   }
 
-  /// What has been added to the reference `ahead` samples from now, 2^-48 counts.
+  /// Total amount added to the reference `ahead` samples from now, 2^-48 counts.
   constexpr Increment offset(int ahead) const { return offsets_[ahead]; }
 
   /// Counts, rounded up, of the largest offset.
@@ -97,7 +97,7 @@ class PitchCorrection {
   }
 
  private:
-  /// Between two points, of one side: an offset that changes in proportion.
+  /// Between two points, for one direction: an offset that changes linearly.
   struct Stretch {
     std::int64_t begin = 0, end = 0;  ///< counts
     Increment offset = 0, slope = 0;  ///< at `begin`; a count
@@ -107,7 +107,7 @@ class PitchCorrection {
   constexpr void cross() {
     begin_ = offsets_[kPreviewSamples];
     ramp_.begin();
-    stretch_ = {};  // of another side, perhaps
+    stretch_ = {};  // perhaps for the other direction
   }
 
   constexpr Increment wanted() {
@@ -154,7 +154,7 @@ class PitchCorrection {
   PitchTable table_;
   CrossingRamp ramp_;
   ReversalWatch reversal_;
-  CountPosition position_{};  ///< that is wanted of the table, kPreviewSamples from now
+  CountPosition position_{};  ///< wanted position of the table, kPreviewSamples from now
   Increment begin_ = 0;
   Stretch stretch_;
   std::array<Increment, kPreviewSamples + 1> offsets_{};

@@ -1,4 +1,4 @@
-// What was measured of a screw: by how much the table is beyond where the encoder says, at places along the travel.
+// Measured errors of a screw: deviation of the table from the encoder's position, at points along the travel.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@ namespace firmware {
 
 inline constexpr std::size_t kMostPitchPoints = 256;
 
-/// Deviations as ISO 230-2 has them: actual minus commanded position of the table, for approach in the positive and in
-/// the negative direction. In 2^-16 counts; as they lie in flash.
+/// Deviations as in ISO 230-2: actual minus commanded position of the table, for approach in the positive and in the
+/// negative direction. In 2^-16 counts; stored in flash in this form.
 struct PitchPoint {
   std::int32_t counts = 0;  ///< from home
   std::int32_t forward = 0, backward = 0;
@@ -18,11 +18,11 @@ struct PitchPoint {
 };
 static_assert(sizeof(PitchPoint) == 12);
 
-/// In rising order; before the first and behind the last the deviation stays what it is there. Empty: none.
+/// In ascending order; the deviation is constant before the first and after the last point. Empty: none.
 using PitchTable = std::span<const PitchPoint>;
 
 inline constexpr std::int32_t kLargestDeviation = 1 << 29;  ///< 2^13 counts
-/// 2^-16 counts a count: a quarter of what an interpolated reference may be faster than its limit
+/// 2^-16 counts per count: a quarter of the margin of an interpolated reference above its velocity limit
 /// (supervision/increment_limits.hpp).
 inline constexpr std::int64_t kSteepestDeviation = 65536 / 64;
 

@@ -33,7 +33,7 @@ class PreslidingFriction {
     reset();
   }
 
-  /// The contact relaxed, as after a rest without command.
+  /// The contact relaxed, as after standstill without command.
   constexpr void reset() { deflection_V_ = Scalar(0); }
 
   /// Mean over the period in which the reference moves at `velocity`; `sliding_V` is the friction of that velocity with

@@ -1,4 +1,4 @@
-// To which side a reference moves.
+// Direction in which a reference moves.
 #pragma once
 
 #include "firmware/core/arithmetic/count_position.hpp"
@@ -9,8 +9,8 @@ class ReversalWatch {
  public:
   constexpr void reset() { *this = {}; }
 
-  /// Each increment of the reference: whether it has turned round. One at rest may dither by its rounding, which is no
-  /// reversal.
+  /// Takes each increment of the reference; returns whether it has reversed. A reference at rest may dither by its
+  /// rounding, which does not count.
   constexpr bool turns(Increment reference) {
     const int direction = reference > 0 ? 1 : (reference < 0 ? -1 : side_);
     if (direction == side_) {

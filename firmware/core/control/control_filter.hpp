@@ -33,7 +33,7 @@ class ControlFilters {
     reset();
   }
   constexpr bool is_on() const { return is_on_; }
-  /// The next input is taken for one that has been there for long: it comes out as it is.
+  /// Assumes that the next input has been constant for long: the output equals it.
   constexpr void reset() { is_new_ = true; }
 
   [[gnu::noinline]] constexpr Scalar next(Scalar value) {

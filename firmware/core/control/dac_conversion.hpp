@@ -1,4 +1,4 @@
-// Volts to D/A words, and what those words really put out.
+// Converts volts to D/A codes and gives the voltage of each code.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ class DacConversion {
     return {.code = code, .volts = Traits::times(code, resolution_V_)};
   }
 
-  /// False for what is no number, too.
+  /// False also for NaN.
   constexpr bool is_within(Scalar volts) const { return Traits::magnitude(volts) <= limit_V_; }
 
   constexpr std::int32_t max_code() const { return max_code_; }

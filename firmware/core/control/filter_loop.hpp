@@ -1,4 +1,4 @@
-// Whether a loop settles with the filters behind its feedback: algebra, of bounded work whatever the poles are.
+// Checks that a loop with filters in its feedback is stable: algebra with bounded work, whatever the poles are.
 #pragma once
 
 #include <array>
@@ -94,7 +94,7 @@ class FilterLoop {
     return true;
   }
 
-  /// Stretches s so that first and last coefficient are of one size: Routh's table stays within a float's range.
+  /// Scales s so that the first and last coefficients have equal size: Routh's table then stays within a float's range.
   constexpr void normalise(Polynomial& p) const {
     if (!(p[0] > 0.0f) || !(p[degree_] > 0.0f)) return;
     float stretch = 1.0f;

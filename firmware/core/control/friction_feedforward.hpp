@@ -15,8 +15,8 @@ struct FrictionDirection {
   Scalar static_V{};
   Scalar coulomb_V{};
   Scalar viscous_V_s_per_rad{};  ///< V per rad/s (V per m/s), added to what the drive model already contains
-  Scalar omega1_rad_s{};         ///< rad/s (m/s); 0: static friction ends with the first motion
-  Scalar omega2_rad_s{};         ///< rad/s (m/s); 0: Coulomb friction is there from the first motion
+  Scalar omega1_rad_s{};         ///< rad/s (m/s); 0: static friction ends as soon as the axis moves
+  Scalar omega2_rad_s{};         ///< rad/s (m/s); 0: Coulomb friction acts as soon as the axis moves
 };
 
 template <typename Scalar>
@@ -35,11 +35,11 @@ constexpr Scalar friction_curve(const FrictionDirection<Scalar>& side, Scalar sp
          side.viscous_V_s_per_rad * speed;
 }
 
-/// The curve as cubic pieces that agree with it in value and slope at their ends: narrow pieces up to eight times the
-/// smaller omega, where exp(-8) = 3e-4 of its exponential is left, wide ones up to sixteen times the larger, a straight
-/// line beyond, where exp(-16) = 1e-7 is left. A piece spans at most a quarter, or half, of the omega that rules there,
-/// and so errs by at most h^4/384: 1.7e-4 of the level, half a step of the converter at 1 V. That holds for omegas
-/// within a factor of ten; at fifty a thousandth of the level is lost.
+/// The curve as cubic pieces with its values and slopes at their ends: narrow pieces up to eight times the smaller
+/// omega, where exp(-8) = 3e-4 of its exponential is left, wide ones up to sixteen times the larger, a straight line
+/// beyond, where exp(-16) = 1e-7 is left. A piece spans at most a quarter or half of the dominant omega, so its error
+/// is at most h^4/384: 1.7e-4 of the level, half a step of the converter at 1 V. That holds for omegas within a factor
+/// of ten; at a factor of fifty the error is a thousandth of the level.
 template <typename Scalar>
 class FrictionPieces {
  public:
@@ -65,8 +65,8 @@ class FrictionPieces {
   static constexpr std::int32_t kNarrow = 32, kWide = 32;
   using Cubic = std::array<Scalar, 4>;
 
-  /// Pieces of equal width from `begin` to `end`, over a variable that runs from 0 to 1 in each; and one beyond,
-  /// because rounding may carry a speed just past the last.
+  /// Pieces of equal width from `begin` to `end`, each over a variable from 0 to 1, and one more, because rounding may
+  /// put a speed just beyond the last.
   constexpr void fill(std::int32_t first, Scalar begin, Scalar end, Scalar& per_speed) {
     const std::int32_t number = first == 0 ? kNarrow : kWide;
     const Scalar width = (end - begin) / ScalarTraits<Scalar>::from_integer(number);

@@ -22,7 +22,7 @@ struct AxisEstimate {
   std::int64_t anchor_counts = 0;  ///< the encoder's last reading
   Scalar offset{};                 ///< estimated position minus the anchor, mm (m)
   Scalar velocity{};               ///< rad/s (m/s)
-  Scalar disturbance{};            ///< V at the D/A converter: what the model's input lacks
+  Scalar disturbance{};            ///< V at the D/A converter: equivalent input disturbance
 };
 
 template <typename Scalar>
@@ -35,13 +35,13 @@ class KalmanEstimator {
     count_length_ = count_length;
   }
 
-  /// Standing at the given reading, without disturbance.
+  /// At rest at the given reading, without disturbance.
   static constexpr AxisEstimate<Scalar> at_rest(std::int64_t encoder_counts) {
     return {.anchor_counts = encoder_counts};
   }
 
-  /// Eq. (43), written as prediction and innovation, which is the same sum. `input`: u(k-1), V, what the drive was
-  /// given since the last call. `velocity`: tachometer, rad/s (m/s).
+  /// Eq. (43), written as prediction and innovation, which is the same sum. `input`: u(k-1), V, the drive's input since
+  /// the last call. `velocity`: tachometer, rad/s (m/s).
   constexpr void update(AxisEstimate<Scalar>& estimate, Scalar input, std::int64_t encoder_counts,
                         Scalar velocity) const {
     const Prediction predicted = predict(estimate, input, encoder_counts);

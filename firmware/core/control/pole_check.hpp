@@ -1,4 +1,4 @@
-// Where the poles of the sampled estimator and of the sampled loop lie: whether a set of gains may close a loop at all.
+// Checks the poles of the sampled estimator and loop: whether a set of gains may close a loop.
 #pragma once
 
 #include <array>
@@ -11,22 +11,22 @@ namespace firmware {
 
 enum class PoleProblem : std::uint8_t {
   none,
-  unstable,  ///< a pole on or outside the unit circle; gains that do nothing leave one on it
-  undamped,  ///< a pair that is damped by less than kLeastDamping, or a pole that rings at half the sample rate
-  slow,      ///< a mode that takes longer than kLongestMode_s: what it should correct drifts away meanwhile
+  unstable,  ///< a pole on or outside the unit circle; gains of zero leave one on it
+  undamped,  ///< a pair with less damping than kLeastDamping, or a pole that rings at half the sampling rate
+  slow,      ///< a mode that takes longer than kLongestMode_s, so that the error drifts away meanwhile
 };
 
 /// Of a pair of poles, as seen by the bilinear map s = (z - 1) / (z + 1), which is the damping of a continuous pair
 /// where the pair is slow against the sample rate.
 inline constexpr float kLeastDamping = 0.1f;
-/// A negative real pole, and the radius of a pair with a negative real part: less than a fifth may be left of such an
-/// oscillation after ten samples.
+/// A negative real pole, and the radius of a pair with a negative real part: after ten samples less than a fifth of
+/// such an oscillation may be left.
 inline constexpr float kFastestRinging = 0.85f;
 /// Four of the monitors' load time.
 inline constexpr float kLongestMode_s = 4.0f * kLoadTime_s;
 
-/// Characteristic polynomials in delta = z - 1. Poles of a fast control rate crowd at z = 1, where coefficients in z
-/// cancel in single precision; as powers of delta they keep their digits.
+/// Characteristic polynomials in delta = z - 1. At a fast control rate the poles are close to z = 1, where coefficients
+/// in z cancel in single precision; as powers of delta they keep their precision.
 namespace poles {
 
 /// delta^2 + linear delta + constant
@@ -73,7 +73,7 @@ constexpr Cubic of_estimator(const AxisParameters<Scalar>& p) {
           .constant = -determinant};
 }
 
-/// `least`: by how much a mode must shrink in a sample at least.
+/// `least`: smallest relative decay of a mode in one sample.
 constexpr PoleProblem check(const Quadratic& q, float least) {
   const float trace = 2.0f - q.linear, product = 1.0f - q.linear + q.constant;  // of z
   const float at_minus_one = 4.0f - 2.0f * q.linear + q.constant;
@@ -117,8 +117,8 @@ constexpr PoleProblem loop_problem(const AxisParameters<Scalar>& p) {
   return poles::check(poles::of_loop(p), poles::real(p.monitors.load_share) * (kLoadTime_s / kLongestMode_s));
 }
 
-/// The characteristic polynomial of the loop with its filters has all its roots within the circle of the loop's own
-/// decay over kSlowerWithFilters (filter_loop.hpp): no mode of it may take as many times longer than the loop alone.
+/// All roots of the loop's characteristic polynomial with filters are within the circle of the loop's own decay over
+/// kSlowerWithFilters (filter_loop.hpp): no mode may take that many times longer than the loop without filters.
 template <typename Scalar>
 [[gnu::noinline]] constexpr bool settles_with_filters(const AxisParameters<Scalar>& p) {
   constexpr float kSlowerWithFilters = 10.0f;
@@ -134,7 +134,7 @@ template <typename Scalar>
   return joined.settles(0.5f * (loop.linear - loop.constant) / kSlowerWithFilters);
 }
 
-/// A filter that is switched on makes sense, and the loop stands it.
+/// A filter that is switched on has valid parameters, and the loop is stable with it.
 template <typename Scalar>
 constexpr bool are_filters_sound(const AxisParameters<Scalar>& p) {
   bool is_on = false;

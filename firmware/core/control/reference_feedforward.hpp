@@ -17,8 +17,8 @@ inline constexpr int kPreviewSamples = 2;
 /// Weights of the reference velocity and of its changes in the samples to come, in V per rad/s, where
 /// w(k) = (x(k) - x(k-1)) / (lead Ts). The control law is
 ///     u = Kc1 (xref(k) - x) - Kc2 w + velocity * wref(k) + sum of change[i] * (wref(k+i+1) - wref(k+i)).
-/// Weights of wref(k), wref(k+1), wref(k+2) would be the same law, but large and of opposite signs: at speed their
-/// products leave the range of fixed point, and digits of float.
+/// Weights of wref(k), wref(k+1), wref(k+2) would give the same law, but they are large and of opposite signs: at speed
+/// their products exceed the range of fixed point and lose precision in float.
 template <typename Scalar>
 struct ReferenceFeedforward {
   Scalar velocity{};

@@ -1,4 +1,4 @@
-// The excitation itself, one value a sample.
+// Generates the excitation, one value per sample.
 #pragma once
 
 #include "firmware/core/excitation/excitation_plan.hpp"
@@ -11,7 +11,7 @@ namespace firmware {
 template <typename Scalar>
 class ExcitationGenerator {
  public:
-  /// `plan` is possible, and outlives its use. Divides: for the background.
+  /// `plan` is possible and must outlive its use. Divides: for the background.
   constexpr void start(const ExcitationPlan<Scalar>& plan) {
     plan_ = &plan;
     level_ = 0;
@@ -29,7 +29,7 @@ class ExcitationGenerator {
     rate_ = (sweep * (std::int64_t{1} << 31) / plan.samples) * 2;
   }
 
-  /// `turn`: the axis is on its way out of the box, or near its speed.
+  /// `turn`: the axis is leaving the box, or near its speed limit.
   constexpr Scalar next(bool turn) {
     switch (plan_->kind) {
       case ExcitationKind::train:
@@ -46,7 +46,7 @@ class ExcitationGenerator {
     return Scalar(0);
   }
 
-  /// What is periodic goes away within the time of its fade; the others end at once.
+  /// A periodic excitation ends within its fade time; the others end at once.
   constexpr void end() { is_fading_ = true; }
   constexpr bool is_gone() const {
     const bool ends_at_once = plan_->kind == ExcitationKind::train || plan_->kind == ExcitationKind::ramp;

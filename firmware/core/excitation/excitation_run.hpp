@@ -7,39 +7,39 @@
 
 namespace firmware {
 
-/// Numbers are permanent: they stand in replies.
+/// Numbers are permanent, because replies contain them.
 enum class ExcitationPhase : std::uint8_t {
   idle = 0,
-  opening = 1,  ///< the amplifier gets its enable
+  opening = 1,  ///< the amplifier is being enabled
   running = 2,
-  stopping = 3,  ///< the excitation goes away, and the axis comes to rest
+  stopping = 3,  ///< the excitation fades out, and the axis comes to rest
   done = 4,
 };
 
 enum class ExcitationEnd : std::uint8_t {
   none = 0,
   completed = 1,  ///< its time is over
-  asked = 2,      ///< somebody stopped it
+  asked = 2,      ///< it was stopped by request
   travel = 3,     ///< the axis left the box
   speed = 4,
-  no_motion = 5,  ///< the command was large for long, and the encoder showed nothing
-  fault = 6,      ///< the axis stopped for another reason: its fault, or a disable
+  no_motion = 5,  ///< the command was large for long without an encoder count
+  fault = 6,      ///< the axis stopped for another reason: a fault, or a disable
   refused = 7,    ///< the axis could not be enabled
   blind = 8,      ///< the tachometer shows motion that the encoder does not
 };
 
-/// It gives the input of each step before that step. The box is judged by the encoder's raw counts, and by the
-/// tachometer where its scale is known, so it needs neither model nor estimate. In an open loop the axis is stopped by
-/// the command that accelerated it, turned round: which way a command accelerates the drive shows in the excitation
-/// itself, as the sign of the sum of command times change of speed. The command falls to 0 when the axis turns back,
-/// when it has slowed to the encoder's resolution, or when braking makes it faster. A closed loop stops as its
-/// reference does. A train turns round in time: a drive that took a way to reach its speed needs no longer way, under
-/// the command turned round, to lose it again; friction helps it. The half more is for levels of unequal size.
+/// Computes the input before each step. It checks the box with the encoder's raw counts, and with the tachometer if its
+/// scale is known, so it needs neither model nor estimate. In an open loop it stops the axis by reversing the command
+/// that accelerated it. The direction in which a command accelerates the drive follows from the excitation itself, as
+/// the sign of the sum of command times change of speed. The command falls to 0 when the axis reverses, when it has
+/// slowed to the encoder's resolution, or when braking makes it faster. A closed loop stops as its reference does. A
+/// train reverses in time: a drive needs no longer distance to lose its speed under the reversed command than it took
+/// to reach it; friction helps. The additional half is for levels of unequal size.
 template <typename Scalar>
 class ExcitationRun {
  public:
-  /// What takes long, and a control interrupt need not wait for, while nothing is active. `plan` is possible, and
-  /// outlives the run.
+  /// The slow part of the start, outside the control interrupt, while nothing is active. `plan` is possible and must
+  /// outlive the run.
   constexpr void prepare(const ExcitationPlan<Scalar>& plan) {
     plan_ = &plan;
     room_ = plan.box.travel_counts - plan.box.travel_counts / 10;
@@ -47,7 +47,7 @@ class ExcitationRun {
     nearly_too_fast_ = plan.box.speed / 320;
     generator_.start(plan);
   }
-  /// In an open loop the axis is enabled once it may be; a closed loop is enabled already.
+  /// In an open loop the axis is enabled when that is allowed; a closed loop is enabled already.
   constexpr void start() {
     phase_ = ExcitationPhase::opening;
     end_ = ExcitationEnd::none;
@@ -81,7 +81,7 @@ class ExcitationRun {
   constexpr std::int32_t farthest() const { return farthest_; }  ///< counts from where it began
   constexpr std::int32_t fastest() const { return fastest_; }    ///< counts in kSpeedSamples
 
-  /// Before the axis's step: puts the excitation in. A SupervisedAxis.
+  /// Call it before the axis's step: applies the excitation. For a SupervisedAxis.
   template <typename Axis>
   constexpr void before_step(Axis& axis) {
     const bool is_on = axis.state() == SupervisorState::enabled;
@@ -106,9 +106,9 @@ class ExcitationRun {
   using Traits = ScalarTraits<Scalar>;
   static constexpr std::uint32_t kLongestOpening = 1000;  ///< samples
   static constexpr std::int32_t kStill = 20;              ///< samples of a standstill
-  static constexpr Scalar kUneven{0.6f};                  ///< breakaway in one place above that in another
-  static constexpr int kSlipShift = 6;                    ///< slip: less than this part, 2^-n, of the window's half
-  static constexpr std::int32_t kFlicker = 2;             ///< counts of an axis that stands, on an encoder's edge
+  static constexpr Scalar kUneven{0.6f};       ///< excess of the breakaway command in one place over that in another
+  static constexpr int kSlipShift = 6;         ///< slip: less than this part, 2^-n, of the window's half
+  static constexpr std::int32_t kFlicker = 2;  ///< counts of a standing axis on an encoder edge
 
   template <typename Axis>
   constexpr void open(Axis& axis, bool is_on) {
@@ -150,7 +150,7 @@ class ExcitationRun {
     fastest_ = larger(fastest_, magnitude(speed_));
   }
 
-  /// Out of line, like does_nothing(): a closed loop has no time to save registers for what it has no use for.
+  /// Out of line, like does_nothing(): a closed loop has no time to save registers that it does not use.
   [[gnu::noinline]] constexpr void see_open_loop(std::int32_t change_of_speed) {
     const bool is_still = magnitude(way_ - still_at_) <= kFlicker;
     still_before_ = still_samples_;
@@ -160,7 +160,7 @@ class ExcitationRun {
     if (phase_ == ExcitationPhase::running) learn(change_of_speed);
   }
 
-  /// Which way a command accelerates: the sum of signs of command times change of speed. The speed's middle is two
+  /// Direction in which a command accelerates: the sum of signs of command times change of speed. The mean speed is two
   /// samples older than the last command.
   constexpr void learn(std::int32_t change) {
     const Scalar value = earlier_value_[0];
@@ -173,7 +173,7 @@ class ExcitationRun {
   template <typename Telemetry>
   constexpr void judge(const Telemetry& seen) {
     if (magnitude(way_) > plan_->box.travel_counts) return leave(ExcitationEnd::travel);
-    // One count is the encoder's resolution, and no speed.
+    // One count is the encoder's resolution and does not count as speed.
     if (magnitude(speed_) - 1 > too_fast_) return leave(ExcitationEnd::speed);
     if (plan_->box.drive_velocity > Scalar(0)) {
       if (Traits::magnitude(seen.tachometer_velocity) > plan_->box.drive_velocity) return leave(ExcitationEnd::speed);
@@ -183,11 +183,11 @@ class ExcitationRun {
     if (does_nothing()) leave(ExcitationEnd::no_motion);
   }
 
-  /// No more than a flicker of the encoder under a command near the largest, for as long as the plan says: all in all
-  /// before the axis has moved at all, at one time afterwards, for it may hang in a cog, or be shaken too quickly to
-  /// move. An encoder that died in motion looks alike. Where no tachometer shows that, a standstill that began more
-  /// abruptly than the axis ever changed its speed is not believed: then a command well above what has moved the axis
-  /// this way before has only four times the longest silence until then. Weight, cogging and friction differ by
+  /// The encoder shows at most a flicker under a command near the largest, for the plan's time. Before the first motion
+  /// the times add up; later they must be continuous, since the axis may hang in a cog or be shaken too fast to move.
+  /// An encoder that failed in motion looks the same. Without a tachometer to show that, a standstill that began more
+  /// abruptly than the axis ever changed its speed is doubted: then a command well above the one that moved the axis in
+  /// this direction may last only four times the longest silence so far. Weight, cogging and friction depend on the
   /// direction.
   [[gnu::noinline]] constexpr bool does_nothing() {
     const Scalar command = Traits::magnitude(last_value_);
@@ -208,7 +208,7 @@ class ExcitationRun {
       rest_at_ = way_;
       woken_by_ = last_value_;
     }
-    // Elastic slip and the gap of a gear are no breakaway.
+    // Elastic slip and gear play are not breakaway.
     const bool is_away = magnitude(way_ - rest_at_) > plan_->box.travel_counts >> kSlipShift;
     if (is_away && (woken_by_ > Scalar(0)) == (last_value_ > Scalar(0)) && Traits::magnitude(woken_by_) > moved_by)
       moved_by = Traits::magnitude(woken_by_);
@@ -217,8 +217,8 @@ class ExcitationRun {
     return false;
   }
 
-  /// The travel that the tachometer shows and the encoder does not. An eighth of all travel is forgiven, so that a
-  /// tachometer's scale may be off by as much.
+  /// Travel that the tachometer shows and the encoder does not. An eighth of all travel is tolerated, so that the
+  /// tachometer's scale may be wrong by as much.
   template <typename Telemetry>
   constexpr bool is_blind(const Telemetry& seen) {
     const Scalar travel = Traits::from_integer(seen.encoder_travel);
@@ -242,13 +242,13 @@ class ExcitationRun {
     waited_ = 0;
   }
 
-  /// On its way out, so far that it must turn round now; or nearly as fast as it may be. `is_turning()`: what acts now
-  /// slows it down already, and what comes next might not.
+  /// The axis is so far out, or so fast, that it must reverse now. `is_turning()`: the present input already slows it
+  /// down, and the next might not.
   template <typename IsTurning>
   constexpr bool must_turn(IsTurning is_turning) {
     const std::int32_t speed = magnitude(speed_);
     if (!may_turn_) {
-      // What turned it round still slows it down, until it goes the other way or gains speed again.
+      // The reversal still slows it down, until it moves the other way or gains speed again.
       if (speed < slowest_) slowest_ = speed;
       may_turn_ = is_forward_ != turned_forward_ || speed > slowest_ + slowest_ / 4 + kSpeedSamples;
       if (!may_turn_) return false;
@@ -306,7 +306,7 @@ class ExcitationRun {
       return;
     }
     if (last_ride_ != Scalar(0)) {
-      // A turn is decided in one sample and asked for in the next: either takes time.
+      // A reversal is decided in one sample and requested in the next.
       const Scalar wanted = phase_ == ExcitationPhase::running ? last_ride_ : Scalar(0);
       if (wanted != ride_)
         follow(axis, wanted);
@@ -327,7 +327,7 @@ class ExcitationRun {
     return velocity != Scalar(0) && (velocity > Scalar(0)) != (speed_ > 0);
   }
 
-  /// A jog is told only what is new to it.
+  /// A jog receives only changes.
   template <typename Axis>
   constexpr void follow(Axis& axis, Scalar velocity) {
     if (velocity == ride_) return;

@@ -1,4 +1,4 @@
-// Homing: finds the place that positions are counted from, by a switch, by an index pulse, or by both.
+// Homing: finds the origin of positions by a switch, an index pulse, or both.
 #pragma once
 
 #include <cstdint>
@@ -9,25 +9,25 @@
 namespace firmware {
 
 enum class HomingMode : std::uint8_t {
-  none = 0,              ///< nothing finds it: an operator says where the axis is
-  home_switch = 1,       ///< the place where the switch begins to be actuated
+  none = 0,              ///< none: an operator states the position
+  home_switch = 1,       ///< the position at which the switch is actuated
   index = 2,             ///< the next index pulse of the encoder
-  switch_and_index = 3,  ///< the first index pulse after the switch begins to be actuated
+  switch_and_index = 3,  ///< the first index pulse after the switch is actuated
 };
 
-/// Velocities in mm/s (m/s), ways in encoder counts.
+/// Velocities in mm/s (m/s), distances in encoder counts.
 template <typename Scalar>
 struct HomingParameters {
   HomingMode mode = HomingMode::none;
-  Scalar velocity{};              ///< of the search; its sign is the way to the switch; not 0
-  Scalar creep_velocity{};        ///< at which edge and index are found, > 0
-  std::int64_t travel = 0;        ///< longest way of each search, > 0
-  std::int64_t index_travel = 0;  ///< way within which an index pulse comes: a turn and a little more, > 0
-  std::int64_t position = 0;      ///< of the place that is found
+  Scalar velocity{};              ///< of the search; its sign is the direction of the switch; not 0
+  Scalar creep_velocity{};        ///< at which edge and index are measured, > 0
+  std::int64_t travel = 0;        ///< longest distance of each search, > 0
+  std::int64_t index_travel = 0;  ///< distance within which an index pulse comes: a little more than a turn, > 0
+  std::int64_t position = 0;      ///< position of the place that is found
   std::int64_t turn = 0;          ///< from one index pulse to the next; 0: not known, at most index_travel
 };
 
-/// What one control period saw.
+/// Inputs of one control period.
 struct HomingInputs {
   std::int64_t counts = 0;
   bool at_switch = false;
@@ -42,17 +42,17 @@ template <typename Scalar>
 struct HomingAction {
   HomingStep step = HomingStep::wait;
   Scalar velocity{};                  ///< of jog
-  std::int64_t found = 0;             ///< arrived: the counts of the place, as they have been counted so far
+  std::int64_t found = 0;             ///< arrived: the counts of the place, in the old origin
   AxisFault fault = AxisFault::none;  ///< failed
 };
 
-/// An index pulse must lie farther than this part of a turn, 2^-n, from the switch: a switch that acts a little earlier
-/// or later must not choose another pulse.
+/// An index pulse must be farther than this part of a turn, 2^-n, from the switch, so that a switch that acts a little
+/// earlier or later does not select another pulse.
 inline constexpr int kIndexMarginShift = 3;
 
-/// Drives onto the switch at the speed of the search, off it again, and onto it once more at creep; an index is awaited
+/// Moves onto the switch at search speed, off it again, and onto it once more at creep speed; then waits for an index
 /// in the same direction, so that backlash and hysteresis are always on the same side. An axis that begins on its
-/// switch leaves it first. Every way has its longest: the sequence ends, with a place or with a fault.
+/// switch leaves it first. Every distance is limited: the sequence ends with a position or with a fault.
 template <typename Scalar>
 class HomingSequence {
  public:
@@ -61,7 +61,7 @@ class HomingSequence {
     phase_ = Phase::idle;
   }
 
-  /// From rest. False without anything that could be found.
+  /// From rest. False if the mode finds nothing.
   constexpr bool begin() {
     if (parameters_.mode == HomingMode::none) return false;
     phase_ = Phase::beginning;
@@ -70,10 +70,10 @@ class HomingSequence {
   constexpr void abandon() { phase_ = Phase::idle; }
   constexpr bool is_active() const { return phase_ != Phase::idle; }
   constexpr const HomingParameters<Scalar>& parameters() const { return parameters_; }
-  /// Counts from the switch's edge to the index pulse that came next, whatever the sense; of the last search by both.
+  /// Counts from the switch's edge to the next index pulse, as a magnitude; of the last search by both.
   constexpr std::int64_t index_way() const { return index_way_; }
 
-  /// Once a control period while active.
+  /// Call it once per control period while active.
   constexpr HomingAction<Scalar> next(const HomingInputs& seen) {
     switch (phase_) {
       case Phase::idle:

@@ -23,7 +23,7 @@ class JogProfile {
     reset();
   }
 
-  /// Takes over at `velocity`, from an acceleration of at most one jerk: the next sample has none. The target is that
+  /// Continues at `velocity`, from an acceleration of at most one jerk: the next sample has none. The target is that
   /// velocity.
   constexpr void take_over(Increment velocity) {
     velocity_ = target_ = velocity;
@@ -32,7 +32,7 @@ class JogProfile {
     is_steady_ = false;
   }
 
-  /// Standing, from now on.
+  /// At rest from now on.
   constexpr void reset() {
     most_steps_ = usual_steps_;
     velocity_ = target_ = 0;
@@ -41,7 +41,7 @@ class JogProfile {
     is_steady_ = false;
   }
 
-  /// Until reset() by the deceleration of faults, on the same lattice.
+  /// Uses the fault deceleration until reset(), on the same lattice.
   constexpr void brake_hard() {
     if (hard_steps_ > most_steps_) most_steps_ = hard_steps_;
   }
@@ -70,7 +70,7 @@ class JogProfile {
     const bool upward = missing >= 0;
     if (step_ == 0) upward_ = upward;
     if (upward_ != upward) {
-      step_less();  // still leads away from the target
+      step_less();  // still moves away from the target
     } else if (step_ < most_steps_ && next_run_out_ <= amount) {
       step_more();
     } else if (run_out_ > amount) {
@@ -80,20 +80,20 @@ class JogProfile {
     return velocity_;
   }
 
-  /// Standing, with nothing left to do.
+  /// At rest, with nothing left to do.
   constexpr bool at_rest() const { return velocity_ == 0 && target_ == 0 && step_ == 0 && !settling_; }
   constexpr bool at_target() const { return velocity_ == target_ && step_ == 0 && !settling_; }
-  /// The last sample was at the target already: so is each to come.
+  /// The last sample was at the target, and so will be all further ones.
   constexpr bool is_steady() const { return is_steady_; }
   constexpr Increment velocity() const { return velocity_; }
   /// Towards lower values.
   constexpr bool is_falling() const { return step_ > 0 && !upward_; }
-  /// The nearest velocity that it can keep: the acceleration falls in the next sample already.
+  /// The nearest velocity that it can hold: the acceleration falls from the next sample on.
   constexpr Increment levelled_velocity() const {
     const Increment rest = run_out_ - acceleration_;
     return velocity_ + (upward_ ? rest : -rest);
   }
-  /// What the velocity becomes while the present acceleration runs out, and the samples that this takes.
+  /// The velocity after the present acceleration has been reduced to zero, and the samples that this takes.
   constexpr Increment run_out_velocity() const { return velocity_ + (upward_ ? run_out_ : -run_out_); }
   constexpr std::int32_t run_out_samples() const { return step_; }
 
@@ -119,7 +119,7 @@ class JogProfile {
   Increment velocity_limit_ = 0;
   Increment acceleration_step_ = 1;
   std::int32_t most_steps_ = 1;  // below 2^30: so many steps of at least 16 units, and their sum, pass check()
-  std::int32_t step_ = 0;        ///< >= 0; which way, says upward_
+  std::int32_t step_ = 0;        ///< >= 0; upward_ gives the direction
   Increment acceleration_ = 0;   ///< acceleration_step_ * step_
   Increment run_out_ = 0;        ///< velocity added while the step falls to 0, one a sample, the present one included
   Increment next_run_out_ = 1;   ///< the same with one step more

@@ -1,4 +1,4 @@
-// How fast a reference may change, in the integer units that references are made of.
+// How fast a reference may change, in the integer units of references.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ struct MotionLimits {
   Increment velocity = 0;
   Increment acceleration = 0;
   Increment jerk = 0;
-  /// Of the ramp that a fault makes; at most as much as the acceleration: that one.
+  /// Of the ramp after a fault; if it is at most the acceleration, the acceleration.
   Increment fault_deceleration = 0;
 };
 
 inline constexpr Increment kMostMotion = Increment{1} << (kFractionBits + 14);
-/// Plans take up to four units off a limit, and a conversion cuts one: a limit of so many units is kept to 1 %.
+/// Plans reduce a limit by up to four units, and a conversion by one: a limit of this many units is kept to 1 %.
 inline constexpr Increment kLeastMotion = 512;
 
 /// An Increment above 2^14 counts a sample (sample^2, sample^3), or too small to be represented, is refused.

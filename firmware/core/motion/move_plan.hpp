@@ -89,7 +89,7 @@ constexpr bool is_admissible(const CountPosition& distance, std::int64_t N1, con
 
 }  // namespace move_planning
 
-/// Counts: the longest move at the highest velocity that limits may have. Nothing beyond can be planned, and the
+/// Counts: the longest move at the highest velocity that limits may have. Longer moves cannot be planned, and the
 /// arithmetic of a plan has room for twice as much.
 inline constexpr std::int64_t kFarthestMove = move_planning::kLongest * (kMostMotion >> kFractionBits);
 

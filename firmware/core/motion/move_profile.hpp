@@ -1,4 +1,4 @@
-// Plays a move plan back, one sample at a time.
+// Executes a move plan, one sample at a time.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace firmware {
 
-/// Additions only. A move can be cut short: its acceleration then runs out at the planned jerk, and what is left is a
-/// steady velocity for a jog to take over.
+/// Additions only. A move can be aborted: its acceleration then falls at the planned jerk, and a jog continues from the
+/// remaining steady velocity.
 class MoveProfile {
  public:
   constexpr void start(const MovePlan& plan) {
@@ -25,10 +25,10 @@ class MoveProfile {
 
   constexpr bool is_slowing_down() const { return elapsed_ >= plan_.N1; }
 
-  /// The last increment: the velocity to go on with where a jog takes over.
+  /// The last increment: the velocity from which a jog continues.
   constexpr Increment velocity() const { return last_; }
 
-  /// Lets the acceleration run out from where it is now. Ask is_accelerating() for the end of it.
+  /// Reduces the present acceleration to zero. is_accelerating() shows when that is done.
   constexpr void cut_acceleration() {
     const std::int32_t executed = pulse_sample();
     if (executed >= pulse_samples_) return;

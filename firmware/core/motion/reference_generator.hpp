@@ -11,18 +11,18 @@ namespace firmware {
 enum class MotionMode : std::uint8_t {
   jog,           ///< velocity mode; target 0 is standstill
   move,          ///< playing a plan
-  leaving_move,  ///< the acceleration of a cut move runs out, then the jog takes over
+  leaving_move,  ///< the acceleration of an aborted move falls to zero, then the jog continues
 };
 
 class ReferenceGenerator {
  public:
-  /// `limits` have passed check(). Standing afterwards.
+  /// `limits` have passed check(). At rest afterwards.
   constexpr void configure(const MotionLimits& limits) {
     jog_.configure(limits);
     reset();
   }
 
-  /// Standing at once, without regard to limits; for an axis that is not enabled.
+  /// At rest at once, without limits; for an axis that is not enabled.
   constexpr void reset() {
     jog_.reset();
     pending_jog_ = 0;
@@ -46,7 +46,7 @@ class ReferenceGenerator {
     jog(0);
   }
 
-  /// Slows down to standstill from a motion that somebody else made: `velocity` is its travel in the last sample. Its
+  /// Slows down to standstill from a motion that another source made: `velocity` is its travel in the last sample. Its
   /// acceleration ends at once.
   constexpr void stop_from(Increment velocity) {
     jog_.take_over(velocity);
@@ -55,10 +55,10 @@ class ReferenceGenerator {
     mode_ = MotionMode::jog;
   }
 
-  /// The stops to come, until reset(), have the deceleration of faults. What is planned keeps its own.
+  /// All further stops, until reset(), use the fault deceleration. Planned moves keep their own.
   constexpr void brake_hard() { jog_.brake_hard(); }
 
-  /// Only from rest; returns false otherwise, and nothing changes.
+  /// Only from rest; otherwise returns false and changes nothing.
   constexpr bool start(const MovePlan& plan) {
     if (!at_rest()) return false;
     move_.start(plan);

@@ -22,7 +22,7 @@ class ReferencePreview {
     velocities_ = {};
   }
 
-  /// Takes the newest increment of the reference, and makes the one from kPreviewSamples ago the present one.
+  /// Takes the newest increment of the reference; the one from kPreviewSamples ago becomes the present one.
   constexpr void push(Increment newest) {
     for (int i = 0; i < kPreviewSamples; ++i) {
       increments_[i] = increments_[i + 1];
@@ -33,7 +33,7 @@ class ReferencePreview {
     position_.advance(increments_[0]);
   }
 
-  /// The same place, counted from another origin.
+  /// The same position, counted from another origin.
   constexpr void shift(std::int64_t counts) { position_.counts += counts; }
 
   constexpr const CountPosition& position() const { return position_; }  ///< xref(k)

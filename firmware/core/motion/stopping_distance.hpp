@@ -1,4 +1,4 @@
-// How far a jog still goes when it is told to stop.
+// Stopping distance of a jog.
 #pragma once
 
 #include <bit>
@@ -8,16 +8,16 @@
 
 namespace firmware {
 
-/// Twice the time that a stop from a path's highest speed takes, samples: no stop lasts longer, whatever happens.
+/// Twice the stopping time from a path's highest speed, samples: an upper bound for every stop.
 constexpr std::int32_t longest_ramp(const MotionLimits& limits) {
   const std::int64_t ramp = 2 * (limits.velocity / limits.acceleration + limits.acceleration / limits.jerk + 2);
   constexpr std::int64_t kMost = std::int64_t{1} << 30;
   return static_cast<std::int32_t>((ramp < kMost ? ramp : kMost) + (ramp < kMost ? ramp >> 3 : 0));
 }
 
-/// A bound, in whole numbers and without division: v^2 / (2 a) + v a / (2 j), which is the way of a stop from the
-/// steady velocity v where that reaches the acceleration limit, and more than its way, v sqrt(v / j), where it does
-/// not.
+/// An upper bound, in whole numbers and without division: v^2 / (2 a) + v a / (2 j). It is the stopping distance from
+/// the steady velocity v if the stop reaches the acceleration limit, and more than the distance v sqrt(v / j) if it
+/// does not.
 class StoppingDistance {
  public:
   /// `limits` have passed check().

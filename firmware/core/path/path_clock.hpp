@@ -1,4 +1,4 @@
-// The time of a path: samples of the path for one sample of the board, changed within the axes' limits.
+// Time scale of a path: samples of the path per sample of the board, changed within the axes' limits.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace firmware {
 
 namespace path_clock {
 
-/// 1 / f^2 of a number of headroom, 2^-32.
+/// 1 / f^2 of a headroom f, 2^-32.
 inline constexpr std::array<std::uint32_t, kHeadrooms.size()> kInverseSquares = [] {
   std::array<std::uint32_t, kHeadrooms.size()> all{};
   for (std::size_t i = 0; i != all.size(); ++i)
@@ -21,7 +21,7 @@ inline constexpr std::array<std::uint32_t, kHeadrooms.size()> kInverseSquares = 
 
 }  // namespace path_clock
 
-/// A path is slowed down by its clock, so that it is never left. Rates are increments of one sample a sample, 0 to
+/// Slows a path down by its clock, so that the axes never leave it. Rates are increments of one sample per sample, 0 to
 /// kOneCount.
 ///
 /// At rate r an axis on the path q has the acceleration r^2 q'' + r' q' and the jerk r^3 q''' + 3 r r' q'' + r'' q'.
@@ -36,7 +36,7 @@ class PathClock {
  public:
   static constexpr double kChangeOfAcceleration = 0.95, kChangeOfJerk = 0.3, kRampOfJerk = 0.6;
 
-  /// Limits of r' and r'' where nothing else is moving, in whatever unit of time: the least over the axes counts.
+  /// Limits of r' and r'' if nothing else moves, in any unit of time: the smallest over the axes.
   template <typename Real>
   static constexpr Real change_limit(Real velocity, Real acceleration, Real jerk) {
     return std::min(static_cast<Real>(kChangeOfAcceleration) * (acceleration / velocity),
@@ -64,7 +64,7 @@ class PathClock {
     target_ = rate;
     target_ahead_ = kUnknown;
   }
-  /// At this rate from the next sample on: where nothing moves, nothing jumps.
+  /// At this rate from the next sample on; only where nothing moves, so that nothing jumps.
   constexpr void begin(Increment rate) {
     rate_ = target_ = rate;
     change_ = 0;
@@ -72,7 +72,7 @@ class PathClock {
   }
   constexpr void stand() { begin(0); }
 
-  /// Path time of the next sample, where the path has these numbers of headroom now and until it could be slowed down.
+  /// Path time of the next sample, with these headrooms of the path now and until it could be slowed down.
   constexpr Increment next(std::uint32_t here, std::uint32_t ahead) {
     if (is_steady()) return rate_;
     const bool is_downward = target_ < rate_;
@@ -80,7 +80,7 @@ class PathClock {
     const Increment speed = is_downward ? -change_ : change_;  // towards the target
     const std::uint64_t square = square_of(rate_);
     const Increment ramp = limited(ramp_limit_, square, here);
-    // Slowing down, the ramps become steeper; gaining speed, gentler.
+    // Slowing down, the ramps become steeper; speeding up, gentler.
     Increment last_ramp = ramp;
     if (!is_downward) {
       if (ahead != target_ahead_) note_target_ramp(ahead);
@@ -108,7 +108,7 @@ class PathClock {
   constexpr bool stands() const { return rate_ == 0 && is_steady(); }
   constexpr bool is_steady() const { return rate_ == target_ && change_ == 0; }
 
-  /// Samples of the path that a stop from now on takes at most, with the least headroom all the way.
+  /// Upper bound of the path's samples during a stop from now on, with the smallest headroom throughout.
   constexpr std::int64_t way_of_stop() const {
     const Increment rise = change_ > 0 ? change_ * ramp_samples_ : 0;
     return way_from(std::min(rate_ + rise, kOneCount));

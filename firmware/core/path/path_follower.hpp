@@ -25,16 +25,16 @@ enum class PathEnd : std::uint8_t {
   none = 0,
   completed = 1,  ///< its last node was reached
   asked = 2,      ///< somebody stopped it
-  starved = 3,    ///< the host sent too little, too late
+  starved = 3,    ///< nodes came too slowly
   host_lost = 4,  ///< the host is silent
-  fault = 5,      ///< an axis stopped for a reason of its own, and left the path
+  fault = 5,      ///< an axis stopped on its own and left the path
 };
 
-/// Nodes come in by push() and wait in a ring of `nodes`; prepare() makes the next few polynomials of them; both in the
-/// background. before_step() belongs to the control interrupt. What both touch is named so.
+/// push() adds nodes to a ring of `nodes`; prepare() makes the next few polynomials of them; both run in the
+/// background. before_step() runs in the control interrupt. Functions for both contexts say so.
 ///
-/// The clock runs at the override's rate. It stops for a hold, for a stop, for a silent host, and where the nodes that
-/// are there might not last for a stop: then it stops in time to stand on the path. Nodes at rest need no stop.
+/// The clock runs at the override's rate. It stops for a hold, a stop, a silent host, and when the remaining nodes
+/// might not last for a stop: then it stops in time to end on the path. Nodes at rest need no stop.
 template <std::size_t axes, std::size_t nodes>
 class PathFollower {
  public:
@@ -42,16 +42,16 @@ class PathFollower {
   static constexpr std::size_t kNodes = nodes;
   using Node = PathNode<axes>;
 
-  // The background, while the control interrupt is shut out.
+  // For the background, while the control interrupt is disabled.
 
-  /// Axes of the mask stand; `start`: where their references are. `limits` are above 0.
+  /// The axes of the mask are at rest; `start`: positions of their references. `limits` are above 0.
   constexpr void open(unsigned mask, const PathUnits& units, const std::array<CountPosition, axes>& start,
                       const std::array<PathLimits, axes>& limits) {
     mask_ = mask;
     units_ = units;
     limits_ = limits;
     for (std::size_t i = 0; i < axes; ++i) {
-      // Nodes stand on a grid; from what lies between two of its points the first sample leads to the grid.
+      // Nodes are on a grid; if the start lies between two of its points, the first sample moves to the grid.
       planned_[i] = start[i];
       const Increment offset = start[i].fraction & ((Increment{1} << (kFractionBits - units.travel_bits)) - 1);
       planned_[i].fraction -= offset;
@@ -92,7 +92,7 @@ class PathFollower {
     return true;
   }
 
-  /// Comes to rest on the path. One that has not begun just ends.
+  /// Comes to rest on the path. A path that has not begun just ends.
   constexpr void stop(PathEnd why = PathEnd::asked) {
     if (phase_ == PathPhase::open) finish(why);
     if (phase_ != PathPhase::running) return;
@@ -111,7 +111,7 @@ class PathFollower {
     is_settled_ = false;
   }
 
-  /// The next node; `last`: nothing comes after it. `is_inside(axis, counts)` says whether an axis may go there.
+  /// Adds the next node; `last`: it is the final one. `is_inside(axis, counts)` says whether an axis may go there.
   template <typename IsInside>
   constexpr Refusal push(Node node, bool last, IsInside is_inside) {
     Step step;
@@ -119,16 +119,16 @@ class PathFollower {
     return refusal != Refusal::none ? refusal : take(node, last, step);
   }
 
-  // The background, at any time.
+  // For the background, at any time.
 
-  /// Where a node leads, and what it leaves to the clock.
+  /// Position of a node, and the headroom that it leaves to the clock.
   struct Step {
     std::array<CountPosition, axes> there{};
     std::uint8_t headroom = 0;
   };
 
-  /// What take() is told of a node, which must follow. A node claims headroom that its geometry gives, or less; what it
-  /// gives is what counts.
+  /// Information for take() about a node, which must follow. A node states the headroom of its geometry, or less; the
+  /// geometry decides.
   template <typename IsInside>
   constexpr Refusal examine(const Node& node, bool last, IsInside is_inside, Step& step) const {
     if ((phase_ != PathPhase::open && phase_ != PathPhase::running) || is_complete_) return Refusal::path_not_open;
@@ -138,7 +138,7 @@ class PathFollower {
     if (!piece) return Refusal::path_too_fast;
     if (last && !node.is_at_rest()) return Refusal::path_ends_in_motion;
     const PathLoad<axes> load = path_load(*piece, mask_, limits_);
-    constexpr float kRounding = 1.02F, kCorners = 1.05F;  // of words; of the places that are looked at
+    constexpr float kRounding = 1.02F, kCorners = 1.05F;  // of words and of the points that are checked
     if (!(load.velocity < kRounding) || !(load.acceleration < kCorners)) return Refusal::path_too_fast;
     step.headroom = load.headroom();
     if (node.headroom_here > step.headroom + 1u) return Refusal::path_headroom;
@@ -156,12 +156,12 @@ class PathFollower {
     return Refusal::none;
   }
 
-  /// While the control interrupt is shut out.
+  /// While the control interrupt is disabled.
   constexpr Refusal take(Node node, bool last, const Step& step) {
     if (phase_ != PathPhase::open && phase_ != PathPhase::running) return Refusal::path_not_open;
     planned_ = step.there;
     newest_ = node.axis;
-    // A third difference reaches over three samples, and some are begun.
+    // A third difference spans three samples, and some of them have begun.
     constexpr std::uint64_t kNear = 4 * kShortestPiece;
     const std::uint8_t here = std::min(step.headroom, near_);
     std::uint64_t between = 0;
@@ -183,8 +183,8 @@ class PathFollower {
     return Refusal::none;
   }
 
-  /// Makes the next polynomials; some tens of samples' worth. Cheap where there is nothing to do. A node waits until
-  /// those are there that its clock must know of; one that is needed at once gets the least headroom ahead.
+  /// Makes the next polynomials, for some tens of samples. Cheap if there is nothing to do. A node waits for those that
+  /// determine its clock; one that is needed at once gets the smallest headroom ahead.
   constexpr void prepare() {
     while (ring_count_ > 0) {
       const std::uint32_t made = made_.load(std::memory_order_relaxed);
@@ -212,16 +212,16 @@ class PathFollower {
   constexpr bool is_held() const { return is_held_; }
   constexpr const std::array<CountPosition, axes>& start_position() const { return start_; }
   constexpr Increment rate() const { return clock_.rate(); }
-  /// Path time: samples, from the start, and those that are still to come.
+  /// Path time in samples: from the start, and still to come.
   constexpr std::uint32_t elapsed() const {
     return static_cast<std::uint32_t>((passed_time_ >> kPathTimeBits) + (time_ >> kFractionBits));
   }
   constexpr std::uint32_t ahead() const { return static_cast<std::uint32_t>(time_ahead() >> kPathTimeBits); }
   constexpr std::uint32_t passed_nodes() const { return used_.load(); }
 
-  // The control interrupt.
+  // For the control interrupt.
 
-  /// Before the axes' steps, while is_moving(): leads those of the mask. An AxisGroup.
+  /// Before the axes' steps, while is_moving(): moves those of the mask. For an AxisGroup.
   template <typename Group>
   constexpr void before_step(Group& group) {
     for (std::size_t i = 0; i < axes; ++i)
@@ -240,7 +240,7 @@ class PathFollower {
   static constexpr std::uint32_t kPrepared = 8;
   static constexpr int kToIncrement = kFractionBits - path_piece::kBits;
 
-  /// An axis goes its own way. The others hear of that in this step, and slow down from the speed that they have in it.
+  /// An axis leaves the path. The others are told in this step, and slow down from their present speed.
   template <typename Group>
   constexpr void leave(Group& group) {
     for (std::size_t i = 0; i < axes; ++i)
@@ -259,7 +259,7 @@ class PathFollower {
     return static_cast<std::int64_t>(accepted_ - passed_time_) - (time_ >> (kFractionBits - kPathTimeBits));
   }
 
-  /// The nodes last for a stop, whatever the rate.
+  /// The nodes suffice for a stop from any rate.
   constexpr bool is_ample() const { return time_ < ample_until_; }
   constexpr void note_slack() {
     constexpr int kToTime = kFractionBits - kPathTimeBits;
@@ -273,8 +273,8 @@ class PathFollower {
   }
   [[gnu::noinline]] constexpr Increment changing_rate() {
     const Increment wanted = wanted_rate();
-    // Once it has begun to stop it goes on with that until more nodes have come: no creeping to the last. A ring that
-    // is full, and still too short for a stop from the highest rate, is no reason to end.
+    // A stop that has begun continues until more nodes have come, so that the axes do not creep to the last node. A
+    // full ring that is too short for a stop from the highest rate does not end the path.
     if (wanted == 0 || is_ample()) {
       is_starved_ = false;
     } else {
@@ -297,11 +297,11 @@ class PathFollower {
 
   constexpr Increment wanted_rate() const { return phase_ == PathPhase::stopping || is_held_ ? 0 : override_; }
 
-  /// The piece that time_ lies in; none at the end of what there is.
+  /// The piece that contains time_; none at the end of the available nodes.
   constexpr const PathPiece<axes>* find_piece() {
     const std::uint32_t made = made_.load(std::memory_order_acquire);
     std::uint32_t used = used_.load(std::memory_order_relaxed);
-    // A piece lasts a sample at least, and the clock runs no faster: two ends at most.
+    // A piece lasts at least one sample, and the clock never runs faster: at most two pieces end.
     for (int k = 0; k < 3 && used != made; ++k) {
       const PathPiece<axes>& piece = pieces_[used % kPrepared];
       if (time_ < piece.duration()) return &piece;

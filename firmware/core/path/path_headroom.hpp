@@ -1,4 +1,4 @@
-// How much faster a part of a path could be followed within the limits of acceleration and jerk: what its clock has.
+// Headroom of a path's clock: how much faster a part of the path could run within the limits of acceleration and jerk.
 #pragma once
 
 #include <array>
@@ -8,11 +8,11 @@
 namespace firmware {
 
 /// Every path is planned so that it would keep the axes' limits at this rate too: a path at its limits could not be
-/// slowed down at all without exceeding them.
+/// slowed down without exceeding them.
 inline constexpr double kLeastHeadroom = 1.01;
 
-/// The highest rate at which a part of a path holds them, by the number that a node has for it. 6 numbers an
-/// octave; what is in between counts as the lower.
+/// The highest rate at which a part of a path keeps the limits, by a node's headroom number. 6 numbers per octave;
+/// values between two use the lower.
 inline constexpr std::array<double, 16> kHeadrooms = [] {
   constexpr double kStep = 1.122462048309373;  // 2^(1/6)
   std::array<double, 16> rates{};

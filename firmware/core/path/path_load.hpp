@@ -1,5 +1,5 @@
-// What a piece of a path asks of its axes, from its own geometry: speed, acceleration, travel, and what is left for a
-// clock that changes.
+// Load of a piece of a path on its axes, from its geometry: speed, acceleration, travel, and the remainder for a
+// changing clock.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@ struct PathLimits {
   float velocity = 0, acceleration = 0, jerk = 0;
 };
 
-/// Of one piece, as shares of the limits; travel in counts from where the piece begins.
+/// Of one piece, as parts of the limits; travel in counts from its beginning.
 template <std::size_t axes>
 struct PathLoad {
-  float velocity = 0, acceleration = 0;  ///< the largest of any axis
-  /// Share of its limit that the clock's change may take at rate 1: PathClock's w there, 0 to 1.
+  float velocity = 0, acceleration = 0;  ///< largest of all axes
+  /// Part of its limit that a change of the clock may use at rate 1: PathClock's w there, 0 to 1.
   float left = 1;
   std::array<float, axes> least{}, most{};
 
-  /// The number of the headroom that leaves as much.
+  /// The number of the headroom that leaves this much.
   std::uint8_t headroom() const {
     std::uint8_t number = 0;
     while (number + 1u < kHeadrooms.size() && kLeft[number + 1u] <= left) ++number;
@@ -48,7 +48,7 @@ struct PathLoad {
 /// x and y are those of the same place: on a circle an axis is fast where it does not accelerate. Below rate 1 the
 /// bound 1 - (1 - w) r^2 lies on the chord of what would be allowed, which is concave in r^2, and so below it.
 ///
-/// `mask`: axes that are led. For the background: it divides.
+/// `mask`: axes of the path. Divides: for the background.
 template <std::size_t axes>
 constexpr PathLoad<axes> path_load(const PathPiece<axes>& piece, unsigned mask,
                                    const std::array<PathLimits, axes>& limits) {

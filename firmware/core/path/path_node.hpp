@@ -1,4 +1,4 @@
-// A path as the host plans it and the board follows it: nodes, and the motion of each axis at them.
+// A path as the host plans it and the board follows it: nodes with the motion of each axis.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace firmware {
 
-/// Binary fractions in which the words of a path's nodes stand: the host chooses the finest that hold its motion.
+/// Binary fractions of the words of a path's nodes: the host chooses the finest that hold its motion.
 struct PathUnits {
   std::uint8_t travel_bits = 16;        ///< of a count
   std::uint8_t velocity_bits = 20;      ///< of a count a sample
@@ -19,7 +19,7 @@ constexpr bool is_possible(const PathUnits& units) {
          units.acceleration_bits >= 17 && units.acceleration_bits <= 40;
 }
 
-/// Of one axis at the end of a piece of path, which begins at the node before.
+/// Of one axis at the end of a piece of the path, which begins at the previous node.
 struct PathAxisNode {
   std::int32_t travel = 0;        ///< since the node before, in units
   std::int32_t velocity = 0;      ///< here
@@ -30,14 +30,14 @@ inline constexpr int kPathTimeBits = 12;  ///< of a sample, in durations
 inline constexpr std::uint32_t kShortestPiece = 1u << kPathTimeBits;
 inline constexpr std::uint32_t kLongestPiece = 1u << 22;  ///< 1,024 samples
 
-/// The word of duration, as it is sent: also the numbers of headroom.
+/// The transmitted word of the duration, which also contains the headroom numbers.
 inline constexpr int kHeadroomHereShift = 23, kHeadroomAheadShift = 27;
 
 template <std::size_t axes>
 struct PathNode {
   std::uint32_t duration : 23 = 0;  ///< of the piece that ends here, kShortestPiece to kLongestPiece
-  /// Numbers of kHeadrooms: of this piece and what it touches, and of all from its begin until the clock, which might
-  /// be changing there, could be brought to what the least of them allows: PathClock.
+  /// Indices into kHeadrooms: of this piece and its neighbours, and the smallest of all pieces from its beginning until
+  /// a changing clock could have slowed down to it: PathClock.
   std::uint32_t headroom_here : 4 = 0, headroom_ahead : 4 = 0;
   std::array<PathAxisNode, axes> axis{};
 

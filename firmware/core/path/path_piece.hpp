@@ -55,10 +55,10 @@ constexpr std::int64_t way_of_velocity(std::int32_t velocity, int bits, std::uin
   return shifted(velocity * std::int64_t{duration}, kBits - bits - kPathTimeBits);  // below 2^60
 }
 
-/// Beyond kMost where it would not fit.
+/// Above kMost if it does not fit.
 constexpr std::int64_t way_of_acceleration(std::int32_t acceleration, int bits, std::uint32_t duration) {
   const std::int64_t velocity = shifted(acceleration * std::int64_t{duration}, kBits - bits - kPathTimeBits);
-  constexpr std::int64_t kFastest = std::int64_t{1} << (14 + kBits);  // as motion limits have it
+  constexpr std::int64_t kFastest = std::int64_t{1} << (14 + kBits);  // as motion limits require
   if (velocity > kFastest || velocity < -kFastest) return kMost + 1;
   return scaled(velocity, duration, kPathTimeBits);
 }
@@ -69,7 +69,7 @@ constexpr std::int64_t way_of_acceleration(std::int32_t acceleration, int bits, 
 template <std::size_t axes>
 class PathPiece {
  public:
-  /// Nothing where a word is too large for the duration.
+  /// Empty if a word is too large for the duration.
   static constexpr std::optional<PathPiece> between(const std::array<PathAxisNode, axes>& begin,
                                                     const PathNode<axes>& end, const PathUnits& units) {
     using namespace path_piece;

@@ -1,4 +1,4 @@
-// The axes of a board, which start on their own and stop together.
+// The axes of a board: they start separately and stop together.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ class AxisGroup {
     for (std::size_t i = 0; i < kAxes; ++i) step_axis(i, [&] { axes_[i].step(fault_for(i, outer), readings[i]); });
   }
 
-  /// One control period; an interpolator leads all axes.
+  /// One control period in which an interpolator moves all axes.
   constexpr void step_with(const std::array<Increment, kAxes>& increments, const BoardInputs& inputs) {
     const AxisFault outer = watch_board(inputs);
     const Readings readings = read_encoders();
@@ -46,8 +46,8 @@ class AxisGroup {
       step_axis(i, [&] { axes_[i].step_with(increments[i], fault_for(i, outer), readings[i]); });
   }
 
-  /// Enables all axes of the mask or none of them; returns the first that refuses, or kAxes. An axis that is enabled
-  /// already does not refuse.
+  /// Enables all axes of the mask or none of them; returns the first that refuses, or kAxes. An axis that is already
+  /// enabled does not refuse.
   constexpr std::size_t enable(unsigned mask) {
     const auto is_named = [mask](std::size_t i) { return (mask >> i & 1u) != 0; };
     for (std::size_t i = 0; i < kAxes; ++i)
@@ -75,7 +75,7 @@ class AxisGroup {
   constexpr AxisGroup(HalOf hal_of, std::index_sequence<index...>) : axes_{BoardAxis(hal_of(index))...} {}
 
   using Readings = std::array<hal::EncoderReading, kAxes>;
-  /// All positions belong to one instant, whatever the steps then take.
+  /// Reads all positions at one instant, however long the steps then take.
   constexpr Readings read_encoders() { return read_encoders(std::make_index_sequence<axes>()); }
   template <std::size_t... index>
   constexpr Readings read_encoders(std::index_sequence<index...>) {
@@ -95,7 +95,7 @@ class AxisGroup {
     for (std::size_t i = 0; i < kAxes; ++i) axes_[i].bridge_gap(readings[i]);
   }
 
-  /// A fault of one axis stops the other; its own and the board's faults come first.
+  /// A fault of one axis stops the other; faults of the axis itself and of the board come first.
   constexpr AxisFault fault_for(std::size_t index, AxisFault outer) {
     if (outer != AxisFault::none || !must_stop_[index]) return outer;
     must_stop_[index] = false;

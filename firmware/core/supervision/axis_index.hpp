@@ -1,4 +1,4 @@
-// The one reader of an axis's index pulses, for the monitor of its counts and for homing.
+// Reads an axis's index pulses, for the monitor of its counts and for homing.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace firmware {
 
 /// Reading the index clears its pulses, so it is read at most once per control period, and all users get that reading.
-/// The monitor alone looks every kSamples: index pulses are whole turns apart however seldom they are asked for.
+/// The monitor reads only every kSamples: index pulses are whole turns apart, however rarely they are read.
 class AxisIndex {
  public:
   /// `spacing`: as of IndexMonitor.
@@ -19,7 +19,7 @@ class AxisIndex {
   }
   constexpr void restart() { monitor_.restart(); }
 
-  /// Once a control period in which nobody else has looked.
+  /// Call it once in each control period in which nobody else has read the index.
   constexpr bool is_due() { return --until_ <= 0; }
 
   /// Pulses since the last reading; `counter`: the encoder's, now.
@@ -32,7 +32,7 @@ class AxisIndex {
   /// Of the last look.
   constexpr const hal::IndexReading& seen() const { return seen_; }
 
-  // Axes of a group look in control periods of their own.
+  // The axes of a group read in different control periods.
   constexpr bool has_just_looked() const { return until_ == kSamples; }
   constexpr void leave_for_later() { until_ = until_ <= 1 ? 2 : until_; }
 

@@ -1,4 +1,4 @@
-// Watches one axis, sample by sample, and says what is wrong with it.
+// Monitors one axis in each sample and reports its faults.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@
 
 namespace firmware {
 
-/// Motion is judged by what the sensors read, never by what the estimator makes of it: an estimator with bad gains
-/// believes anything.
+/// The monitors use sensor readings, never the estimate, which is wrong if the estimator's gains are.
 template <typename Scalar>
 class AxisMonitors {
  public:
@@ -27,7 +26,7 @@ class AxisMonitors {
     forget_high_water();
   }
 
-  /// Before the first sample of a self-test: nothing is known of the time before.
+  /// Before the first sample of a self-test: the past is unknown.
   constexpr void restart() {
     disagreement_ = Scalar(0);
     encoder_velocity_ = Scalar(0);
@@ -35,7 +34,7 @@ class AxisMonitors {
     travel_.restart();
   }
 
-  /// What the parts of the axis's hardware say of themselves.
+  /// Faults that the axis's hardware reports.
   template <typename Hal>
   constexpr AxisFault watch_parts(Hal& hal) {
     return first_of([&](auto& watch) {
@@ -46,7 +45,7 @@ class AxisMonitors {
     });
   }
 
-  /// Faults of the sensors, which count whether the loop is closed or not.
+  /// Faults of the sensors, in open and in closed loop.
   constexpr AxisFault watch_sensors(const AxisTelemetry<Scalar>& seen) {
     const Scalar measured = tachometer_fitted_ ? seen.tachometer_velocity : seen.estimate.velocity;
     const Scalar before = encoder_velocity_;
@@ -63,7 +62,7 @@ class AxisMonitors {
     return AxisFault::none;
   }
 
-  /// Faults of a closed loop. `seen` is this sample's, which watch_sensors() has seen already.
+  /// Faults of a closed loop. `seen` is this sample's, which watch_sensors() has had already.
   constexpr AxisFault watch_motion(const AxisTelemetry<Scalar>& seen) {
     const Scalar error = magnitude(seen.tracking_error);
     if (error > noted_error_ && !may_follow(error, seen.reference_velocity)) return AxisFault::following_error;
@@ -80,17 +79,17 @@ class AxisMonitors {
     return travel_.watch(seen, switches.read());
   }
 
-  /// Positions are counted from another origin now.
+  /// From now on positions are counted from another origin.
   constexpr void forget_travel() { travel_.restart(); }
 
-  /// Magnitude of the speed by the slower sensor: what both show is no sensor's fault.
+  /// Smaller of the two sensors' speeds, as a magnitude: what both show is not a fault of one sensor.
   constexpr Scalar slowest(const AxisTelemetry<Scalar>& seen) const {
     const Scalar encoder = magnitude(Traits::times(seen.encoder_travel, velocity_per_count_));
     const Scalar tachometer = magnitude(seen.tachometer_velocity);
     return tachometer_fitted_ && tachometer < encoder ? tachometer : encoder;
   }
 
-  /// With the loop open there is no reference to follow, and no control signal that would show a broken state.
+  /// With the loop open there is no reference to follow and no control signal to check.
   constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
     restart_motion();
     travel_.restart();
@@ -111,7 +110,7 @@ class AxisMonitors {
 
   static constexpr Scalar magnitude(Scalar value) { return Traits::magnitude(value); }
 
-  /// Of two sensors that part within one sample, the one that left the reference is the bad one.
+  /// If two sensors diverge within one sample, the one that left the reference is faulty.
   static constexpr AxisFault which_jumped(Scalar encoder, Scalar tachometer, Scalar expected) {
     return magnitude(encoder - expected) >= magnitude(tachometer - expected)
                ? AxisFault::encoder_jump
@@ -125,7 +124,7 @@ class AxisMonitors {
     return error <= floor || error <= floor + limits_.following_error_per_velocity * magnitude(reference_velocity);
   }
 
-  /// By the monitors that stand with their faults' declarations; the first that finds something.
+  /// By the monitors in the faults' declarations; the first that finds a fault.
   constexpr AxisFault watch_declared(const AxisTelemetry<Scalar>& seen) {
     return first_of([&](auto& watch) {
       if constexpr (requires { watch.watch(seen, limits_); })
@@ -155,7 +154,7 @@ class AxisMonitors {
   Scalar encoder_velocity_{};
   Scalar disagreement_{};
   Scalar high_water_{};
-  Scalar noted_error_{};  ///< up to here an error is neither a fault nor new
+  Scalar noted_error_{};  ///< up to this an error is neither a fault nor new
   bool tachometer_fitted_ = true;
   EffortMonitor<Scalar> effort_;
   TravelMonitor<Scalar> travel_;

@@ -1,4 +1,4 @@
-// Watches what belongs to the whole board: stop circuit, supply, time, host, parameter store.
+// Monitors the whole board: stop circuit, supply, timing, host, parameter store.
 #pragma once
 
 #include <concepts>
@@ -10,7 +10,7 @@
 
 namespace firmware {
 
-/// What a board knows at the beginning of a control period.
+/// Inputs at the beginning of a control period.
 struct BoardInputs {
   std::uint32_t now_us = 0;  ///< of a hal::Clock
   bool emergency_stop = false;
@@ -22,14 +22,14 @@ struct BoardLimits {
   std::uint32_t control_period_us = 1000;
   std::uint32_t longest_period_us = 1500;  ///< from one control period to the next
   std::int32_t heartbeat_samples = 100;    ///< longest silence of a host that commands motion
-  std::int32_t standing_samples = 60'000;  ///< the same while enabled axes stand
-  std::int32_t input_samples = 3;          ///< that the stop circuit must be open in
+  std::int32_t standing_samples = 60'000;  ///< the same while the enabled axes are at rest
+  std::int32_t input_samples = 3;          ///< in which the stop circuit must be open
 };
 
 class BoardWatch {
  public:
-  /// Half a period late is an overrun; silence of 0.1 s is a lost host (ten of its 10 ms cycles), of a minute one that
-  /// has left enabled axes alone.
+  /// A control period that is half a period late is an overrun. After 0.1 s of silence the host is lost (ten of its 10
+  /// ms cycles); after a minute it has left enabled axes unattended.
   static constexpr BoardLimits default_limits(float sample_period_s) {
     const auto period_us = static_cast<std::uint32_t>(ScalarTraits<float>::nearest_product(sample_period_s, 1e6f));
     const float rate_Hz = 1.0f / sample_period_s;
@@ -45,26 +45,26 @@ class BoardWatch {
     stop_.configure(limits.input_samples);
   }
 
-  /// The next control period may come as late as it likes: the control interrupt was shut out on purpose.
+  /// The next control period may be late: the control interrupt was disabled on purpose.
   constexpr void excuse_pause() { is_primed_ = false; }
 
-  /// The host commands motion from now on, or lets go of it.
+  /// The host begins to command motion, or ends it.
   constexpr void host_commands(bool commands) {
     host_commands_ = commands;
     silent_samples_ = 0;
   }
   constexpr void host_heard() { silent_samples_ = 0; }
-  /// The axes are enabled anew.
+  /// The axes are enabled again.
   constexpr void forget_left_alone() { was_left_alone_ = false; }
-  /// While somebody brings the axes to rest because of it in a better way than each for itself, silence is no fault.
+  /// While the axes are being stopped together because of the silence, the silence is not a fault.
   constexpr void excuse_silence(bool excused) { excuses_silence_ = excused; }
-  /// The host is silent for too long while it commands motion, and the outputs are on.
+  /// The host commands motion and has been silent for too long, and the outputs are on.
   constexpr bool is_host_lost() const { return is_host_lost_; }
-  /// Since the last forget_left_alone(), axes that stood were disabled because nobody wanted anything of them.
+  /// Since the last forget_left_alone(), axes at rest were disabled because no command came.
   constexpr bool was_left_alone() const { return was_left_alone_; }
 
-  /// The worst fault of this period. Silence matters only while `outputs_on()`, which is asked only where it matters:
-  /// of axes that move it is a fault, and of those that stand a reason to `disable()` them.
+  /// The worst fault of this period. Silence matters only while `outputs_on()`, which is called only then: it is a
+  /// fault if axes move; if they are at rest, it calls `disable()`.
   template <std::invocable OutputsOn, std::invocable Disable>
   constexpr AxisFault watch(const BoardInputs& inputs, OutputsOn outputs_on, Disable disable) {
     const bool late = is_primed_ && inputs.now_us - last_us_ > limits_.longest_period_us;

@@ -1,4 +1,4 @@
-// The last 100 ms of an axis, kept when a fault freezes them.
+// Keeps the last 100 ms of an axis; a fault freezes them.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ class CaptureRing {
     add(seen);
   }
 
-  /// Keeps what there is, with the sample of the fault as the last.
+  /// Freezes the rows, with the sample of the fault as the last.
   constexpr void freeze(const AxisSample<Scalar>& at_fault) {
     if (is_frozen_) return;
     add(at_fault);

@@ -1,4 +1,4 @@
-// What comes before a loop closes and after a reference stands: the amplifier's start and the brake.
+// The steps before a loop closes and after a reference has stopped: the amplifier's start and the brake.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@ namespace firmware {
 
 /// Times in control periods, >= 0.
 struct DriveSequenceParameters {
-  bool ready_input = false;            ///< the amplifier says when it drives; off: it does after `amplifier_wait`
-  bool brake_fitted = false;           ///< it holds the axis unless it is released
-  std::int32_t amplifier_wait = 0;     ///< from the enable on; with the ready input the longest, > 0
-  std::int32_t brake_release = 0;      ///< from the release until the brake holds nothing
-  std::int32_t brake_application = 0;  ///< from its application until the brake holds the axis
+  bool ready_input = false;         ///< the amplifier signals when it is ready; off: it is ready after `amplifier_wait`
+  bool brake_fitted = false;        ///< the brake holds the axis unless it is released
+  std::int32_t amplifier_wait = 0;  ///< from the enable on; with the ready input the longest time, > 0
+  std::int32_t brake_release = 0;   ///< from the release until the brake is open
+  std::int32_t brake_application = 0;  ///< from the application until the brake holds the axis
 };
 
 enum class DriveStartStep : std::uint8_t {
   wait,
-  close_loop,  ///< the amplifier drives: close the loop, and release the brake
+  close_loop,  ///< the amplifier is ready: close the loop and release the brake
   started,     ///< the axis may move
   late,        ///< the amplifier does not become ready
 };

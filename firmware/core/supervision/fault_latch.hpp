@@ -1,4 +1,4 @@
-// What stopped an axis: the first fault, the worst of those that followed it, and what the axis did at that moment.
+// Latches the first fault of an axis, the worst later fault, and the motion at that moment.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Contacts bounce and wires catch sparks: an input counts once it has been active for a while.
+// Filters contact bounce and noise spikes: an input counts once it has been active for a while.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace firmware {
 
-/// A spark is shorter, and so is the bounce of a contact that closes; at 250 mm/s it is half a millimetre.
+/// Longer than noise spikes and the bounce of a closing contact; at 250 mm/s it is half a millimetre.
 inline constexpr float kInputTime_s = 0.002f;
 
-/// Control periods in a row that an input must be active in: two at least, so that no single reading trips an axis.
+/// Successive control periods in which an input must be active: at least two, so that no single reading stops an axis.
 template <typename Real>
 constexpr std::int32_t input_samples(Real sample_period_s) {
   const std::int32_t samples = ScalarTraits<Real>::truncate(Real(kInputTime_s) / sample_period_s + Real(0.01f)) + 1;
@@ -19,7 +19,7 @@ constexpr std::int32_t input_samples(Real sample_period_s) {
 
 class InputFilter {
  public:
-  /// An input that is active stays so: no change of parameters hides it.
+  /// An active input stays active: a change of parameters does not hide it.
   constexpr void configure(std::int32_t samples) { samples_ = samples; }
 
   /// Once a control period, at least while the input is active or pending.

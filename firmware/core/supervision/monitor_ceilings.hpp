@@ -1,5 +1,5 @@
-// Thresholds beyond which a monitor would not protect: what an axis at full command, from standstill, does in the times
-// below, or what a moving one needs if that is more.
+// Thresholds above which a monitor would not protect: the motion of an axis at full command, from standstill, in the
+// times below, or what a moving axis needs if that is more.
 #pragma once
 
 #include "firmware/core/arithmetic/scalar.hpp"
@@ -9,7 +9,7 @@ namespace firmware {
 template <typename Scalar>
 struct AxisParameters;
 
-/// A command that lasts as long is what the load needs (effort_monitor.hpp).
+/// A command that lasts this long is needed for the load (effort_monitor.hpp).
 inline constexpr float kLoadTime_s = 0.5f;
 
 namespace monitor_ceilings {
@@ -30,8 +30,8 @@ struct Scaled {
         fastest(p.velocity_limit / p.lead),
         count(p.encoder_resolution / (p.lead * p.sample_period_s)) {}
 
-  /// `speed` is at most what full command reaches in `time_s`, or `times` the velocity limit, or some `counts` a
-  /// sample.
+  /// Whether `speed` is at most what full command reaches in `time_s`, or `times` the velocity limit, or some `counts`
+  /// per sample.
   constexpr bool is_speed_below(Scalar speed, float time_s, int times, int counts) const {
     return speed * share <= full_change * Scalar(time_s / kLoadTime_s) || speed <= fastest * Scalar(times) ||
            speed <= count * Scalar(counts);

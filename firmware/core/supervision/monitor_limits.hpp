@@ -1,4 +1,4 @@
-// What the monitors are told: the thresholds, and what a sample is of the times that they filter over.
+// Thresholds of the monitors, and the weight of one sample in their filters.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ template <typename Scalar>
 struct MonitorLimits : MonitoredFaults::Limits<Scalar> {
   Scalar load_share{};              ///< of a sample in kLoadTime_s, 0..1
   Scalar swing_share{};             ///< of a sample in kTransientTime_s, 0..1/2
-  std::int32_t input_samples = 2;   ///< that a switch or a fault line must be active in, > 0
+  std::int32_t input_samples = 2;   ///< in which a switch or a fault line must be active, > 0
   std::int32_t capture_stride = 1;  ///< samples from one row of the capture to the next, > 0
 };
 
 /// Time constant of the filter over the difference of encoder and tachometer: 16 samples leave an eighteenth of the
 /// tachometer's noise power, and a sixteenth of an encoder count a sample.
 inline constexpr int kDisagreementShift = 4;
-/// The feedback's swing is what is left without the mean of this time, and is averaged over the longer one: ramps of
-/// references last longer than the first, and friction's jump at a reversal is small within the second.
+/// The swing of the feedback is what exceeds its mean over this time, and is averaged over the longer one. Reference
+/// ramps last longer than the first; friction's jump at a reversal is small within the second.
 inline constexpr float kTransientTime_s = 0.008f, kSwingTime_s = 0.1f;
-/// Samples that the inputs are watched before an axis is ready; three time constants of the filter above.
+/// Samples for which the inputs are checked before an axis is ready; three time constants of the filter above.
 inline constexpr std::int32_t kSelfTestSamples = 50;
 
 /// So that the hundred intervals of a capture span at least 0.1 s.
@@ -52,8 +52,7 @@ constexpr void visit_thresholds([[maybe_unused]] Visit visit, std::index_sequenc
 
 }  // namespace monitored
 
-/// `visit`: a generic function that is told each threshold, as its declaration and, as a type, its place in
-/// kThresholds.
+/// `visit`: a generic function that gets each threshold, as its declaration and, as a type, its index in kThresholds.
 template <typename Visit>
 constexpr void for_each_threshold(Visit visit) {
   MonitoredFaults::for_each([&](auto declared) {
@@ -63,7 +62,7 @@ constexpr void for_each_threshold(Visit visit) {
   });
 }
 
-/// Of parameters: `value_of` is a generic function that is told a parameter's id, as a type.
+/// From parameters: `value_of` is a generic function that gets a parameter's id as a type.
 template <typename Real, typename ValueOf>
 constexpr MonitorLimits<Real> monitor_limits(ValueOf value_of, float encoder_resolution, float sample_period_s) {
   MonitorLimits<Real> limits;

@@ -1,6 +1,6 @@
-// Every fault that a threshold decides, each declared once: what it is called, the parameter that sets its threshold,
-// what no threshold may be, and how it is found. Enumeration, parameter table, units, checks, refusals and pages are
-// made of the list at the end.
+// All faults with a threshold, each declared once: its name, the parameter of its threshold, the limits of the
+// threshold, and how it is found. Enumeration, parameter table, units, checks, refusals and pages are generated from
+// the list at the end.
 #pragma once
 
 #include <array>
@@ -406,7 +406,7 @@ struct MonitoredFaultList {
   template <typename Scalar>
   using Watches = decltype(std::tuple_cat(monitored::watch_of<Declarations, Scalar>()...));
 
-  /// `visit`: a generic function that is told each declaration.
+  /// `visit`: a generic function that gets each declaration.
   template <typename Visit>
   static constexpr void for_each(Visit visit) {
     (visit(Declarations{}), ...);

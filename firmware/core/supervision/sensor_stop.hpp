@@ -1,4 +1,4 @@
-// A stop under control with one sensor, after the other has failed or the loop has lost the drive.
+// A controlled stop with one sensor, after the other has failed or the loop has lost the drive.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace firmware {
 
 enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
 
-/// Takes the speed that the sensor shows down to 0 along the deceleration of faults, and holds it there:
+/// Reduces the speed that the sensor shows to 0 with the fault deceleration, and holds it there:
 ///
 ///   e(k) = e(k-1) + (w_ref - w) lead Ts,   u = Kc1 e + Kc2 (w_ref - w) + load + (w_ref(k) - w_ref(k-1)) / Bd2
 ///
@@ -36,8 +36,8 @@ class SensorStop {
     end();
   }
 
-  /// What is left after a fault. Of two sensors that part it is the encoder, unless that shows less than an eighth of
-  /// the reference's speed: the loop follows a tachometer that is off, so that the drive leaves the reference and the
+  /// The sensor to use after a fault. If two sensors diverge it is the encoder, unless that shows less than an eighth
+  /// of the reference's speed: the loop follows a faulty tachometer, so that the drive leaves the reference and the
   /// tachometer does not.
   constexpr TrustedSensor trusted_after(AxisFault fault, const AxisTelemetry<Scalar>& seen) const {
     if (fault == AxisFault::tachometer_invalid || (!tachometer_fitted_ && fault == AxisFault::following_error))
@@ -64,7 +64,7 @@ class SensorStop {
   constexpr bool is_active() const { return trusted_ != TrustedSensor::none; }
   constexpr bool uses_encoder() const { return trusted_ == TrustedSensor::encoder; }
 
-  /// After each step(), which put out command_V(). False once the drive does not obey.
+  /// After each step(), with its output command_V(). False once the drive does not obey.
   constexpr bool next(const AxisTelemetry<Scalar>& seen) {
     const Scalar change = measured(seen) - velocity_;
     velocity_ = velocity_ + change * Scalar(0.5f);  // a count in a sample is coarse
@@ -85,7 +85,7 @@ class SensorStop {
   }
   constexpr Scalar command_V() const { return command_V_; }
   constexpr Scalar velocity() const { return velocity_; }
-  /// Its reference has been at rest for a while, and the drive at less than a count a sample's speed from it.
+  /// The reference has been at rest for a while, and the drive's speed differs from it by less than a count per sample.
   constexpr bool has_stopped() const { return samples_at_rest_ >= Standstill::kSamples; }
 
  private:

@@ -1,4 +1,4 @@
-// Whether an axis stands, by its encoder alone; and whether it has moved since its amplifier got the enable.
+// Whether an axis is at rest, by its encoder alone; and whether it has moved since its amplifier was enabled.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@ namespace firmware {
 
 class Standstill {
  public:
-  static constexpr std::int32_t kSamples = 20;  ///< that an axis must stand for
+  static constexpr std::int32_t kSamples = 20;  ///< for which an axis must be at rest
 
-  /// `play`: counts within which a closed loop holds its place (TravelMonitor), >= 2. An axis that no loop holds has
-  /// an eighth of that: friction or the brake holds it, and it does not move at all.
+  /// `play`: counts within which a closed loop holds its position (TravelMonitor), >= 2. An axis without a closed loop
+  /// has an eighth of that: friction or the brake holds it, and it does not move.
   constexpr void configure(std::int64_t play) {
     play_ = play;
     slack_ = 2 + (play - 2) / 8;
@@ -25,11 +25,11 @@ class Standstill {
   }
   constexpr bool stands() const { return samples_ >= kSamples; }
 
-  /// The amplifier gets its enable.
+  /// The amplifier is being enabled.
   constexpr void begin_start(std::int64_t counts) { started_at_ = counts; }
   constexpr bool has_moved(std::int64_t counts) const { return !is_within(counts, started_at_, slack_); }
 
-  /// Positions are counted from another origin now.
+  /// From now on positions are counted from another origin.
   constexpr void shift(std::int64_t origin) {
     still_at_ += origin;
     started_at_ += origin;

@@ -1,4 +1,4 @@
-// When a stopping axis has come to rest.
+// Decides when a stopping axis has come to rest.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,18 @@
 
 namespace firmware {
 
-/// A reference at rest, and the encoder's count unchanged for a while. An axis that swings about its place is given up
-/// after kLongestSettling, and one whose reference does not come to rest after twice its longest ramp.
+/// The reference is at rest, and the encoder's count has been constant for a while. The wait for an axis that
+/// oscillates ends after kLongestSettling; the wait for a reference that does not come to rest, after twice its longest
+/// ramp.
 class StopEnd {
  public:
-  static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to stand
+  static constexpr std::int32_t kLongestSettling = 200;  ///< samples that a stopped axis may take to come to rest
 
   constexpr void configure(const MotionLimits& limits) { longest_ = longest_ramp(limits) + kLongestSettling; }
 
   constexpr void begin() { settling_samples_ = standing_samples_ = samples_ = 0; }
 
-  /// Each sample after begin(). `is_held`: by a closed loop; what nothing holds stands once it has come to rest.
+  /// Each sample after begin(). `is_held`: by a closed loop; an axis that nothing holds only needs to come to rest.
   constexpr bool has_stopped(bool reference_at_rest, bool is_held, std::int64_t counts) {
     if (++samples_ > longest_) return true;
     if (!is_held) settling_samples_ = 0;
@@ -32,7 +33,7 @@ class StopEnd {
     return standing_samples_ >= Standstill::kSamples || ++settling_samples_ >= kLongestSettling;
   }
 
-  /// Positions are counted from another origin now.
+  /// From now on positions are counted from another origin.
   constexpr void shift(std::int64_t origin) { standing_at_ += origin; }
 
  private:

@@ -1,4 +1,4 @@
-// One axis as a board runs it: the control law, the monitors that watch it, its states and its capture.
+// One axis of a board: the control law, its monitors, its states and its capture.
 #pragma once
 
 #include <cstdint>
@@ -26,24 +26,24 @@ class SupervisedAxis {
  public:
   explicit constexpr SupervisedAxis(Hal& hal) : hal_(hal), axis_(hal) { axis_.leave_sensors_to_supervisor(); }
 
-  /// Takes new parameters and begins the self-test, or says what is wrong and keeps the old. Only while the outputs are
-  /// off.
+  /// Takes new parameters and begins the self-test; if they are wrong, returns why and keeps the old ones. Only while
+  /// the outputs are off.
   constexpr Refusal configure(const AxisParameters<Scalar>& parameters) {
     if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
     const Refusal error = check_supervised(parameters);
     return error == Refusal::none ? take(parameters) : error;
   }
 
-  /// Likewise for an axis without a controller, to be excited in open loop alone: gains and thresholds mean nothing.
+  /// The same for an axis without a controller, for excitation in open loop only: gains and thresholds have no effect.
   constexpr Refusal configure_bare(const AxisParameters<Scalar>& parameters) {
     if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
     const Refusal error = check_sequence(parameters.sequence);
     return error == Refusal::none ? take(parameters) : error;
   }
 
-  // What comes of a request shows in the next control period. False where the state does not allow it.
+  // Requests take effect in the next control period. They return false if the state does not allow them.
   constexpr bool enable() { return may_be_enabled() && request(SupervisorEvent::enable_request); }
-  /// Likewise without the controller: the command is what excite() is told.
+  /// The same without the controller: the command is the value of excite().
   constexpr bool enable_open_loop() {
     if (!enable()) return false;
     axis_.open_loop();
@@ -51,12 +51,13 @@ class SupervisedAxis {
   }
   /// As of Axis.
   constexpr void excite(Scalar volts) { axis_.excite(volts); }
-  /// Ready, and the encoder has stood for a while: a loop that closes on a moving axis would jerk it to a stop.
+  /// Ready, and the encoder has been at rest for a while: a loop that closes on a moving axis would stop it with a
+  /// jerk.
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands(); }
   constexpr bool stands() const { return standstill_.stands(); }
   /// Slows down, then drops the enable.
   constexpr bool disable() { return is_enabled_or_starting() && request(SupervisorEvent::disable_request); }
-  /// Forgets fault and capture; the self-test decides what comes next.
+  /// Clears fault and capture; the self-test decides what comes next.
   constexpr bool clear_fault() {
     if (state_ != SupervisorState::fault) return false;
     latched_.clear();
@@ -80,7 +81,7 @@ class SupervisedAxis {
     is_interpolated_ = false;
     return state_ == SupervisorState::enabled && !homing_.is_active() && axis_.start(plan);
   }
-  /// A homed axis plans no move beyond its travel; one that is not homed none that is longer than all of it.
+  /// A homed axis plans no move beyond its travel; an axis that is not homed plans none longer than the whole travel.
   constexpr MovePlanResult plan_move_to(const CountPosition& target) const {
     if (is_homed() && !monitors_.travel().is_inside(target.counts)) return {{}, Refusal::outside_travel};
     return axis_.plan_move_to(target);
@@ -101,16 +102,16 @@ class SupervisedAxis {
     axis_.stop();
   }
 
-  /// Begins to look for home, from rest. False while the axis is not enabled, moves, or has nothing to look for.
+  /// Begins homing, from rest. False while the axis is not enabled, moves, or its homing mode finds nothing.
   constexpr bool home() {
     if (state_ != SupervisorState::enabled || !is_at_rest() || !homing_.begin()) return false;
-    if constexpr (kHasIndex) static_cast<void>(look_at_index());  // pulses of the time before
+    if constexpr (kHasIndex) static_cast<void>(look_at_index());  // earlier pulses
     is_interpolated_ = false;
     is_guided_ = true;
-    axis_.forget_home();  // the limits of an old home must not stand in the way
+    axis_.forget_home();  // the limits of an old home must not apply
     return true;
   }
-  /// The operator says that the axis stands at `position`, counts. False while it moves.
+  /// The operator states that the axis is at `position`, counts. False while it moves.
   constexpr bool set_position(std::int64_t position) {
     if (homing_.is_active() || (outputs_are_on(state_) && !is_at_rest())) return false;
     count_from(position - axis_.telemetry().encoder_counts);
@@ -124,7 +125,7 @@ class SupervisedAxis {
   constexpr std::int64_t index_way() const { return homing_.index_way(); }
 
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
-  /// In its last step it looked at the index: the others of a group do that in a sample of their own.
+  /// It read the index in its last step; the others of a group do so in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
   constexpr void leave_index_for_later() { index_.leave_for_later(); }
   /// As of Axis, before a step that comes late.
@@ -132,7 +133,7 @@ class SupervisedAxis {
 
   /// As of Axis.
   constexpr CountPosition leading() const { return axis_.leading(); }
-  /// A place that a path may lead to: of a homed axis within its travel.
+  /// A position that a path may lead to: within the travel of a homed axis.
   constexpr bool may_reach(std::int64_t counts) const { return !is_homed() || monitors_.travel().is_inside(counts); }
 
   /// The next step is a step_with() of this increment.
@@ -141,7 +142,7 @@ class SupervisedAxis {
     is_led_ = is_guided_ = true;
   }
 
-  /// One control period with the axis's own reference. `outer`: a fault that was found outside the axis.
+  /// One control period with the axis's own reference. `outer`: a fault found outside the axis.
   constexpr void step(AxisFault outer = AxisFault::none) { step(outer, read_encoder()); }
   constexpr void step(AxisFault outer, const hal::EncoderReading& encoder) {
     if (is_guided_) return step_guided(outer, encoder);
@@ -150,7 +151,7 @@ class SupervisedAxis {
     supervise(outer);
   }
 
-  /// One control period with an interpolator's increment on top; a stopping or homing axis goes its own way.
+  /// One control period plus an interpolator's increment; a stopping or homing axis ignores it.
   constexpr void step_with(Increment increment, AxisFault outer = AxisFault::none) {
     step_with(increment, outer, read_encoder());
   }
@@ -160,7 +161,7 @@ class SupervisedAxis {
     is_guided_ = false;
     is_interpolated_ = true;
     if (!increments_.allow(increment, axis_.newest_increment())) {
-      axis_.stop_interpolated();  // what cannot be right never reaches the drive
+      axis_.stop_interpolated();  // an impossible increment never reaches the drive
       axis_.step(encoder);
       return supervise(outer == AxisFault::none ? AxisFault::reference_out_of_limits : outer);
     }
@@ -178,12 +179,12 @@ class SupervisedAxis {
     return outputs_are_on(state_) || contains(requests_, SupervisorEvent::enable_request);
   }
   constexpr AxisFault fault() const { return latched_.first(); }
-  /// Whether it came since this was asked last.
+  /// Whether it came since the last call.
   constexpr bool take_new_fault() { return latched_.take_new(); }
   constexpr AxisFault second_fault() const { return latched_.second(); }
-  /// What stopped it since the last clear_fault().
+  /// The fault that stopped it since the last clear_fault().
   constexpr const FaultLatch& latched() const { return latched_; }
-  /// The amplifier drives on although its enable has dropped. Until clear_fault().
+  /// The amplifier still drives although its enable has dropped. Until clear_fault().
   constexpr bool must_cut_power() const { return must_cut_power_; }
   constexpr LimitingReasons limiting() const {
     return {.saturated = axis_.telemetry().saturated, .velocity_limited = limiting_.velocity_limited};
@@ -220,7 +221,7 @@ class SupervisedAxis {
     return error;
   }
 
-  /// A jog ends where the play of a loop that holds its place does not reach beyond the limit.
+  /// A jog ends where the play of a loop that holds its position stays within the limit.
   [[gnu::noinline]] constexpr void keep_inside() {
     if (!is_homed()) return;
     const TravelMonitor<Scalar>& travel = monitors_.travel();
@@ -236,8 +237,8 @@ class SupervisedAxis {
     enter(next_state(state_, event | event, latched_.first() != AxisFault::none));
   }
 
-  /// The command is the stop's own. Faults of amplifier, converter and board drop the enable, as does a drive that does
-  /// not obey; what the failed sensor reads is no fault any more.
+  /// The stop computes the command. Faults of amplifier, converter and board drop the enable, as does a drive that does
+  /// not obey; readings of the failed sensor are no longer faults.
   [[gnu::noinline]] constexpr void step_sensor_stop(AxisFault outer, const hal::EncoderReading& encoder) {
     const bool is_lost = sensor_stop_.uses_encoder() && !encoder.valid;
     axis_.step_with_command(encoder, sensor_stop_.command_V(), sensor_stop_.velocity());
@@ -247,12 +248,12 @@ class SupervisedAxis {
     advance(outer, own);
   }
 
-  /// Of an axis that is led, homing, or stopping by one sensor.
+  /// Of an axis that follows a path, homes, or stops by one sensor.
   [[gnu::noinline]] constexpr void step_guided(AxisFault outer, const hal::EncoderReading& encoder) {
     is_led_ ? step_with(led_increment_, outer, encoder) : step_by_itself(outer, encoder);
   }
 
-  /// Of an axis that nothing leads now.
+  /// Of an axis that follows only its own reference.
   [[gnu::noinline]] constexpr void step_by_itself(AxisFault outer, const hal::EncoderReading& encoder) {
     if (sensor_stop_.is_active()) return step_sensor_stop(outer, encoder);
     is_guided_ = homing_.is_active();
@@ -260,7 +261,7 @@ class SupervisedAxis {
     supervise(is_guided_ && outer == AxisFault::none ? guide_home() : outer);
   }
 
-  /// After each step of a homing axis: what the sequence wants next, and its fault.
+  /// After each step of a homing axis: the next request of the sequence, and its fault.
   [[gnu::noinline]] constexpr AxisFault guide_home() {
     HomingInputs seen;
     seen.counts = axis_.telemetry().encoder_counts;
@@ -316,7 +317,7 @@ class SupervisedAxis {
     advance(outer, own);
   }
 
-  /// Whatever is wrong outside: what the axis does is watched until its outputs are off.
+  /// Whatever fault comes from outside: the motion is monitored until the outputs are off.
   constexpr AxisFault watch(const AxisTelemetry<Scalar>& seen) {
     if (seen.fault != AxisFault::none) return seen.fault;
     const AxisFault lines = watch_lines();
@@ -350,8 +351,8 @@ class SupervisedAxis {
 
   constexpr void release_brake(bool released) { sequence_.release_brake(hal_.drive_enable(), released); }
 
-  /// Towards a closed loop and a released brake, while the state is starting. Until the loop is closed nothing may
-  /// move.
+  /// Towards a closed loop and a released brake, while the state is starting. The axis may not move until the loop is
+  /// closed.
   constexpr SupervisorEvents start_drive() {
     const bool is_held = axis_.telemetry().enabled && !axis_.is_open_loop();
     if (!is_held && standstill_.has_moved(axis_.telemetry().encoder_counts))
@@ -371,7 +372,7 @@ class SupervisedAxis {
     return 0;
   }
 
-  /// What is rare: faults, requests, and all states but a closed loop that simply runs.
+  /// The rare cases: faults, requests, and all states except a closed loop in normal operation.
   [[gnu::noinline]] constexpr void advance(AxisFault outer, AxisFault own) {
     SupervisorEvents events = requests_;
     requests_ = 0;
@@ -399,7 +400,7 @@ class SupervisedAxis {
     return drops ? SupervisorEvent::drop_fault : SupervisorEvent::ramp_fault;
   }
 
-  /// False where no sensor is left that shows the drive's speed, or no loop is closed.
+  /// False if no sensor is left that shows the drive's speed, or the loop is open.
   constexpr bool begin_sensor_stop(AxisFault found) {
     if (reaction_to(found) != FaultReaction::sensor_stop || sensor_stop_.is_active()) return false;
     const AxisTelemetry<Scalar>& seen = axis_.telemetry();
@@ -437,12 +438,12 @@ class SupervisedAxis {
     if (next == state_) return;
     const bool was_on = outputs_are_on(state_);
     if (next == SupervisorState::starting && sequence_.starts_at_once()) next = SupervisorState::enabled;
-    if (next == SupervisorState::stopping && !axis_.telemetry().enabled)  // no loop that could slow it down
+    if (next == SupervisorState::stopping && !axis_.telemetry().enabled)  // no loop to slow it down
       next = latched_.first() == AxisFault::none ? SupervisorState::ready : SupervisorState::fault;
     state_ = next;
     homing_.abandon();
     is_braking_ = false;
-    if (outputs_are_on(next)) drop_watch_.end();  // it is to be on again
+    if (outputs_are_on(next)) drop_watch_.end();  // it is to be enabled again
     if (next == SupervisorState::starting) {
       sequence_.begin();
       standstill_.begin_start(axis_.telemetry().encoder_counts);

@@ -1,4 +1,4 @@
-// All that parameters must satisfy before a supervised axis takes them.
+// Checks all parameters before a supervised axis takes them.
 #pragma once
 
 #include "firmware/core/axis_check.hpp"

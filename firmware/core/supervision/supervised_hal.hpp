@@ -1,4 +1,4 @@
-// What a supervised axis needs of its hardware.
+// Requirements of a supervised axis on its hardware.
 #pragma once
 
 #include <type_traits>
@@ -15,10 +15,10 @@ concept SupervisedHal = hal::AxisHal<T> && requires(T& axis) {
   requires hal::LimitInputs<std::remove_reference_t<decltype(axis.limits())>>;
 };
 
-/// What holds the motion back without being a fault.
+/// Limitations of the motion that are not faults.
 struct LimitingReasons {
   bool saturated = false;         ///< the D/A converter is at its limit
-  bool velocity_limited = false;  ///< a jog asked for more than the velocity limit, and got that limit
+  bool velocity_limited = false;  ///< a jog exceeded the velocity limit and was reduced to it
 };
 
 template <typename Hal>

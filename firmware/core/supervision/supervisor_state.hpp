@@ -1,4 +1,4 @@
-// The states of an axis and what leads from one to the next, as a table and a pure function.
+// The states of an axis and their transitions, as a table and a pure function.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@ namespace firmware {
 
 enum class SupervisorState : std::uint8_t {
   off = 0,        ///< no parameters
-  self_test = 1,  ///< outputs off; the inputs are watched for a while
+  self_test = 1,  ///< outputs off; the inputs are being checked
   ready = 2,      ///< outputs off; may be enabled
   enabled = 3,    ///< the loop is closed
   stopping = 4,   ///< the loop is closed; the reference slows down to standstill, then the enable drops
   fault = 5,      ///< outputs off, until the fault is cleared
-  starting = 6,   ///< the amplifier has its enable; it becomes ready, the loop closes, the brake is released
+  starting = 6,   ///< the amplifier is enabled; it becomes ready, the loop closes, the brake is released
 };
 
 inline constexpr std::array<const char*, 7> kStateNames{"off",      "self-test", "ready",   "enabled",
@@ -22,17 +22,17 @@ inline constexpr std::array<const char*, 7> kStateNames{"off",      "self-test",
 // cppcheck-suppress CastIntegerToAddressAtReturn
 constexpr const char* state_name(SupervisorState state) { return kStateNames[static_cast<std::size_t>(state)]; }
 
-/// The amplifier has its enable, and the D/A converter may be off 0 V, in these states only.
+/// The states in which the amplifier is enabled and the D/A converter may differ from 0 V.
 constexpr bool outputs_are_on(SupervisorState state) {
   return state == SupervisorState::enabled || state == SupervisorState::stopping || state == SupervisorState::starting;
 }
 
-/// What happened in a control period; several at once make a set.
+/// Events of a control period; several at once form a set.
 enum class SupervisorEvent : std::uint16_t {
   configured = 1 << 0,   ///< parameters were accepted
-  test_passed = 1 << 1,  ///< the self-test saw no fault until its end
+  test_passed = 1 << 1,  ///< the self-test ended without a fault
   enable_request = 1 << 2,
-  disable_request = 1 << 3,  ///< an orderly stop
+  disable_request = 1 << 3,  ///< a normal stop
   clear_request = 1 << 4,
   ramp_fault = 1 << 5,  ///< a fault whose reaction is ramp_stop
   drop_fault = 1 << 6,  ///< a fault whose reaction is drop_enable
@@ -58,7 +58,7 @@ struct SupervisorTransition {
   SupervisorState to;
 };
 
-/// The first row that fits decides: faults before wishes.
+/// The first matching row decides: faults before requests.
 inline constexpr std::array<SupervisorTransition, 19> kTransitions{{
     {SupervisorState::off, SupervisorEvent::configured, SupervisorState::self_test},
     {SupervisorState::self_test, SupervisorEvent::drop_fault, SupervisorState::fault},
@@ -72,7 +72,8 @@ inline constexpr std::array<SupervisorTransition, 19> kTransitions{{
     {SupervisorState::starting, SupervisorEvent::drop_fault, SupervisorState::fault},
     {SupervisorState::starting, SupervisorEvent::ramp_fault, SupervisorState::stopping},
     {SupervisorState::starting, SupervisorEvent::disable_request, SupervisorState::stopping},
-    {SupervisorState::starting, SupervisorEvent::started, SupervisorState::enabled},  // at once, if nothing is awaited
+    {SupervisorState::starting, SupervisorEvent::started,
+     SupervisorState::enabled},  // at once, if there is nothing to wait for
     {SupervisorState::enabled, SupervisorEvent::drop_fault, SupervisorState::fault},
     {SupervisorState::enabled, SupervisorEvent::ramp_fault, SupervisorState::stopping},
     {SupervisorState::enabled, SupervisorEvent::disable_request, SupervisorState::stopping},

@@ -1,4 +1,4 @@
-// A monitor's threshold: the parameter that sets it, and the units that it is told, kept and computed in.
+// A monitor's threshold: its parameter, and the units in which it is given, stored and computed.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace firmware {
 
-/// What a threshold is: with it go its parameter's units, and those of the field that it fills.
+/// Kind of threshold, which determines the units of the parameter and of its field.
 enum class Quantity : std::uint8_t {
   length,               ///< mm (m)
   velocity,             ///< of the drive, rad/s (m/s)
@@ -22,7 +22,7 @@ enum class Quantity : std::uint8_t {
   counts,               ///< of the encoder
 };
 
-/// The parameter's row. Every threshold is an axis' own and changes while the axis is disabled.
+/// The parameter's row. Every threshold belongs to one axis and changes while the axis is disabled.
 struct ThresholdRow {
   std::uint16_t id = 0;  ///< never used before (app/parameters/parameter_table.hpp)
   std::string_view name;
@@ -64,7 +64,7 @@ constexpr Threshold<Field> threshold(Field field, const ThresholdRow& row) {
   return {field, row};
 }
 
-/// Travel as encoder counts; beyond what 32 bits hold, the last that they do.
+/// Travel as encoder counts, limited to 32 bits.
 constexpr std::int64_t whole_counts(float travel, float encoder_resolution) {
   constexpr float kMost = 2147483520.0F;  // the largest float below 2^31
   const float counts = travel / encoder_resolution;
@@ -73,7 +73,7 @@ constexpr std::int64_t whole_counts(float travel, float encoder_resolution) {
 
 namespace threshold_units {
 
-/// A parameter's value as its field keeps it.
+/// A parameter's value as its field stores it.
 template <typename Kept>
 constexpr Kept kept(float value, Quantity quantity, float encoder_resolution, float samples_a_second) {
   if constexpr (std::is_integral_v<Kept>) {
@@ -85,7 +85,7 @@ constexpr Kept kept(float value, Quantity quantity, float encoder_resolution, fl
   }
 }
 
-/// A field in units of fixed point (core/fixed_units.hpp); whole numbers stay.
+/// A field in fixed-point units (core/fixed_units.hpp); whole numbers are unchanged.
 template <typename Kept, typename Units>
 constexpr auto fixed(Kept value, Quantity quantity, const Units& unit) {
   if constexpr (std::is_integral_v<Kept>) {

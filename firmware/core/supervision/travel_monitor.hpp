@@ -1,4 +1,4 @@
-// The ends of travel: switches and limits, by the motion that the encoder shows.
+// Monitors the ends of travel: switches and limits, by the encoder's motion.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace firmware {
 
-/// The limits count once the axis is homed, the switches always. Beyond an end an axis may stand, and may go back. It
-/// may neither be led farther out nor go there by itself: the innermost place that it has reached since it came beyond
-/// the end, and a little play for a loop that holds its place, is as far out as it may be.
+/// The limits apply once the axis is homed, the switches always. Beyond an end an axis may stand still and move back,
+/// but not move farther out, by command or by itself: the limit is the innermost position since it passed the end, plus
+/// a little play for a loop that holds its position.
 template <typename Scalar>
 class TravelMonitor {
  public:
-  /// Counts: `stop`, that the longest stop of a jog takes; `beyond`, that compensation may add to a reference inside.
+  /// Counts: `stop`, the longest stopping distance of a jog; `beyond`, what compensation may add to a reference inside.
   constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t stop, std::int64_t beyond = 0) {
     beyond_ = beyond;
     min_counts_ = p.monitors.travel_min_counts;
@@ -31,14 +31,14 @@ class TravelMonitor {
     restart();
   }
 
-  /// A quarter of the following error that is allowed at standstill, and two counts.
+  /// A quarter of the following error allowed at standstill, and two counts.
   static constexpr std::int64_t play_in_counts(const AxisParameters<Scalar>& p) {
     const Scalar counts = p.monitors.following_error_floor / p.encoder_resolution;
     constexpr Scalar kMost = Scalar(1000.0f);
     return 2 + ScalarTraits<Scalar>::truncate(counts < kMost ? counts * Scalar(0.25f) : kMost * Scalar(0.25f));
   }
 
-  /// The largest following error that is no fault.
+  /// The largest following error that is not a fault.
   static constexpr std::int64_t error_in_counts(const AxisParameters<Scalar>& p) {
     using Traits = ScalarTraits<Scalar>;
     // Beyond, travel is looked at in every sample. The range of fixed point, whose unit is a count, is 1024.
@@ -53,16 +53,16 @@ class TravelMonitor {
     return up(floor) + up(per_velocity) * up(fastest) * 2;
   }
 
-  /// A target, or a place to go on from in this direction.
+  /// A target, or a position to continue from in this direction.
   constexpr bool is_inside(std::int64_t counts) const { return counts >= min_counts_ && counts <= max_counts_; }
   constexpr bool has_room(std::int64_t counts, bool forward) const {
     return forward ? counts + play_ < max_counts_ : counts - play_ > min_counts_;
   }
-  /// From `here` by so many counts.
+  /// From `here` by this many counts.
   constexpr bool has_way(std::int64_t here, std::int64_t counts) const {
     return counts <= max_counts_ - here && counts >= min_counts_ - here;
   }
-  /// A way that no place of the travel has room for.
+  /// A distance that does not fit the travel from any position.
   constexpr bool is_longer(std::int64_t way) const {
     const std::int64_t whole = max_counts_ - min_counts_;
     return way > whole || way < -whole;
@@ -83,7 +83,7 @@ class TravelMonitor {
     return watch_ends(seen, switches);
   }
 
-  /// A homed axis that could reach an end, whatever it does, before it stands; and one of which that is not known.
+  /// A homed axis that could reach an end before it has stopped, or an axis of which that is unknown.
   constexpr bool is_near_end() const { return is_near_end_; }
 
  private:

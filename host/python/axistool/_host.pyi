@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 WINDOW_S: float
+MOST_STEPS: float
 
 _Columns = dict[str, NDArray[np.float64]]
 _Record = str | tuple[Mapping[str, NDArray[np.float64]], Mapping[str, str]]
@@ -17,8 +18,8 @@ def import_record(
     path: str, map: str, resample_s: float | None, drive: str, unwrap: Sequence[str]
 ) -> tuple[_Columns, dict[str, str]]: ...
 def checked(record: _Record) -> tuple[_Columns, dict[str, str]]: ...
-def identify(records: Sequence[_Record], drive: _Model | None, method: str) -> tuple[str, str]: ...
-def compare(model: _Model, records: Sequence[_Record], window_s: float) -> str: ...
+def identify(records: Sequence[_Record], drive: _Model | None, method: str, report: str) -> tuple[str, str]: ...
+def compare(model: _Model, records: Sequence[_Record], window_s: float, report: str) -> str: ...
 def predict(model: _Model, record: _Record, window_s: float) -> tuple[_Columns, dict[str, str]]: ...
 def diagnose(
     model: _Model,
@@ -27,6 +28,8 @@ def diagnose(
     hold: Sequence[str],
     prior: Sequence[str],
     absent: Sequence[str],
+    believed: str,
+    report: str,
     progress: _Progress,
 ) -> str: ...
 def add(
@@ -39,6 +42,8 @@ def improve(
     hold: Sequence[str],
     prior: Sequence[str],
     absent: Sequence[str],
+    output: str,
+    report: str,
     progress: _Progress,
 ) -> tuple[str, str]: ...
 def design(
@@ -52,6 +57,48 @@ def design(
     notch: Sequence[float],
     low_pass: Sequence[float],
 ) -> tuple[str, str]: ...
+
+def open_logs(
+    logs: Sequence[str],
+    sheet: _Model | None,
+    map: str,
+    hal: str,
+    drive: str,
+    torque_constant: float | None,
+    period_s: float | None,
+) -> tuple[str, list[tuple[str, str, tuple[_Columns, dict[str, str]]]], str]: ...
+def sheet(
+    name: str,
+    is_rotary: bool,
+    by_current: bool,
+    motor_constant: float | None,
+    lead_mm: float | None,
+    step_mm: float | None,
+    period_s: float | None,
+) -> str: ...
+def cut(path: str, text: str, from_s: float, to_s: float) -> tuple[_Columns, dict[str, str]]: ...
+def shift(record: _Record, channel: str, by_s: float) -> tuple[_Columns, dict[str, str]]: ...
+def friction(
+    records: Sequence[_Record], model: _Model, method: str, settle_s: float, shortest_s: float
+) -> tuple[str, str]: ...
+def plan(
+    model: _Model,
+    train: Sequence[_Record],
+    validate: Sequence[_Record],
+    rivals: Sequence[Sequence[str]],
+    box: str,
+    most_steps: float,
+    output: str,
+    report: str,
+    progress: _Progress,
+) -> tuple[str, str]: ...
+def bode(records: Sequence[_Record], model: _Model | None, parameters: str, report: str) -> tuple[str, str]: ...
+def circle(records: Sequence[_Record], models: Sequence[_Model], report: str) -> str: ...
+def export_model(
+    model: _Model, to: str, path: str, record: _Record | None
+) -> tuple[str, list[tuple[str, str]]]: ...
+def effects(kind: str) -> str: ...
+def scoreboard(folder: str, cuts: bool, sample: int, seed: int, nulls: int, progress: _Progress) -> str: ...
 
 class Device:
     def __init__(self, words: str, patience_s: float) -> None: ...

@@ -1,169 +1,92 @@
-"""identify, compare, diagnose, add, improve, design. `json` of every result is the whole answer, the
-document that the command prints with --json."""
+"""identify, compare, predict, diagnose, add, improve, design: what the commands of the same names compute.
+
+`report` of each names an HTML file to write: the page that the command writes with --report.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _host
+from .errors import UsageError
 from .model import Model
 from .record import Record
-from .sources import ModelLike, Progress, RecordLike, Records, model_source, record_source, record_sources
-from .tables import html_table
+from .results import (
+    Addition,
+    Candidate,
+    ChannelError,
+    Comparison,
+    Design,
+    Diagnosis,
+    Estimate,
+    Fitted,
+    Identification,
+    Improvement,
+    ImprovementStep,
+)
+from .sources import (
+    ModelLike,
+    PathLike,
+    Progress,
+    RecordLike,
+    Records,
+    model_source,
+    path_text,
+    record_source,
+    record_sources,
+)
 
 
-@dataclass(frozen=True)
-class Estimate:
-    value: float
-    ci95: tuple[float, float]
+def identify(
+    records: Records, drive: ModelLike | None = None, method: str | None = None, *, report: PathLike | None = None
+) -> Identification:
+    """Inertia (or mass), viscous and Coulomb friction, with 95 % intervals.
 
+    records: one or several of the same drive, with t_s (s), a command u_V (V) or current i_A (A), and a position (x_mm,
+    x_m) or speed (w_rad_s, v_m_s). drive: the data sheet; by default the paper's drive that the record names. method:
+    "sliding-ls", "unbiased-ls" or "ls"; by default the first with a tachometer, else the second. Raises Refused where
+    the axis hardly moves, BadInput for a bad file, UsageError for an unknown method.
 
-@dataclass(frozen=True)
-class Identification:
-    model: Model
-    parameters: Mapping[str, Estimate]
-    relative_error: float  # norm(residual) / norm(torque or force)
-    warnings: Sequence[str]
-    json: Mapping[str, Any]
-
-    def _repr_html_(self) -> str:
-        rows = [(name, one.value, *one.ci95) for name, one in self.parameters.items()]
-        return html_table(["parameter", "value", "95 % from", "to"], rows,
-                          f"{self.model.name}: {100.0 * self.relative_error:.2g} % of the torque or force unexplained")
-
-
-@dataclass(frozen=True)
-class ChannelError:
-    rms: float
-    floor: float  # what the best possible model would leave
-    fit: float  # per cent
-
-
-@dataclass(frozen=True)
-class Comparison:
-    combined: float  # error over floor; about 1 for a perfect model
-    channels: Mapping[str, ChannelError]
-    relative_error: float | None  # of the inverse model; None where the axis does not move
-    json: Mapping[str, Any]
-
-    def _repr_html_(self) -> str:
-        rows = [(name, one.rms, one.floor, one.rms / one.floor if one.floor > 0.0 else "", one.fit)
-                for name, one in self.channels.items()]
-        return html_table(["channel", "rms", "noise floor", "times", "fit, %"], rows,
-                          f"{self.combined:.3g} times the noise floor")
-
-
-@dataclass(frozen=True)
-class Candidate:
-    kinds: Sequence[str]
-    before: float  # combined, on validation data
-    after: float
-    confidence: float
-    parameters: Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class Diagnosis:
-    status: str
-    effects: Sequence[str]  # what to add, best first
-    explanation: str
-    next_experiment: str
-    candidates: Sequence[Candidate]
-    json: Mapping[str, Any]
-
-    def _repr_html_(self) -> str:
-        rows = [(" and ".join(one.kinds), one.before, one.after, one.confidence) for one in self.candidates]
-        return html_table(["effect", "before", "after", "confidence"], rows, f"{self.status}: {self.explanation}")
-
-
-@dataclass(frozen=True)
-class Fitted:
-    """A parameter as a fit left it."""
-
-    value: float
-    deviation: float  # standard deviation, in the parameter's unit
-    determined: bool  # by these data
-
-
-@dataclass(frozen=True)
-class Addition:
-    model: Model
-    before: float  # combined, on validation data
-    after: float
-    confidence: float
-    parameters: Mapping[str, Fitted]
-    json: Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class Rung:
-    added: Sequence[str]
-    train: float
-    validate: float
-
-
-@dataclass(frozen=True)
-class Improvement:
-    model: Model
-    ladder: Sequence[Rung]
-    stopped_because: str
-    json: Mapping[str, Any]
-
-    def _repr_html_(self) -> str:
-        rows = [(", ".join(one.added) or "as it came", one.train, one.validate) for one in self.ladder]
-        return html_table(["with", "training", "validation"], rows, self.stopped_because)
-
-
-@dataclass(frozen=True)
-class Design:
-    A: NDArray[np.float64]
-    B: NDArray[np.float64]
-    Kobs: NDArray[np.float64]
-    Kc: NDArray[np.float64]
-    observer_poles: NDArray[np.complex128]
-    parameters: str  # the file of the board's parameters
-    json: Mapping[str, Any]
-
-
-def identify(records: Records, drive: ModelLike | None = None, method: str | None = None) -> Identification:
-    """Inertia (or mass), viscous and Coulomb friction. `drive`: data sheet. `method`: "sliding-ls", "unbiased-ls" or
-    "ls". Raises Refused where the axis hardly moved.
-
-    >>> found = identify("steps.csv", drive="drive.toml")
+    >>> found = identify("steps.csv", drive="drive.toml", report="identify.html")
     >>> low, high = found.parameters["J_kg_m2"].ci95  # kg m^2
     >>> low < found.parameters["J_kg_m2"].value < high
     True
     """
     sheet = None if drive is None else model_source(drive)
-    text, model = _host.identify(record_sources(records), sheet, method or "")
+    text, model = _host.identify(record_sources(records), sheet, method or "", path_text(report))
     answer = json.loads(text)
     parameters = {name: Estimate(one["value"], (one["ci95"][0], one["ci95"][1]))
                   for name, one in answer["parameters"].items()}
     return Identification(Model.parse(model), parameters, answer["relative_error"], answer["warnings"], answer)
 
 
-def compare(model: ModelLike, records: Records, window_s: float | None = None) -> Comparison:
-    """How well a model predicts records from their recorded command alone, over windows of `window_s` (s).
+def compare(
+    model: ModelLike, records: Records, window_s: float | None = None, *, report: PathLike | None = None
+) -> Comparison:
+    """How well a model predicts records from their recorded command alone.
 
-    >>> compared = compare("x.toml", "jog.csv")
+    window_s: length of a prediction, s, above 0; each restarts from the smoothed measured state. Raises BadInput for a
+    record that does not fit the model.
+
+    >>> compared = compare("x.toml", "jog.csv", report="compare.html")
     >>> compared.channels["x_mm"].rms > compared.channels["x_mm"].floor > 0.0  # mm
     True
     """
     window_s = _host.WINDOW_S if window_s is None else window_s
-    answer = json.loads(_host.compare(model_source(model), record_sources(records), window_s))
+    answer = json.loads(_host.compare(model_source(model), record_sources(records), window_s, path_text(report)))
     channels = {name: ChannelError(one["rms"], one["floor"], one["fit"]) for name, one in answer["channels"].items()}
     return Comparison(answer["combined"], channels, answer["relative_error"], answer)
 
 
 def predict(model: ModelLike, record: RecordLike, window_s: float | None = None) -> Record:
-    """The record's rows beside the model's: x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s).
+    """A record of n rows with its position and speed and the model's beside them, each of shape (n,).
+
+    The predicted columns are x_pred_mm (mm) and w_pred_rad_s (rad/s); of a linear drive x_pred_m (m) and v_pred_m_s
+    (m/s). window_s: as compare takes it. Raises BadInput for a record that does not fit the model.
 
     >>> rows = predict("x.toml", "jog.csv")
     >>> rows["x_pred_mm"].shape == rows["x_mm"].shape
@@ -186,13 +109,23 @@ def diagnose(
     hold: Iterable[str] = (),
     prior: Mapping[str, float] = MappingProxyType({}),
     absent: Iterable[str] = (),
+    believed: PathLike | None = None,
+    report: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Which physical effect the model lacks. Without `validate`, blocks of the training data are kept back to judge.
-    `hold`: parameters that stay ("J_kg_m2"); `prior`: standard deviations of what the model says; `absent`: effects that
-    this machine is known not to have."""
-    answer = json.loads(_host.diagnose(model_source(model), record_sources(train), record_sources(validate),
-                                       list(hold), _beliefs(prior), list(absent), progress))
+    """Which physical effect the model lacks.
+
+    train, validate: records; without `validate`, blocks of the training data are held back. hold: parameters that keep
+    the model's value ("J_kg_m2"). prior: standard deviations of the model's values, in their units. absent: effects that
+    this machine certainly does not have. believed: JSON file that plan or diagnose wrote before a planned run that is
+    among `train`. Raises BadInput for a bad file, UsageError for an unknown parameter or effect.
+
+    >>> found = diagnose("y.toml", "y-jog.csv", "y-valid.csv", report="diagnose.html")
+    >>> found.status
+    'adequate'
+    """
+    answer = json.loads(_host.diagnose(model_source(model), record_sources(train), record_sources(validate), list(hold),
+                                       _beliefs(prior), list(absent), path_text(believed), path_text(report), progress))
     verdict = answer["verdict"]
     candidates = [Candidate(one["kinds"], one["before"], one["after"], one["confidence"], one["parameters"])
                   for one in answer["candidates"]]
@@ -203,8 +136,16 @@ def diagnose(
 def add(
     model: ModelLike, kind: str, train: Records, validate: Records | None = None, *, over: str | None = None
 ) -> Addition:
-    """Adds one effect at a word and fits all parameters again. `over`: coordinate of a free_curve. Raises Refused where
-    no stretch of the records judges it."""
+    """Adds one effect to the model and fits all parameters again.
+
+    kind: of `effects()`. over: coordinate of a free_curve; by default the one with the smallest validation error. If the
+    effect predicts validation data worse, the result holds the model as given. Raises UsageError for an effect that is
+    unknown or cannot be added, Refused if no stretch of the records shows it.
+
+    >>> added = add("z.toml", "cogging", "z-jog.csv")
+    >>> added.after < 0.5 * added.before, "cogging" in added.model.kinds
+    (True, True)
+    """
     text, new = _host.add(model_source(model), kind, record_sources(train), record_sources(validate), over or "")
     answer = json.loads(text)
     parameters = {one["name"]: Fitted(one["value"], one["deviation"], one["determined"])
@@ -220,13 +161,24 @@ def improve(
     hold: Iterable[str] = (),
     prior: Mapping[str, float] = MappingProxyType({}),
     absent: Iterable[str] = (),
+    output: PathLike | None = None,
+    report: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Improvement:
-    """Adds effects while each is significant on validation data; the arguments are those of diagnose."""
-    text, better = _host.improve(model_source(model), record_sources(train), record_sources(validate),
-                                 list(hold), _beliefs(prior), list(absent), progress)
+    """Adds effects while each is significant on validation data.
+
+    The arguments are those of diagnose. output: file to write the better model to; a report names it. Raises as
+    diagnose does, and UsageError for a report without an output.
+
+    >>> better = improve("y.toml", "y-jog.csv", "y-valid.csv", output="better.toml", report="improve.html")
+    >>> better.ladder[-1].validate < 1.2  # times the noise floor
+    True
+    """
+    require_output(output, report)
+    text, better = _host.improve(model_source(model), record_sources(train), record_sources(validate), list(hold),
+                                 _beliefs(prior), list(absent), path_text(output), path_text(report), progress)
     answer = json.loads(text)
-    ladder = [Rung(one["added"], one["train"], one["validate"]) for one in answer["ladder"]]
+    ladder = [ImprovementStep(one["added"], one["train"], one["validate"]) for one in answer["ladder"]]
     return Improvement(Model.parse(better), ladder, answer["stopped_because"], answer)
 
 
@@ -242,14 +194,26 @@ def design(
     notch: float | Sequence[float] = (),
     low_pass: float | Sequence[float] = (),
 ) -> Design:
-    """Kalman gain and state feedback. `fc`, `zeta`: natural frequency (Hz) and damping of the closed loop; `rw`, `rwd`,
-    `ru`, `rx`: variances of tachometer, disturbance, command and position; `notch`, `low_pass`: frequency in Hz, and
-    after it damping and depth."""
+    """Kalman gain and state feedback.
+
+    fc (Hz), zeta: natural frequency and damping of the closed loop. rw, rwd, ru, rx: variances of tachometer
+    ((rad/s)^2), disturbance (V^2), command (V^2) and position (mm^2). notch, low_pass: frequency in Hz, optionally
+    followed by damping and, for the notch, depth. Raises BadInput for an implausible model or design.
+
+    >>> design("x.toml", fc=25.0, notch=[110.0, 0.5]).Kc.shape
+    (2,)
+    """
     text, parameters = _host.design(model_source(model), fc, zeta, rw, rwd, ru, rx, _numbers(notch), _numbers(low_pass))
     answer = json.loads(text)
     poles = np.array([complex(re, im) for re, im in answer["observer_poles"]])
     return Design(np.array(answer["A"]), np.array(answer["B"]), np.array(answer["Kobs"]), np.array(answer["Kc"]), poles,
                   parameters, answer)
+
+
+def require_output(output: PathLike | None, report: PathLike | None) -> None:
+    """Raises UsageError for a report of a result that is written nowhere."""
+    if report is not None and output is None:
+        raise UsageError("the report names the file of the result: give output=, too")
 
 
 def _numbers(given: float | Sequence[float]) -> list[float]:

@@ -21,9 +21,21 @@ def _device(device: str | None) -> _host.Device:
 
 @contextmanager
 def simulated_board(x: ModelLike | None = None) -> Iterator[str]:
-    """Runs a simulated board of one axis around a model (by default the paper's x axis), in real time in a thread of its
-    own, and gives what the other functions take as `device`; so does the command line. It keeps no parameters
-    (set_parameters gives it some) and ends with the block."""
+    """A simulated board with one axis, for the time of the block: yields what the other functions and the command line
+    take as `device`. It runs in real time in a thread of its own.
+
+    x: the model to simulate; by default the paper's x axis. The board starts without parameters: use set_parameters.
+    Raises BadInput for a bad model.
+
+    >>> from axistool import design
+    >>> with simulated_board("x.toml") as device:
+    ...     set_parameters(design("x.toml").parameters, device=device)
+    ...     enable(device=device)
+    ...     record = capture(0.2, device)  # s
+    ...     disable(device)
+    >>> len(record) >= 200, record["x_mm"].shape == (len(record),)
+    (True, True)
+    """
     with tempfile.TemporaryDirectory(prefix="axistool-") as folder:
         socket = Path(folder) / "board.socket"
         board = _host.SimulatedBoard(None if x is None else model_source(x), str(socket))
@@ -34,17 +46,40 @@ def simulated_board(x: ModelLike | None = None) -> Iterator[str]:
 
 
 def set_parameters(parameters: str, axis: str = "x", device: str | None = None) -> None:
-    """Gives an axis what a design made (`Design.parameters`): all of it, or nothing if one value is wrong."""
+    """Sets the parameters of an axis (text, as `Design.parameters`): all of them, or none if one is wrong.
+
+    device: usb:SERIAL, sim or socket:PATH; by default AXIS_DEVICE, else the only board on USB. Raises BadInput for a
+    wrong value, NoSuchDevice, ProtocolError or TimeOut for the board.
+
+    >>> with simulated_board("x.toml") as device:
+    ...     set_parameters("x.loop.unknown = 1.0", device=device)
+    Traceback (most recent call last):
+    ...
+    axistool.errors.BadInput: ...
+    """
     _host.set_parameters(_device(device), parameters, axis)
 
 
 def enable(axis: str = "x", device: str | None = None) -> None:
-    """Closes the control loop: the axis may move. The command line asks before; a call is the answer yes."""
+    """Closes the control loop of an axis, which may then move. Unlike the command line it does not ask.
+
+    Raises DeviceFault where a fault prevents it, Refused for an axis without parameters.
+
+    >>> with simulated_board("x.toml") as device:
+    ...     enable("x", device)
+    Traceback (most recent call last):
+    ...
+    axistool.errors.Refused: ...
+    """
     _host.enable(_device(device), axis)
 
 
 def disable(device: str | None = None) -> None:
-    """Opens the control loops of all axes."""
+    """Slows all axes down and opens their control loops.
+
+    >>> with simulated_board("x.toml") as device:
+    ...     disable(device)
+    """
     _host.disable(_device(device))
 
 
@@ -55,8 +90,17 @@ def capture(
     axis: str = "x",
     progress: Progress | None = None,
 ) -> Record:
-    """`device`: usb:SERIAL, sim or socket:PATH; the only one on USB by default. `jog`: "20:0.6,-20:0.6", mm/s and s, on an
-    axis that is enabled; it stops whatever ends the capture."""
+    """A record of an axis at loop rate: t_s (s), u_V (V), x_mm (mm) and the others of `axistool capture`, each (n,).
+
+    seconds: 0 to 86400; 0 is as long as the jogs. jog: "20:0.6,-20:0.6" in mm/s and s, of an enabled axis, which stops
+    when the capture ends for any reason. device: as set_parameters takes it. Raises UsageError for a wrong duration,
+    Refused for a jog of an axis that is not enabled, NoSuchDevice, ProtocolError or TimeOut for the board.
+
+    >>> with simulated_board("x.toml") as device:
+    ...     record = capture(0.1, device)
+    >>> len(record) >= 100, bool((record["t_s"][1:] > record["t_s"][:-1]).all())
+    (True, True)
+    """
     jogs = [] if jog is None else jog.split(",")
     columns, header = _host.capture(_device(device), axis, seconds, jogs, progress)
     return Record(columns, header)

@@ -10,16 +10,23 @@ from pathlib import Path
 from typing import Any
 
 from .errors import BadInput
+from .tables import html_table
 
 
 @dataclass
 class Model:
-    """`document` is the file as TOML has it; change it in place, and write it."""
+    """A drive's data sheet and effects. document: the file's content, which may be changed in place.
+
+    >>> model = Model.read("x.toml")
+    >>> model.effect("inertia")["J_kg_m2"] > 0.0, "coulomb" in model.kinds  # kg m^2
+    (True, True)
+    """
 
     document: dict[str, Any]
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Model:
+        """The model of a file. Raises BadInput where it cannot be read as TOML."""
         try:
             return cls(tomllib.loads(Path(path).read_text(encoding="utf-8")))
         except (OSError, tomllib.TOMLDecodeError) as fault:
@@ -27,31 +34,41 @@ class Model:
 
     @classmethod
     def parse(cls, text: str) -> Model:
+        """The model of a file's text. Raises tomllib.TOMLDecodeError where it is not TOML."""
         return cls(tomllib.loads(text))
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Every number reads back as the same double."""
+        """Writes a file (axis-model/1); every number reads back as the same double."""
         Path(path).write_text(self.text(), encoding="utf-8")
 
     def text(self) -> str:
-        """The file's."""
+        """The text of that file."""
         return _toml(self.document)
 
     @property
     def name(self) -> str:
+        """The drive's name; empty where the file states none."""
         return str(self.document.get("name", ""))
 
     @property
     def kinds(self) -> list[str]:
-        """Of its effects, in the file's order."""
+        """The kinds of its effects, in the file's order."""
         return [str(effect["kind"]) for effect in self.document.get("effect", [])]
 
     def effect(self, kind: str) -> dict[str, Any]:
-        """The first effect of this kind. Throws KeyError where there is none."""
+        """The first effect of this kind. Raises KeyError where there is none."""
         for effect in self.document.get("effect", []):
             if effect["kind"] == kind:
                 return dict(effect)
         raise KeyError(kind)
+
+    def _repr_html_(self) -> str:
+        rows = []
+        for effect in self.document.get("effect", []):
+            rows += [(effect["kind"], key, value) for key, value in effect.items() if isinstance(value, float)]
+            rows += [(effect["kind"], f"{key}, order {one['order']}", value) for one in effect.get("harmonics", [])
+                     for key, value in one.items() if isinstance(value, float)]
+        return html_table(["effect", "parameter", "value"], rows, self.name)
 
 
 def _value(value: Any) -> str:

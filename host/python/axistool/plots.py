@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import Any
 
@@ -16,10 +17,23 @@ def axes_of(axes: Any = None) -> Any:
 
 
 def stacked_axes(count: int) -> list[Any]:
-    """One above the other, over one time."""
+    """`count` axes, one above the other, with one horizontal axis. Raises UsageError where matplotlib is missing."""
     try:
         pyplot = import_module("matplotlib.pyplot")
     except ImportError as missing:
         raise UsageError("plot() needs matplotlib: apt-get install python3-matplotlib, or pip install matplotlib") from missing
     _, axes = pyplot.subplots(count, 1, sharex=True, squeeze=False)
     return [row[0] for row in axes]
+
+
+def bars(axes: Any, labels: Sequence[str], series: Mapping[str, Sequence[float]], unit: str) -> Any:
+    """Horizontal bars, a group for each label from the top, a colour for each series. Returns the axes."""
+    axes = axes_of(axes)
+    height = 0.8 / max(1, len(series))
+    for number, (name, values) in enumerate(series.items()):
+        axes.barh([row + number * height for row in range(len(labels))], values, height, label=name)
+    axes.set_yticks(range(len(labels)), labels)
+    axes.invert_yaxis()
+    axes.set_xlabel(unit)
+    axes.legend()
+    return axes

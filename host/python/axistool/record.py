@@ -20,15 +20,20 @@ from .tables import html_table
 
 @dataclass
 class Record:
-    """Columns by their names with units (`t_s`, `u_V`, `x_mm`, `w_rad_s`, …), all of one length, and the header's
-    entries."""
+    """A record of n rows. columns: arrays of shape (n,) by names with units (`t_s`, `u_V`, `x_mm`, `w_rad_s`, …);
+    header: the entries of the file's header.
+
+    >>> record = Record.read("jog.csv")
+    >>> record["x_mm"].shape == (len(record),), record.header["drive"]  # mm
+    (True, 'x')
+    """
 
     columns: Mapping[str, NDArray[np.float64]]
     header: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def from_arrays(cls, header: Mapping[str, str] | None = None, **columns: ArrayLike) -> Record:
-        """Of anything that NumPy takes, one-dimensional and of one length, with the units in the names.
+        """Of anything that NumPy takes, each of shape (n,), with the units in the names.
 
         >>> import numpy as np
         >>> t = np.arange(500) * 0.001  # s
@@ -40,8 +45,9 @@ class Record:
 
     @classmethod
     def of(cls, given: Any) -> Record:
-        """Of a path, a mapping of columns (a dict, an xarray Dataset), a pandas DataFrame (its index counts where it has
-        a name), or a NumPy array with named fields. Raises TypeError for anything else.
+        """Of a path, a mapping of columns, a pandas DataFrame (its index is a column where it has a name), an xarray
+        Dataset (its coordinates are columns) or the dict of one, or a NumPy array with named fields. The attrs of frames
+        and datasets become the header. Raises TypeError for anything else.
 
         >>> Record.of({"t_s": [0.0, 0.001], "x_mm": [1.0, 2.0]})["x_mm"].tolist()
         [1.0, 2.0]
@@ -53,10 +59,16 @@ class Record:
         if hasattr(given, "columns") and hasattr(given, "to_numpy"):
             index = getattr(given.index, "name", None)
             named = given.reset_index() if index is not None else given
-            header = {str(key): str(value) for key, value in dict(getattr(given, "attrs", {})).items()}
-            return cls.from_arrays(header, **{str(name): named[name].to_numpy() for name in named.columns})
+            return cls.from_arrays(_header(getattr(given, "attrs", {})),
+                                   **{str(name): named[name].to_numpy() for name in named.columns})
+        if isinstance(given, Mapping) and "data_vars" in given:
+            both = {**given.get("coords", {}), **given["data_vars"]}
+            return cls.from_arrays(_header(given.get("attrs", {})),
+                                   **{str(name): one["data"] for name, one in both.items()})
         if isinstance(given, Mapping):
-            return cls.from_arrays(None, **{str(name): np.asarray(given[name]) for name in given})
+            all_names = [*getattr(given, "coords", ()), *given]
+            return cls.from_arrays(_header(getattr(given, "attrs", {})),
+                                   **{str(name): np.asarray(given[name]) for name in all_names})
         names = getattr(getattr(given, "dtype", None), "names", None)
         if names:
             return cls.from_arrays(None, **{name: given[name] for name in names})
@@ -69,14 +81,25 @@ class Record:
         """The columns by their names."""
         return {name: np.asarray(values, dtype=np.float64) for name, values in self.columns.items()}
 
+    def to_xarray_dict(self) -> dict[str, Any]:
+        """What `xarray.Dataset.from_dict` takes: t_s as the coordinate, the other columns over it, the header as attrs.
+
+        >>> Record.of({"t_s": [0.0, 0.001], "x_mm": [1.0, 2.0]}).to_xarray_dict()["data_vars"]["x_mm"]["dims"]
+        ('t_s',)
+        """
+        columns = {name: {"dims": ("t_s",), "data": values} for name, values in self.to_dict().items()}
+        coords = {"t_s": columns.pop("t_s")} if "t_s" in columns else {}
+        return {"coords": coords, "data_vars": columns, "dims": {"t_s": len(self)}, "attrs": dict(self.header)}
+
     def to_pandas(self) -> Any:
-        """A DataFrame with a column each; the header is in its attrs. Raises ImportError without pandas."""
+        """A DataFrame with one column for each of the record's; the header is in its attrs. Raises ImportError without
+        pandas."""
         frame = import_module("pandas").DataFrame(self.to_dict())
         frame.attrs.update(self.header)
         return frame
 
     def plot(self) -> Any:
-        """By matplotlib, every column over time; returns the list of its axes."""
+        """By matplotlib: every column over time. Returns the list of its axes; raises UsageError without matplotlib."""
         names = [name for name in self.columns if name != "t_s"]
         axes = stacked_axes(len(names))
         for name, one in zip(names, axes):
@@ -92,7 +115,7 @@ class Record:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Record:
-        """Numbers as the file has them, of any table (also .npy); the checks come when the record is used."""
+        """The numbers of any table or .npy file, unchecked; the functions check a record when they take it."""
         columns, header = _host.read_columns(os.fspath(path))
         return cls(columns, header)
 
@@ -105,21 +128,31 @@ class Record:
         drive: str = "",
         unwrap: Mapping[str, float] | None = None,
     ) -> Record:
-        """Of a .mat or .npy file or any table, as `axistool import`: map="t_s=t_ms*0.001,u_V=cmd,x_mm=#3".
+        """Of a .mat or .npy file or any table, as `axistool import` makes it.
 
-        unwrap: columns that begin again after so much, {"x_mm": 6.2831853} for an angle within its turn.
+        map: "t_s=t_ms*0.001,u_V=cmd,x_mm=#3". resample_s: period, s, to resample at. unwrap: the range at which a column
+        wraps, in its unit, {"x_mm": 6.2831853} for an angle within a turn. Raises BadInput for a bad file or mapping.
+
+        >>> record = Record.from_log("scope.csv", "t_s=#1*0.001,i_A=#2,x_mm=#3*0.001", drive="x")
+        >>> sorted(record.columns)
+        ['i_A', 't_s', 'x_mm']
         """
         ranges = [f"{column}={turn!r}" for column, turn in (unwrap or {}).items()]
         columns, header = _host.import_record(os.fspath(path), map, resample_s, drive, ranges)
         return cls(columns, header)
 
     def checked(self) -> Record:
-        """As the functions take it, in the drive's own units. Raises BadInput in the words of the program."""
+        """The record as the functions take it, in the drive's own units. Raises BadInput where it is not valid."""
         columns, header = _host.checked((self.columns, self.header))
         return Record(columns, header)
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Every number reads back as the same double."""
+        """Writes a file (axis-record/1); every number reads back as the same double. Raises BadInput for columns of
+        several lengths."""
+        Path(path).write_text(self.text(), encoding="utf-8")
+
+    def text(self) -> str:
+        """The text of that file."""
         lengths = {len(values) for values in self.columns.values()}
         if len(lengths) != 1:
             raise BadInput(f"the columns of a record have one length; here are {sorted(lengths)}")
@@ -128,10 +161,14 @@ class Record:
         lines.append(",".join(self.columns))
         columns = [np.asarray(values, dtype=np.float64).tolist() for values in self.columns.values()]
         lines += [",".join(map(repr, row)) for row in zip(*columns)]
-        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return "\n".join(lines) + "\n"
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         return self.columns[name]
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
+
+
+def _header(attrs: Mapping[Any, Any]) -> dict[str, str]:
+    return {str(key): str(value) for key, value in attrs.items()}

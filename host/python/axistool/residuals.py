@@ -1,4 +1,4 @@
-"""What a model leaves of a record, against any coordinate."""
+"""Residuals of a model on a record, against any coordinate."""
 
 from __future__ import annotations
 
@@ -6,20 +6,25 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .analysis import predict
 from .plots import axes_of
 from .record import Record
 from .sources import ModelLike, RecordLike, as_record
+from .tables import html_table
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """Measured less predicted, a row of the record each.
+    """Measured minus predicted, one value for each of the record's n rows.
 
-    coordinate: shape (n,), in the unit of its name; values: shape (n,), in the unit of `channel`; forward: shape (n,),
-    whether the axis moves in the positive direction there.
+    coordinate (n,): in the unit of its name; values (n,): in the unit of `channel`; forward (n,): whether the axis moves
+    in the positive direction there.
+
+    >>> left = residuals("x.toml", "jog.csv", against="speed")
+    >>> left.values.shape == left.forward.shape
+    True
     """
 
     channel: str
@@ -29,7 +34,7 @@ class Residuals:
     forward: NDArray[np.bool_]
 
     def plot(self, axes: Any = None) -> Any:
-        """By matplotlib, forward and backward apart; returns its axes."""
+        """By matplotlib: forward and backward in two colours. Returns the axes; raises UsageError without matplotlib."""
         axes = axes_of(axes)
         for which, words in ((self.forward, "forward"), (~self.forward, "backward")):
             axes.plot(self.coordinate[which], self.values[which], ".", markersize=2, label=words)
@@ -38,12 +43,24 @@ class Residuals:
         axes.legend()
         return axes
 
+    def _repr_html_(self) -> str:
+        rows = [(words, int(np.count_nonzero(which)), float(np.sqrt(np.mean(self.values[which] ** 2))))
+                for which, words in ((self.forward, "forward"), (~self.forward, "not forward")) if np.any(which)]
+        return html_table(["direction", "rows", "rms"], rows, f"{self.channel}: measured - predicted")
+
 
 def residuals(
-    model: ModelLike, record: RecordLike, against: str = "t_s", channel: str | None = None, window_s: float | None = None
+    model: ModelLike,
+    record: RecordLike,
+    against: str | ArrayLike = "t_s",
+    channel: str | None = None,
+    window_s: float | None = None,
 ) -> Residuals:
-    """Residuals of `channel` ("x_mm", "w_rad_s", …; default: the position, else the speed) against a column of the
-    record ("t_s", "x_mm", "temp_C", …) or against "speed".
+    """Residuals of a channel against a coordinate.
+
+    channel: "x_mm", "w_rad_s", …; by default the position, else the speed. against: a column of the record ("t_s",
+    "x_mm", "temp_C", …), "speed", or an array of shape (n,) of your own. window_s: as compare takes it. Raises KeyError
+    for an unknown channel or column, ValueError for an array of another shape.
 
     >>> left = residuals("x.toml", "jog.csv", against="x_mm")
     >>> left.values.shape == left.coordinate.shape
@@ -57,8 +74,13 @@ def residuals(
     if predicted is None or predicted not in rows.columns:
         raise KeyError(f"channel {chosen!r} is not predicted; there is {', '.join(measured)}")
     speed = _speed(rows)
-    coordinate = speed if against == "speed" else _column(against, rows, given)
-    return Residuals(chosen, against, coordinate, rows[chosen] - rows[predicted], speed > 0.0)
+    if not isinstance(against, str):
+        name, coordinate = "coordinate", np.asarray(against, dtype=np.float64)
+        if coordinate.shape != speed.shape:
+            raise ValueError(f"against has shape {coordinate.shape}; the record has {speed.shape}")
+    else:
+        name, coordinate = against, speed if against == "speed" else _column(against, rows, given)
+    return Residuals(chosen, name, coordinate, rows[chosen] - rows[predicted], speed > 0.0)
 
 
 def _speed(rows: Record) -> NDArray[np.float64]:

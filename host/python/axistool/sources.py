@@ -14,7 +14,8 @@ from .record import Record
 
 # Record.of takes all of them; Any stands for a pandas DataFrame or an array with named fields.
 RecordLike: TypeAlias = Record | str | os.PathLike[str] | Mapping[str, Any] | Any
-ModelLike: TypeAlias = Model | str | os.PathLike[str]
+PathLike: TypeAlias = str | os.PathLike[str]
+ModelLike: TypeAlias = Model | PathLike
 Records: TypeAlias = RecordLike | Iterable[RecordLike]
 # Called now and then, in the caller's thread, with the share that is done (0 to 1) and what is being done; what it raises
 # ends the work.
@@ -27,6 +28,10 @@ ModelSource: TypeAlias = str | tuple[str]
 def as_record(given: RecordLike) -> Record:
     """Raises TypeError, with the way to make one, for what is none."""
     return Record.of(given)
+
+
+def path_text(path: PathLike | None) -> str:
+    return "" if path is None else os.fspath(path)
 
 
 def record_source(record: RecordLike) -> RecordSource:

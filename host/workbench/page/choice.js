@@ -1,4 +1,4 @@
-// What is worked on: one model, models to draw beside it, and the role of each record. Kept in the folder.
+// The present selection: one model, models to draw beside it, and the role of each record. Stored in the folder.
 import { el, notice } from "./elements.js";
 import { get, post, upload } from "./exchange.js";
 import { begin } from "./jobs.js";

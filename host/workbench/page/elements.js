@@ -1,4 +1,4 @@
-// Elements from data. Text stays text: nothing here reads markup.
+// Makes HTML elements from data. Text is never interpreted as markup.
 
 /**
  * @param {string} tag

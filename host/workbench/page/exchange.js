@@ -1,4 +1,4 @@
-// Questions to the program behind the page.
+// Requests to the program that serves the page.
 
 async function told(response) {
   const answer = await response.json().catch(() => ({ error: response.status === 403 ? "This page has expired: open the address that axistool serve printed." : "The program's answer cannot be read." }));

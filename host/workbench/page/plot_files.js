@@ -1,4 +1,4 @@
-// A figure as files: its numbers as CSV, what is seen as PNG.
+// Saves a figure: its numbers as CSV, its picture as PNG.
 import { el } from "./elements.js";
 
 /**

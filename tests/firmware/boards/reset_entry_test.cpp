@@ -1,4 +1,4 @@
-// What the fault log is told of a run that a watchdog or a fault of the processor ended.
+// Entries of the fault log after a watchdog or a processor fault has ended a run.
 #include "firmware/boards/image/reset_entry.hpp"
 
 #include <gtest/gtest.h>

@@ -18,8 +18,8 @@ namespace {
 using namespace std::chrono_literals;
 using testing::Contains;
 
-/// The board is a process of its own behind the kernel's USB stack, and its axis moves in the guest's time, whether or
-/// not its host is quick. Catches a step of commissioning that only works where board and host take turns.
+/// The board is a separate process behind the kernel's USB stack, and its axis moves in the guest's time, however fast
+/// its host is. Catches a step of commissioning that works only if board and host take turns.
 TEST(UsbCommission, FindsWhatCogsAndMakesItBetter) {
   if (!guest_test::in_guest()) GTEST_SKIP() << "runs in the guest: tests/guest/run.sh";
   const TemporaryFolder folder;
@@ -27,8 +27,7 @@ TEST(UsbCommission, FindsWhatCogsAndMakesItBetter) {
   sim::DriveDescription drive = host::read_model(machine);
   drive.effects.clear();
   host::write_model(drive, sheet);
-  Child board(
-      {AXISTOOL_PROGRAM, "sim", "--usb", "--serial", "BENCH", "--forget", "--axes", "1", "--x", machine});
+  Child board({AXISTOOL_PROGRAM, "sim", "--usb", "--serial", "BENCH", "--forget", "--axes", "1", "--x", machine});
   ASSERT_TRUE(guest_test::boards_become(1, host::hid_library(host::HidBackend::hidraw), 20s));
   // Its steps show on the console while it runs.
   const ProgramRun run =

@@ -1,4 +1,4 @@
-// What the echo board and its tests tell each other.
+// Reports between the echo board and its tests.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What tests of boards on the guest's USB share.
+// Common code of the tests with boards on the guest's USB.
 #pragma once
 
 #include <gtest/gtest.h>

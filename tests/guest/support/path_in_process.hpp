@@ -1,4 +1,4 @@
-// A G-code program on a simulated board within the test: what the same loop does without a bus.
+// A G-code program on a simulated board within the test: the same loop without a bus.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// udev runs while the tests do: it applies rules, and tells libusb which devices come and go.
+// udev runs during the tests: it applies rules, and reports devices to libusb.
 #include <gtest/gtest.h>
 
 #include <chrono>

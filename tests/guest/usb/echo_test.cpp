@@ -10,8 +10,8 @@
 #include "host/exit_codes.hpp"
 #include "host/link/udev_rule.hpp"
 #include "host/link/usb_boards.hpp"
-#include "tests/guest/echo_board/echo_report.hpp"
 #include "tests/child.hpp"
+#include "tests/guest/echo_board/echo_report.hpp"
 #include "tests/guest/support/guest_boards.hpp"
 #include "tests/run_program.hpp"
 
@@ -136,7 +136,7 @@ TEST_P(Usb, TellsTwoBoardsApart) {
   }
 }
 
-/// Opens the board as a user without rights who is in the groups named; the exit code of ExitCode.
+/// Opens the board as an unprivileged user in the named groups; returns the exit code of ExitCode.
 int open_as_user(const host::HidLibrary& library, const char* groups, std::string& message) {
   std::array<int, 2> pipe_ends{};
   if (pipe(pipe_ends.data()) != 0) return -1;

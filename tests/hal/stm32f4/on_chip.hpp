@@ -1,4 +1,4 @@
-// A test whose registers are answered by the parts, and which ends with a failure if a part has complained.
+// A test in which models of the peripherals simulate the registers; it fails if a model reports a wrong access.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The service port at a rate at which characters take their time.
+// The service port at a real character rate.
 #include <string_view>
 
 #include "hal/serial_queue.hpp"

@@ -112,7 +112,7 @@ TEST_F(WindowWatchdog, StandsStillWithoutItsClock) {
   EXPECT_TRUE(chip.window_watchdog.is_running());
 }
 
-/// Periods that passed before it began do not bring its first food too early.
+/// Catches a first feeding that is too early because periods before the start were counted.
 TEST_F(WindowWatchdog, BeginsItsTimeWhenItStarts) {
   hal::stm32f4::rcc().APB1ENR = hal::stm32f4::rcc().APB1ENR & ~hal::stm32f4::Rcc::kWindowWatchdog;
   run_at(1000, 14.0);

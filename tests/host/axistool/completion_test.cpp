@@ -1,4 +1,4 @@
-// What the tab key offers, and the manual: both are what the commands say of themselves.
+// Completions and manual, which are generated from the commands' own help.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -2,9 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+#include <vector>
 
+#include "host/report/text_format.hpp"
 #include "tests/host/commission/own_machine.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 #include "tests/host/temporary_folder.hpp"
@@ -15,6 +21,8 @@ using nlohmann::json;
 
 struct Outcome {
   json state, errors;
+  std::string page;
+  std::vector<double> prediction_errors;  ///< before and after, as the steps compare and improve state them
   double before() const { return errors["sets"].front()["rms_um"]; }
   double after() const { return errors["sets"].back()["rms_um"]; }
   std::vector<std::string> effects() const { return state["verdict"]["effects"]; }
@@ -30,10 +38,25 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
   const auto [code, words] = commission(board, folder.path("x"), "look", "page", {}, options);
   EXPECT_EQ(code, host::ExitCode::done) << words;
   if (code != host::ExitCode::done) return {};
-  // Its steps, like its commands, have one set of figures for the model that they begin with.
+  // Its steps state the same figures for the initial model, as the commands do.
   const json diagnosed = read(folder.path("x/diagnosis.json"));
   EXPECT_EQ(read(folder.path("x/comparison.json"))["error"], diagnosed["error"]["given"]["validate"]);
-  return {read(folder.path("x/commission.json")), read(folder.path("x/errors.json"))};
+  Outcome outcome{read(folder.path("x/commission.json")), read(folder.path("x/errors.json")), {}};
+  std::ifstream page(folder.path("x/page.html"));
+  outcome.page.assign(std::istreambuf_iterator<char>(page), {});
+  const json compared = read(folder.path("x/comparison.json")), improved = read(folder.path("x/improvement.json"));
+  outcome.prediction_errors = {compared["combined"], improved["error"]["after"]["validate"]["combined"]};
+  return outcome;
+}
+
+/// The page's sentences, without markup and scripts.
+std::vector<std::string> sentences_of(std::string page) {
+  page = std::regex_replace(page.substr(0, page.find("<script")), std::regex("<style[^]*?</style>|<[^>]*>"), ". ");
+  std::vector<std::string> sentences;
+  const std::regex end("[.:;]\\s+");
+  for (std::sregex_token_iterator one(page.begin(), page.end(), end, -1), none; one != none; ++one)
+    if (std::ranges::count(one->str(), ' ') >= 3) sentences.push_back(one->str());
+  return sentences;
 }
 
 /// Catches positions that are not counted from home (then the compensation has another phase, or does not act), and
@@ -49,6 +72,14 @@ TEST(CommissionedMachine, IsFoundToCogAndFollowsBetterFromItsHome) {
   EXPECT_TRUE(found.state["raised"].is_object());
   EXPECT_GT(found.state["raised"]["margins"]["measured"]["modulus"]["value"].get<double>(), 0.45);
   EXPECT_LT(found.state["motion_s"].get<double>(), 360.0);
+  // One quantity has one figure on the page, and no sentence stands there twice.
+  std::vector<std::string> sentences = sentences_of(found.page);
+  for (const double error : found.prediction_errors)
+    EXPECT_THAT(sentences, testing::Contains(testing::AllOf(testing::HasSubstr("prediction error falls"),
+                                                            testing::HasSubstr(host::format_value(error)))));
+  std::ranges::sort(sentences);
+  const auto twice = std::ranges::adjacent_find(sentences);
+  EXPECT_EQ(twice, sentences.end()) << (twice == sentences.end() ? "" : *twice);
 }
 
 /// Catches effects that are named where none is.

@@ -7,7 +7,7 @@
 
 namespace {
 
-// Slow against its resonance a load moves with its motor: what the pair leaves is what the rigid drive leaves.
+// For motions slow against its resonance, a load moves with its motor: both models leave the same residual.
 TEST(ResidualSamples, ALoadOnASpringOrBehindAGapMovesWithItsMotor) {
   const host::Record record = HandMade::record();
   const sim::DriveDescription rigid = HandMade::model();

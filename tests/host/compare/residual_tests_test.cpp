@@ -1,4 +1,4 @@
-// What a made residual depends on must be named, and what depends on nothing must not be.
+// The tests must name the coordinate on which a made residual depends, and none for an independent residual.
 #include "host/compare/residual_tests.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(ResidualTests, AHardSpotIsNamedByItsPositionAlthoughItTurnsWithTheDirection
   EXPECT_GT(share_on(tests, "position"), 0.1);
 }
 
-/// Catches samples at rest among those that judge: there nothing fades.
+/// Catches samples at rest in the test: nothing decays there.
 TEST(ResidualTests, WhatFadesSoonAfterAReversalIsFoundNearReversals) {
   constexpr double kFades_mm = 0.03;
   double turned = 0.0, before = 0.0, last_x = 0.0;

@@ -1,4 +1,4 @@
-// The bar for a claim, on errors written down by hand.
+// Requirements for a claim, on errors written by hand.
 #include "host/diagnose/claim.hpp"
 
 #include <gmock/gmock.h>

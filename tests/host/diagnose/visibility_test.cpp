@@ -1,4 +1,4 @@
-// What a motion cannot show must be said before a model gets an all-clear from it.
+// A motion that cannot show an effect must be reported before a model gets an all-clear from it.
 #include "host/diagnose/visibility.hpp"
 
 #include <gtest/gtest.h>

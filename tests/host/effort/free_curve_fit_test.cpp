@@ -1,4 +1,4 @@
-// Curves through what no formula of the base explains, on efforts written down in closed form.
+// Free curves through effects that no formula of the base explains, on torques in closed form.
 #include "host/effort/free_curve_fit.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The lines of axis-plant/1 as the contract writes them.
+// The lines of axis-plant/1 according to its contract.
 #include "host/external_plant/plant_answer.hpp"
 
 #include <gmock/gmock.h>

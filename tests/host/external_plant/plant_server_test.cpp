@@ -1,4 +1,4 @@
-// The simulator's drives behind axis-plant/1, against physics by hand.
+// The simulator's drives behind axis-plant/1, against physics worked out by hand.
 #include "host/external_plant/plant_server.hpp"
 
 #include <gmock/gmock.h>

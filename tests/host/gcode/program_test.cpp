@@ -1,4 +1,4 @@
-// G-code programs, against what geometry by hand says of them.
+// G-code programs against geometry worked out by hand.
 #include "host/gcode/program.hpp"
 
 #include <gmock/gmock.h>
@@ -122,7 +122,7 @@ TEST(BoundedProgram, LastsAndHoldsNoMoreThanAMachineDoes) {
   EXPECT_THAT(refusal("G4 P20000\nG4 P20000\n"), HasSubstr("part.ngc:2: the program lasts longer than 10 h"));
   std::string many = "G91 F1000\n";
   for (int k = 0; k < 200'001; ++k) many += "G1X1\n";
-  EXPECT_THAT(refusal(many), HasSubstr("part.ngc:200002: more than 200000 moves"));
+  EXPECT_THAT(refusal(many), HasSubstr("part.ngc:200002: the program has more than 200000 moves"));
 }
 
 }  // namespace

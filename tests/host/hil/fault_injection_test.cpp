@@ -1,4 +1,4 @@
-// From any fault, injected at any sample of any motion, both axes end standing, outputs off, and the cause is named.
+// After any fault at any sample of any motion, both axes end at rest with outputs off, and the fault names its cause.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// No monitor trips in the hardest motion that is legal, on drives that are as bad as they may be.
+// No monitor reports a fault in the hardest permitted motion, on the worst permitted drives.
 #include <gtest/gtest.h>
 
 #include "host/hil/machine.hpp"

@@ -1,4 +1,4 @@
-// A resonance that holds the bandwidth down, measured on the machine itself, and a notch designed on what was measured.
+// A resonance that limits the bandwidth, measured on the machine, and a notch designed from the measurement.
 #include <gtest/gtest.h>
 
 #include <algorithm>

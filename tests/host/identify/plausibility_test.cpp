@@ -1,4 +1,4 @@
-// What no drive has is said, whoever fitted it.
+// Values that no drive has are reported, whatever fitted them.
 #include "host/identify/plausibility.hpp"
 
 #include <gmock/gmock.h>

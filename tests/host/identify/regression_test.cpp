@@ -1,4 +1,4 @@
-// The tools under the estimates: filters, least squares, tachometer calibration. Expected values are closed forms.
+// Filters, least squares and tachometer calibration of the estimates. Expected values are closed forms.
 #include <gtest/gtest.h>
 
 #include <array>

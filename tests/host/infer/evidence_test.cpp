@@ -1,4 +1,4 @@
-// Rows made here, by a random number generator and closed forms.
+// Rows from a random number generator, with expected values in closed form.
 #include "host/infer/evidence.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Models for other programs: what they compute there is what ours does.
+// Models for other programs compute the same values there as here.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A board that another program keeps busy: which one is said.
+// A busy board: the message names the program that uses it.
 #include "host/link/device_users.hpp"
 
 #include <gmock/gmock.h>

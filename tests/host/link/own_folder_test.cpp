@@ -1,4 +1,4 @@
-// Where sockets and parameters of a simulated board lie: nobody else's folder, nobody else's rights.
+// Folder of a simulated board's sockets and parameters: the user's own, with no rights for others.
 #include "host/own_folder.hpp"
 
 #include <gtest/gtest.h>

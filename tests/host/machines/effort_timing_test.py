@@ -19,7 +19,7 @@ import logged_machines_test as logged
 SEEDS = int(os.environ.get("SEEDS", "16"))
 TRUTH = {"J_kg_m2": 0.004, "B_Nm_s_per_rad": 0.008, "positive_Nm": 0.3, "negative_Nm": -0.3}
 NOISE_A = 0.02
-# Half a sample, less half of a fortieth: each of the machine's small steps moves it at the speed that the step ends with.
+# Half a sample minus half of a fortieth: in each small step the machine moves at the step's final speed.
 HELD = 0.4875
 
 

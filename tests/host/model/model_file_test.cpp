@@ -1,4 +1,4 @@
-// Model files: what a good one holds, what is said of a bad one, and that writing loses nothing.
+// Model files: content of valid ones, messages about invalid ones, and writing without loss.
 #include "host/model/model_file.hpp"
 
 #include <gmock/gmock.h>

@@ -28,7 +28,7 @@ TEST(SheetPage, IsTheOneInTheRepository) {
       << "write it anew: make pages";
 }
 
-// A field that the page calls needed and the reader does not, in any of the four examples.
+// Catches a field that the page calls required and the reader does not, in any of the four examples.
 TEST(SheetPage, ExamplesAreReadAndLackNothingThatIsNeeded) {
   ASSERT_EQ(examples().size(), 4U);
   for (const std::string& example : examples()) {

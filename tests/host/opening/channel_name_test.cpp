@@ -1,4 +1,4 @@
-// What names say, in the languages and habits of controllers.
+// Meaning of channel names in the languages and conventions of controllers.
 #include "host/opening/channel_name.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Whole logs: opened, understood, or told what is missing.
+// Whole logs: recognised, or missing information is named.
 #include "host/opening/opening.hpp"
 
 #include <fmt/format.h>

@@ -55,7 +55,7 @@ TEST(Backup, EndsOfLinesMayBeAnotherSystems) {
   EXPECT_EQ(message_of(text), "restored");
 }
 
-/// Backups had no CRC once: whole they are taken, cut they are not.
+/// Older backups have no CRC: complete ones are accepted, truncated ones refused.
 TEST(Backup, OfAnOlderProgramIsTakenWhole) {
   std::string whole = host::format_backup(some_values());
   whole.erase(whole.find("count ="), whole.find("\n[") - whole.find("count ="));

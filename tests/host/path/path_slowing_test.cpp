@@ -65,8 +65,8 @@ Disturbed run(const host::PlannedPath& path, Disturbance what, std::mt19937_64& 
 
 class ThePathClock : public testing::TestWithParam<Disturbance> {};
 
-/// Catches a clock that runs backwards, one that does not see what the path takes from an axis, and one that does not
-/// stop in time: along the bound of its change with the least headroom, and three of its ramps. More of them:
+/// Catches a clock that runs backwards, one that ignores the path's own share of an axis's limits, and one that does
+/// not stop in time: along the bound of its change with the smallest headroom, and three of its ramps. More of them:
 /// AXIS_PATH_PROGRAMS=10000, of `make soak`.
 TEST_P(ThePathClock, HoldsTheAxesLimitsAndLeavesNoPath) {
   const int programs = path_test::programs_to_try();

@@ -1,4 +1,4 @@
-// The public cases' plants, made again by IndependentDrive from their truth files.
+// The plants of the public cases, rebuilt with IndependentDrive from their truth files.
 #pragma once
 
 #include <fstream>

@@ -1,4 +1,5 @@
-// Plans on machines of independent code: what motion separates is decided rightly, what it does not is left to hands.
+// Plans on independently coded machines: a run that separates explanations decides correctly; otherwise a manual test
+// is named.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

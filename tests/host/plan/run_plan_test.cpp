@@ -1,4 +1,4 @@
-// A planned run as a file, and as an axis carries it out.
+// A planned run as a file, and its execution by an axis.
 #include "host/plan/run_plan.hpp"
 
 #include <gmock/gmock.h>

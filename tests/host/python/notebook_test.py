@@ -9,6 +9,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 try:
     import numpy as np
@@ -18,7 +19,9 @@ except ImportError:
 
 import axistool
 
-CASE = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases" / "none" / "case-00"
+DATA = Path(os.environ["AXIS_TEST_DATA"])
+CASE = DATA / "drive-cases" / "none" / "case-00"
+LOGS = DATA.parents[1] / "host" / "examples" / "log"
 
 
 class Frame:
@@ -62,6 +65,20 @@ class RecordsOfMemory(unittest.TestCase):
         self.assertEqual(frame.header["drive"], "x")
         self.assertEqual(axistool.Record.of(columns).to_dict()["u_V"].dtype, np.float64)
 
+    def test_datasets_are_records_with_their_coordinates(self) -> None:
+        class Dataset(dict):  # as of xarray's, iterating gives the variables only
+            coords = {"t_s": [0.0, 0.001]}
+            attrs = {"drive": "x"}
+
+            def __getitem__(self, name: str) -> object:
+                return self.coords[name] if name in self.coords else super().__getitem__(name)
+
+        record = axistool.Record.of(Dataset(x_mm=[1.0, 2.0]))
+        again = axistool.Record.of(record.to_xarray_dict())
+        for one in (record, again):
+            self.assertEqual({name: one[name].tolist() for name in one.columns}, {"t_s": [0.0, 0.001], "x_mm": [1.0, 2.0]})
+            self.assertEqual(one.header["drive"], "x")
+
     def test_arrays_without_names_are_told_the_way(self) -> None:
         for given in (np.zeros((500, 3)), 3.0, np.zeros(500)):
             with self.assertRaisesRegex(TypeError, r"Record\.from_arrays"):
@@ -84,6 +101,11 @@ class Residuals(unittest.TestCase):
         np.testing.assert_array_equal(left.forward, rows["w_rad_s"] > 0.0)
         with self.assertRaises(KeyError):
             axistool.residuals(CASE / "model.toml", CASE / "validate.csv", against="temp_C")
+        own = np.arange(len(rows)) ** 2
+        np.testing.assert_array_equal(
+            axistool.residuals(CASE / "model.toml", CASE / "validate.csv", against=own).coordinate, own)
+        with self.assertRaisesRegex(ValueError, "shape"):
+            axistool.residuals(CASE / "model.toml", CASE / "validate.csv", against=own[1:])
 
 
 class Notebook(unittest.TestCase):
@@ -95,17 +117,58 @@ class Notebook(unittest.TestCase):
             self.assertIn("<table>", result._repr_html_())
             self.assertIn(word, result._repr_html_())
 
-    def test_examples_in_the_help_run(self) -> None:
-        before = os.getcwd()
+    def test_plots_are_given_the_figures(self) -> None:
+        """Axes that note what is drawn stand for matplotlib's; without it plot() says how to install it."""
+        found = axistool.identify(CASE / "train-steps.csv", drive=CASE / "model.toml")
+        compared = axistool.compare(found.model, CASE / "validate.csv")
+        steps = [axistool.ImprovementStep([], 9.0, 8.0), axistool.ImprovementStep(["cogging"], 1.1, 1.2)]
+        improved = axistool.Improvement(found.model, steps, "", {})
+        curve = axistool.friction(CASE / "train-jog.csv", found.model)
+        for result, name, value in (
+            (compared, "barh", compared.channels["x_mm"].rms / compared.channels["x_mm"].floor),
+            (improved, "barh", 1.2), (curve, "errorbar", curve.effort[0]), (found, "errorbar", 0),
+            (axistool.design(found.model), "plot", 1.0),
+            (axistool.residuals(found.model, CASE / "validate.csv", channel="w_rad_s"), "plot", None),
+        ):
+            axes = mock.MagicMock()
+            self.assertIs(result.plot(axes), axes)
+            drawn = [np.asarray(one, dtype=float) for call in getattr(axes, name).call_args_list for one in call.args
+                     if not isinstance(one, str)]
+            self.assertTrue(drawn)
+            if value is not None:
+                self.assertTrue(any(np.any(one == value) for one in drawn), (type(result), value, drawn))
+        with mock.patch.dict(sys.modules, {"matplotlib.pyplot": None}):
+            for result in (found, compared, improved, curve, axistool.Record.read(CASE / "train-jog.csv")):
+                with self.assertRaisesRegex(axistool.UsageError, "python3-matplotlib"):
+                    result.plot()
+
+
+class Help(unittest.TestCase):
+    def test_every_public_name_has_a_text_with_an_example(self) -> None:
+        for name in axistool.__all__:
+            one = getattr(axistool, name)
+            if name == "Progress":  # a type alias
+                continue
+            self.assertIn(">>> ", one.__doc__ or "", name)
+            for method, held in vars(one).items() if isinstance(one, type) else ():
+                if not method.startswith("_") and (callable(held) or isinstance(held, (classmethod, property))):
+                    self.assertTrue(getattr(one, method).__doc__, f"{name}.{method}")
+
+    def test_its_examples_run(self) -> None:
+        before, other, cogged = os.getcwd(), CASE.parent / "case-01", DATA / "drive-cases" / "single" / "case-00"
         with tempfile.TemporaryDirectory() as folder:
-            for name, source in (("steps.csv", "train-steps.csv"), ("jog.csv", "train-jog.csv"),
-                                 ("drive.toml", "model.toml"), ("x.toml", "model.toml")):
-                shutil.copy(CASE / source, Path(folder) / name)
+            for name, source in (("steps.csv", CASE / "train-steps.csv"), ("jog.csv", CASE / "train-jog.csv"),
+                                 ("drive.toml", CASE / "model.toml"), ("x.toml", CASE / "model.toml"),
+                                 ("y.toml", other / "model.toml"), ("y-jog.csv", other / "train-jog.csv"),
+                                 ("y-valid.csv", other / "validate.csv"), ("z.toml", cogged / "model.toml"), ("z-jog.csv", cogged / "train-jog.csv"),
+                                 ("scope.csv", LOGS / "sweep.csv")):
+                shutil.copy(source, Path(folder) / name)
+            shutil.copytree(other, Path(folder) / "cases" / "case-01")
             os.chdir(folder)
             try:
-                for part in ("record", "analysis", "residuals"):
+                for part in ("analysis", "board", "errors", "logs", "model", "record", "residuals", "results", "studies"):
                     module = importlib.import_module(f"axistool.{part}")
-                    failed, tried = doctest.testmod(module)
+                    failed, tried = doctest.testmod(module, optionflags=doctest.ELLIPSIS)
                     self.assertEqual(failed, 0, part)
                     self.assertGreater(tried, 1, part)
             finally:

@@ -23,6 +23,7 @@ import axistool
 
 CASES = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases"
 CASE = CASES / "none" / "case-00"
+LOGS = Path(os.environ["AXIS_TEST_DATA"]).parents[1] / "host" / "examples" / "log"
 PROGRAM = os.environ["AXISTOOL"]
 
 
@@ -60,6 +61,94 @@ class SameFigures(unittest.TestCase):
             np.testing.assert_array_equal(designed.Kobs, np.array(told["Kobs"]))
             self.assertEqual(designed.Kobs.shape, (3, 2))
             self.assertIn("kalman", designed.parameters)
+
+    def test_records_are_cut_shifted_and_opened(self) -> None:
+        jog = CASE / "train-jog.csv"
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.csv"
+            for command, record in [
+                (["cut", jog, "--from", 1, "--to", 2], axistool.cut(axistool.Record.read(jog), 1.0, 2.0)),
+                (["shift", jog, "--channel", "u_V", "--by", -0.0015], axistool.shift(jog, "u_V", -0.0015)),
+            ]:
+                command_line(*command, "-o", out)
+                told = axistool.Record.read(out)
+                self.assertEqual(list(record.columns), list(told.columns))
+                for name in told.columns:
+                    np.testing.assert_array_equal(record[name], told[name], name)
+            log = LOGS / "sweep.csv"
+            told = command_line("open", log, "--drive", "x", "-o", folder, "--yes")
+            opened = axistool.open_logs(log, drive="x")
+            self.assertEqual({**opened.json, "records": []}, {**told, "records": []})
+            (name, record), = opened.records.items()
+            np.testing.assert_array_equal(record["i_A"], axistool.Record.read(Path(folder) / name)["i_A"])
+            self.assertEqual(opened.mapping, (Path(folder) / "mapping.toml").read_text())
+            sheet = Path(folder) / "sheet.toml"
+            subprocess.run([PROGRAM, "sheet", "x", "--kind", "linear", "--kt", "20", "-o", sheet], check=True,
+                           stdout=subprocess.DEVNULL)
+            self.assertEqual(axistool.sheet("x", "linear", kt=20.0), sheet.read_text())
+
+    def test_friction_bode_export_effects_plan_and_scoreboard(self) -> None:
+        model, jog, steps = CASE / "model.toml", CASE / "train-jog.csv", CASE / "train-steps.csv"
+        self.assertEqual(axistool.friction(jog, model).json, command_line("friction", jog, "--model", model))
+        told = command_line("bode", jog, "--model", model)
+        found = axistool.bode(jog, model).json
+        self.assertEqual({key: found[key] for key in told}, told)
+        self.assertEqual(axistool.effects("cogging"), command_line("effects", "cogging")["effects"])
+        with tempfile.TemporaryDirectory() as folder:
+            path, run, beliefs = Path(folder) / "x.hal", Path(folder) / "run.toml", Path(folder) / "plan.json"
+            told = command_line("export", model, "--to", "linuxcnc", "--record", jog, "-o", path)
+            made = axistool.export(model, "linuxcnc", path, jog)
+            self.assertEqual(made.json, told)
+            self.assertEqual(made.files, {name: Path(name).read_text() for name in told["files"]})
+            box = "travel=40,speed=150,volts=3,time=10"
+            told = command_line("plan", model, "--train", steps, "--rivals", "backlash,compliance", "--box", box,
+                                "--most-samples", "1e6", "-o", run)
+            planned = axistool.plan(model, steps, rivals=["backlash", "compliance"], box=box, most_steps=1e6)
+            self.assertEqual({**planned.json, "run": ""}, {**told, "run": ""})
+            self.assertEqual(planned.run, run.read_text())
+            beliefs.write_text(json.dumps(told))
+            with self.assertRaisesRegex(axistool.UsageError, "planned run"):  # steps were planned by nobody
+                axistool.diagnose(model, steps, believed=beliefs)
+        told = command_line("scoreboard", CASES / "none" / "case-01")
+        scored = axistool.scoreboard(CASES / "none" / "case-01")
+        for one in (*told["cases"], *scored["cases"]):
+            del one["seconds"]
+        self.assertEqual(scored, told)
+
+    def test_circle(self) -> None:
+        t = np.arange(8000) * 1e-3
+        x, y = 20.0 * np.cos(np.pi * t), 20.0 * np.sin(np.pi * t)
+        record = axistool.Record.from_arrays(t_s=t, x_mm=x + 0.003 * np.sign(y), x_ref_mm=x, y_mm=y, y_ref_mm=y)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "circle.csv"
+            record.write(path)
+            told = command_line("circle", path, "--model", CASE / "model.toml", "--report", Path(folder) / "told.html")
+            found = axistool.circle(path, [CASE / "model.toml"], report=Path(folder) / "found.html")
+            self.assertEqual(found.json, told)
+            self.assertEqual((Path(folder) / "found.html").read_text(), (Path(folder) / "told.html").read_text())
+
+    def test_reports_are_the_pages_of_the_commands(self) -> None:
+        case = CASES / "none" / "case-01"
+        model, train, judge = case / "model.toml", case / "train-jog.csv", case / "validate.csv"
+        with tempfile.TemporaryDirectory() as folder:
+            told, found, better = (Path(folder) / name for name in ("told.html", "found.html", "better.toml"))
+            sets = ["--train", train, "--validate", judge]
+            for command, call in [
+                (["identify", CASE / "train-steps.csv", "--drive", CASE / "model.toml"],
+                 lambda: axistool.identify(CASE / "train-steps.csv", CASE / "model.toml", report=found)),
+                (["compare", model, judge], lambda: axistool.compare(model, judge, report=found)),
+                (["diagnose", model, *sets], lambda: axistool.diagnose(model, train, judge, report=found)),
+                (["improve", model, *sets, "-o", better],
+                 lambda: axistool.improve(model, train, judge, output=better, report=found)),
+            ]:
+                command_line(*command, "--report", told)
+                text = better.read_text() if better.exists() else ""
+                call()
+                self.assertEqual(found.read_text(), told.read_text(), command[0])
+                self.assertEqual(better.read_text() if text else "", text)
+                found.unlink()
+        with self.assertRaisesRegex(axistool.UsageError, "output="):
+            axistool.improve(model, train, judge, report="x.html")
 
     def test_diagnose(self) -> None:
         case = CASES / "none" / "case-01"
@@ -105,7 +194,7 @@ class ABoard(unittest.TestCase):
 class BothWays(unittest.TestCase):
     def test_arrays_come_back_from_the_library_bit_for_bit_without_a_file(self) -> None:
         read = axistool.Record.read(CASE / "train-jog.csv")
-        # Third bits that no decimal of a few digits has; t_s stays, its steps are checked.
+        # Thirds need all bits of a double, unlike decimals of a few digits. t_s stays, because its steps are checked.
         own = {name: values if name == "t_s" else values / 3 for name, values in read.columns.items()}
         record = axistool.Record.from_arrays(read.header, **own)
         with mock.patch("builtins.open", side_effect=AssertionError), mock.patch("os.open", side_effect=AssertionError):

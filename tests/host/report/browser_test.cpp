@@ -203,7 +203,7 @@ TEST_F(Browser, ADiagnosisOfThreeSecondsIsDrawnWhole) {
   for (const nlohmann::json& chart : seen["pixels"]) EXPECT_GT(chart.back().get<int>(), 30) << seen["pixels"];
 }
 
-/// What a reader of a dark screen sees, and one who sees nothing hears.
+/// The page on a dark screen, and as a screen reader presents it.
 constexpr const char* dark_script = R"(
 <pre id="seen"></pre><script>
   const light = (colour) => colour.match(/[\d.]+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0) / 765;

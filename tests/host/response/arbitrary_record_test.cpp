@@ -1,4 +1,4 @@
-// Records that no multisine made.
+// Records without a multisine.
 #include <gtest/gtest.h>
 
 #include "host/exit_codes.hpp"

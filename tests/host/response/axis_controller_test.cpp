@@ -11,7 +11,7 @@
 
 namespace {
 
-/// u over y = [position, 0] or [0, speed] of one frequency, with the core's estimator, feedback and filters.
+/// Response u/y to y = [position, 0] or [0, speed] at one frequency, with the core's estimator, feedback and filters.
 std::complex<double> answer_in_time(const firmware::AxisParameters<float>& p, double f_Hz, bool is_speed) {
   firmware::KalmanEstimator<float> estimator;
   estimator.configure(p.drive, p.Kobs, 1e-6F);

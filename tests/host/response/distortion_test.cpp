@@ -1,4 +1,4 @@
-// Even and odd powers of a static nonlinearity, in the lines that nobody excites; by hand.
+// Even and odd powers of a static nonlinearity at lines without excitation; expected values by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The transform is that of its definition, from several threads at once.
+// The transform equals its definition, from several threads at once.
 #include "host/fourier.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which of the two turns the phase: drives whose sampled response is a matrix exponential, and no fit's formula.
+// Lag or delay: drives whose sampled response is a matrix exponential, independent of the fit's formula.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// What of a fit goes into a model, and what does not.
+// Values of a fit that enter a model, and values that do not.
 #include "host/response/model_starts.hpp"
 
 #include <gtest/gtest.h>

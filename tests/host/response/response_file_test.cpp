@@ -1,4 +1,4 @@
-// Responses from files: what `bode` wrote is read again, and nothing else brings the program down.
+// Response files: those of `bode` are read again, and no other content crashes the program.
 #include <gtest/gtest.h>
 
 #include <limits>

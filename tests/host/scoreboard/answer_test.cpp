@@ -1,4 +1,4 @@
-// How answers are held against the truth, and forecasts against what came.
+// Comparison of verdicts with the truth, and of forecasts with the outcome.
 #include "host/scoreboard/answer.hpp"
 
 #include <gtest/gtest.h>

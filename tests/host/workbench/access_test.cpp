@@ -1,4 +1,4 @@
-// Who is let in: nobody without the token, no page of another site, nothing under another name.
+// Access: none without the token, from another site, or under another host name.
 #include "host/workbench/access.hpp"
 
 #include <gmock/gmock.h>

@@ -87,7 +87,7 @@ class Workbench(unittest.TestCase):
         self.browser.execute_script(DROP)
 
     def keep(self, name: str) -> None:
-        """A picture of the whole page, where AXIS_SCREENSHOTS asks for it; and what must hold in any view."""
+        """Saves a picture of the whole page if AXIS_SCREENSHOTS is set; checks what holds in every view."""
         wide = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
         self.assertLessEqual(wide, 0, f"{name}: nothing lies beside the page")
         if not (folder := os.environ.get("AXIS_SCREENSHOTS")):
@@ -251,7 +251,7 @@ class Workbench(unittest.TestCase):
         name = "<img src=x onerror=alert(1)>.csv"
         shutil.copy(CASE / "train-jog.csv", self.folder / name)
         self.browser.delete_all_cookies()
-        opener = self.folder / "opener.html"  # as serve itself opens the page: the token stands on no command line
+        opener = self.folder / "opener.html"  # as serve opens the page: the token is in no command line
         opener.write_text(f'<meta http-equiv="refresh" content="0;url={self.url}">')
         self.browser.get(opener.as_uri())
         self.until("[aria-label='Role of " + name + "']")

@@ -1,4 +1,4 @@
-// Nothing outside the folder is listed, read or written: names that climb, links that lead out, uploads that replace.
+// The workbench lists, reads and writes nothing outside its folder: names with "..", links that leave it, uploads.
 #include "host/workbench/folder.hpp"
 
 #include <gmock/gmock.h>

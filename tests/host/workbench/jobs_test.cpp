@@ -1,4 +1,4 @@
-// What the page does is what the commands do: the same documents, whatever becomes of the page meanwhile.
+// The page's actions produce the same documents as the commands, whatever happens to the page meanwhile.
 #include "host/workbench/jobs.hpp"
 
 #include <gmock/gmock.h>

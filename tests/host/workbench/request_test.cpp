@@ -1,4 +1,4 @@
-// Requests as they come from a page, or from whoever pretends to be one.
+// Requests of a page, or of a program that pretends to be one.
 #include "host/workbench/request.hpp"
 
 #include <gmock/gmock.h>

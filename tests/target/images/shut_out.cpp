@@ -1,4 +1,4 @@
-// Image that counts for how long the background's requests keep the control interrupt out while both axes move.
+// Image that measures how long the background's requests block the control interrupt while both axes move.
 #include <array>
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// The ways from this computer's plant to the emulated board.
+// Links from this computer's plant to the emulated board.
 #pragma once
 
 #include <filesystem>
