@@ -1,0 +1,336 @@
+#include "host/scale/table_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "host/infer/posterior.hpp"
+#include "host/parallel.hpp"
+#include "host/scale/table_effect.hpp"
+#include "sim/drive.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double rms(const VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
+}
+
+VectorXd without(const VectorXd& y, const MatrixXd& columns) {
+  return y - columns * columns.completeOrthogonalDecomposition().solve(y);
+}
+
+/// What a form's factors compare to: nothing between motor and table is larger than what is there.
+constexpr double kOneScale = 1.0;
+/// Forms of one kind that are fitted in full, of those that promise most.
+constexpr std::size_t kFormsFitted = 3;
+/// More of one kind stand in no machine that one answer helps.
+constexpr std::size_t kMostEffects = 8, kMostCyclic = 3;
+
+/// Everything chosen so far with one term more or less.
+struct Fitted {
+  TableTerm term;
+  double log_evidence = 0.0;  ///< forms averaged out, nats
+};
+
+class Search {
+ public:
+  Search(const sim::DriveDescription& model, const TableRows& rows, double usual)
+      : rows_(rows),
+        usual_(usual),
+        base_(table_base(rows)),
+        evidence_(rows.y, rows.runs, table_memory(rows, usual), rows.noise_um) {
+    const sim::Drive drive(model);
+    const double to_mm = model.data.kind == sim::DriveKind::linear ? 1e3 : drive.lead;
+    inertia_ = drive.inertia / to_mm;
+    if (drive.inertia > 0.0)
+      deceleration_ = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia * to_mm;
+  }
+
+  /// All terms fitted together.
+  EvidenceFit fit(const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms);
+    return evidence_.fit(columns, deviations);
+  }
+  EvidenceFit fit_from(const EvidenceFit& before, const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms);
+    return evidence_.fit_from(before, columns, deviations);
+  }
+
+  /// Near a fit: its noise and memory are where this one begins.
+  EvidenceFit fit_beside(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms);
+    return evidence_.fit(columns, deviations, {.correlation = near.correlation, .sizes = near.sizes});
+  }
+
+  /// The best form of a kind beside the chosen terms; the log evidence is averaged over all forms.
+  std::optional<Fitted> best_form(std::string_view kind, const std::vector<TableTerm>& chosen,
+                                  const EvidenceFit& before) const {
+    const std::vector<TableTerm> forms = table_forms(kind, rows_, inertia_, deceleration_);
+    if (forms.empty()) return {};
+    std::vector<double> gains(forms.size(), -HUGE_VAL);
+    for_each_in_parallel(forms.size(), [&](std::size_t f) {
+      MatrixXd columns = forms[f].quick_columns(rows_);
+      const VectorXd deviations = forms[f].deviations(columns, usual_);
+      if (!(columns.cwiseAbs().maxCoeff() > 1e-9)) return;
+      columns *= deviations.asDiagonal();
+      std::vector<int> sign(static_cast<std::size_t>(columns.cols()), 0);
+      sign.front() = forms[f].sign();
+      gains[f] = evidence_.gains(before, columns, sign, VectorXd::Constant(1, kOneScale))(0);
+    });
+    std::vector<std::size_t> order(forms.size());
+    for (std::size_t f = 0; f < order.size(); ++f) order[f] = f;
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t f) { return gains[f]; });
+    if (!std::isfinite(gains[order.front()])) return {};
+    std::vector<TableTerm> best;
+    EvidenceFit best_fit;
+    for (std::size_t k = 0; k < std::min(kFormsFitted, order.size()) && std::isfinite(gains[order[k]]); ++k) {
+      std::vector<TableTerm> all = chosen;
+      all.push_back(forms[order[k]]);
+      EvidenceFit fit = fit_from(before, all);
+      if ((!best.empty() && fit.log_evidence <= best_fit.log_evidence) || wrong_way(all, fit)) continue;
+      best = std::move(all);
+      best_fit = std::move(fit);
+    }
+    if (best.empty()) return {};
+    refine(best, best_fit);
+    if (rms_of_last(best, best_fit) < rows_.step_um / std::sqrt(12.0)) return {};
+    const double spread = log_sum(gains) - gains[order.front()] - std::log(static_cast<double>(forms.size()));
+    return Fitted{best.back(), best_fit.log_evidence + std::min(spread, 0.0)};
+  }
+
+  /// Moves what is not linear in the last term to where the evidence is largest.
+  void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
+    TableTerm& term = terms.back();
+    if (term.kind == "backlash") {
+      constexpr int kRounds = 4;
+      for (int round = 0; round < kRounds; ++round) {
+        const double gap = 1e-3 * fit.factors(first_column(terms, terms.size() - 1));
+        if (!(gap > 1e-4) || std::abs(gap - term.shape[0]) < 1e-5) return;
+        std::vector<TableTerm> moved = terms;
+        moved.back().shape[0] = gap;
+        EvidenceFit again = fit_beside(fit, moved);
+        if (again.log_evidence < fit.log_evidence) return;
+        terms = std::move(moved);
+        fit = std::move(again);
+      }
+    } else if (term.kind == "encoder_cyclic_error" || (term.kind == "thermal_growth" && term.shape[0] > 0.0)) {
+      const double travel = rows_.x.maxCoeff() - rows_.x.minCoeff();
+      double step = term.kind == "thermal_growth" ? 0.5 : 0.1 * term.shape[0] / travel;  // relative
+      for (int round = 0; round < 6; ++round, step *= 0.5)
+        for (const double way : {1.0 + step, 1.0 / (1.0 + step)}) {
+          std::vector<TableTerm> moved = terms;
+          moved.back().shape[0] *= way;
+          EvidenceFit again = fit_beside(fit, moved);
+          if (again.log_evidence <= fit.log_evidence) continue;
+          terms = std::move(moved);
+          fit = std::move(again);
+          break;
+        }
+    }
+  }
+
+  /// The column at which a term's own begin.
+  Index first_column(const std::vector<TableTerm>& terms, std::size_t which) const {
+    Index first = base_.cols();
+    for (std::size_t k = 0; k < which; ++k) first += terms[k].columns(rows_).cols();
+    return first;
+  }
+
+  /// What the last term takes of x2 - x, um RMS. Less than the sensors' steps make by themselves is none of the
+  /// machine's: two grids beat against each other.
+  double rms_of_last(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    const MatrixXd own = terms.back().columns(rows_);
+    return rms(without(own * fit.factors.tail(own.cols()), base_));
+  }
+
+  bool wrong_way(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      if (terms[k].sign() > 0 && fit.factors(first_column(terms, k)) < 0.0) return true;
+    return false;
+  }
+
+ private:
+  std::pair<MatrixXd, VectorXd> known(const std::vector<TableTerm>& terms) const {
+    MatrixXd columns = base_;
+    VectorXd deviations(base_.cols());
+    constexpr double kWide = 10.0;  // offsets and delays are known to nothing
+    for (Index c = 0; c < base_.cols(); ++c) deviations(c) = kWide * usual_ / std::max(rms(base_.col(c)), 1e-12);
+    for (const TableTerm& term : terms) {
+      const MatrixXd own = term.columns(rows_);
+      const VectorXd known_to = term.deviations(own, usual_);
+      columns.conservativeResize(Eigen::NoChange, columns.cols() + own.cols());
+      columns.rightCols(own.cols()) = own;
+      deviations.conservativeResize(columns.cols());
+      deviations.tail(own.cols()) = known_to;
+    }
+    return {std::move(columns), std::move(deviations)};
+  }
+
+  const TableRows& rows_;
+  double usual_;
+  MatrixXd base_;
+  Evidence evidence_;
+  double inertia_ = 0.0, deceleration_ = 0.0;
+};
+
+/// What terms with the training rows' factors leave on the rows that judge. What belongs to a record is fitted there.
+VectorXd left_on(const TableRows& judge, const std::vector<TableTerm>& terms, const VectorXd& factors, Index base) {
+  VectorXd left = judge.y;
+  MatrixXd own = table_base(judge);
+  Index first = base;
+  for (const TableTerm& term : terms) {
+    const MatrixXd columns = term.columns(judge);
+    if (term.is_of_the_record()) {
+      own.conservativeResize(Eigen::NoChange, own.cols() + columns.cols());
+      own.rightCols(columns.cols()) = columns;
+      first += static_cast<Index>(columns.cols());  // as many in training or not: these factors are not used
+      continue;
+    }
+    left -= columns * factors.segment(first, columns.cols());
+    first += columns.cols();
+  }
+  return without(left, own);
+}
+
+std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind) {
+  return static_cast<std::size_t>(std::ranges::count(terms, kind, &TableTerm::kind));
+}
+
+/// Terms whose own number of factors does not depend on the records come first, so that left_on() finds its factors.
+void records_last(std::vector<TableTerm>& terms) {
+  std::ranges::stable_partition(terms, [](const TableTerm& term) { return !term.is_of_the_record(); });
+}
+
+}  // namespace
+
+const TableEffect* TableStudy::find(std::string_view kind) const {
+  for (const TableEffect& effect : effects)
+    if (effect.group.size() == 1 && effect.kind() == kind) return &effect;
+  return nullptr;
+}
+
+std::optional<double> TableStudy::probability(std::string_view kind) const {
+  if (find(kind) != nullptr) return find(kind)->probability;
+  for (const auto& [name, odds] : absent_odds)
+    if (name == kind) return odds;
+  return {};
+}
+
+TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                       const std::vector<const Record*>& validation) {
+  TableStudy study;
+  study.train = table_rows(training, model.data);
+  if (study.empty() || !(study.train.way.minCoeff() < study.train.way.maxCoeff())) return {};
+  study.judge = table_rows(validation, model.data);
+  const bool other_channels = study.judge.has_effort() != study.train.has_effort();
+  if (study.judge.size() == 0 || other_channels) study.judge = study.train;
+  if (study.judge.temp_C.size() == 0) study.train.temp_C.resize(0);
+  take_out_known(model, study.train);
+  take_out_known(model, study.judge);
+  study.noise_um = study.train.noise_um;
+  const double usual = std::max(rms(without(study.train.y, table_base(study.train))), study.noise_um);
+  const Search search(model, study.train, usual);
+  const Index base = table_base(study.train).cols();
+
+  std::vector<TableTerm> chosen;
+  std::vector<std::vector<std::string>> groups;
+  std::vector<double> odds;
+  EvidenceFit fit = search.fit(chosen);
+  while (chosen.size() < kMostEffects) {
+    std::vector<Fitted> found;
+    std::vector<double> logs = {std::log(kNothingMore) + fit.log_evidence};
+    for (const std::string_view kind : kTableKinds) {
+      if (count_of(chosen, kind) >= (kind == "encoder_cyclic_error" ? kMostCyclic : 1) || stands_in(model, kind))
+        continue;
+      if (std::optional<Fitted> best = search.best_form(kind, chosen, fit)) {
+        logs.push_back(std::log((1.0 - kNothingMore) / std::size(kTableKinds)) + best->log_evidence);
+        found.push_back(*std::move(best));
+      }
+    }
+    const std::vector<double> probable = posterior(logs);
+    study.absent_odds.clear();
+    std::vector<std::size_t> order(found.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      order[k] = k;
+      if (count_of(chosen, found[k].term.kind) == 0)
+        study.absent_odds.emplace_back(found[k].term.kind, probable[k + 1]);
+    }
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t k) { return probable[k + 1]; });
+    std::vector<std::string> group;
+    double held = 0.0;
+    constexpr std::size_t kMostAlike = 2;
+    for (std::size_t k = 0; k < std::min(kMostAlike, order.size()) && held < kClaimed; ++k) {
+      group.push_back(found[order[k]].term.kind);
+      held += probable[order[k] + 1];
+    }
+    if (held < kClaimed) break;
+    chosen.push_back(found[order.front()].term);
+    groups.push_back(std::move(group));
+    odds.push_back(held);
+    fit = search.fit_from(fit, chosen);
+    // What was found first was found beside what was still unknown.
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      std::rotate(chosen.begin(), chosen.begin() + 1, chosen.end());
+      std::rotate(groups.begin(), groups.begin() + 1, groups.end());
+      std::rotate(odds.begin(), odds.begin() + 1, odds.end());
+      fit = search.fit_from(fit, chosen);
+      search.refine(chosen, fit);
+    }
+  }
+  // Whether each is still needed beside the others.
+  for (std::size_t k = 0; k < chosen.size();) {
+    std::vector<TableTerm> others = chosen;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const EvidenceFit less = search.fit(others);
+    const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
+    const double needed = logistic(fit.log_evidence - less.log_evidence + prior);
+    if (needed >= kClaimed && !search.wrong_way(chosen, fit)) {
+      odds[k] = std::min(odds[k], needed);
+      ++k;
+      continue;
+    }
+    study.absent_odds.emplace_back(chosen[k].kind, needed);
+    chosen = std::move(others);
+    groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
+    odds.erase(odds.begin() + static_cast<std::ptrdiff_t>(k));
+    fit = less;
+  }
+  std::vector<TableTerm> ordered = chosen;
+  records_last(ordered);
+  fit = search.fit_from(fit, ordered);
+  study.delay_s = -1e-3 * fit.factors(base - 1);
+  const MatrixXd covariance = factor_covariance(fit, base, ordered, study.train, usual);
+  study.left = left_on(study.judge, ordered, fit.factors, base);
+  study.left_um = rms(study.left);
+  study.before_um = rms(left_on(study.judge, {}, fit.factors, base));
+  for (std::size_t k = 0; k < ordered.size(); ++k) {
+    std::vector<TableTerm> others = ordered;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const EvidenceFit less = search.fit_from(fit, others);
+    TableEffect effect = table_effect(ordered[k], fit, covariance, search.first_column(ordered, k), study.train, model);
+    const auto at = static_cast<std::size_t>(std::ranges::find_if(chosen,
+                                                                  [&](const TableTerm& term) {
+                                                                    return term.kind == ordered[k].kind &&
+                                                                           term.shape == ordered[k].shape;
+                                                                  }) -
+                                             chosen.begin());
+    effect.group = groups[at];
+    effect.probability = odds[at];
+    effect.before = rms(left_on(study.judge, others, less.factors, base));
+    effect.after = study.left_um;
+    const double taken = effect.before * effect.before - effect.after * effect.after;
+    effect.worth_naming = taken >= kWorthNaming * effect.before * effect.before &&
+                          taken >= kWorthOfAll * study.before_um * study.before_um;
+    study.effects.push_back(std::move(effect));
+  }
+  return study;
+}
+
+}  // namespace host
