@@ -149,10 +149,17 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     if (diagnosis && progress) progress(1.0);
     return diagnosis;
   };
-  std::optional<Diagnosis> over_long_windows;
+  std::optional<Diagnosis> over_long_windows, only_in_the_effort;
+  // Where the motion is not explained, what the effort shows is.
+  const auto unless_unexplained = [&](Diagnosis by_motion) {
+    const bool explains = by_motion.verdict.status != Status::unexplained || !only_in_the_effort;
+    return explains ? std::move(by_motion) : *std::move(only_in_the_effort);
+  };
   if (before == nullptr) {
     std::optional<Diagnosis> diagnosis = by_effort(false);
-    if (diagnosis) {
+    if (diagnosis && !effort_decides(*screen, split.validation)) {
+      only_in_the_effort = std::move(diagnosis);
+    } else if (diagnosis) {
       const bool tells = !screen->chosen.empty();
       if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
         return *std::move(diagnosis);
@@ -165,7 +172,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   }
   if (!by_short_windows) {
     over_long_windows = search(with_base_fitted(split));
-    if (!over_long_windows->rough) return *std::move(over_long_windows);
+    if (!over_long_windows->rough) return unless_unexplained(*std::move(over_long_windows));
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) return *std::move(diagnosis);
   }
@@ -177,8 +184,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
   }
   if (short_s < kWindow_s || !over_long_windows)
-    return search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s)));
-  return *std::move(over_long_windows);
+    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s))));
+  return unless_unexplained(*std::move(over_long_windows));
 }
 
 }  // namespace

@@ -80,10 +80,6 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
       }
       std::vector<std::string> group = {kind};
       group.insert(group.end(), screen.tied[step].begin(), screen.tied[step].end());
-      if (group.back() == "backlash" && screen.hardening)
-        verdict.explanation +=
-            fmt::format(" Its frequency is {:.0f} % higher where it pulls {:.1f} times as much, as behind a gap.",
-                        100.0 * (screen.hardening->frequency_ratio - 1.0), screen.hardening->pull_ratio);
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
       verdict.alternatives.push_back(std::move(group));
     }
@@ -103,20 +99,6 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
 
 /// Errors of the forward prediction that are so near to each other say nothing.
 constexpr double kHardly = 0.98;
-/// No form of a gap was fitted that could have its half of the spring's probability.
-void share_with_the_gap(const EffortScreen& screen, Diagnosis& diagnosis) {
-  const auto holds_the_gap = [](const std::vector<std::string>& group) {
-    return std::ranges::count(group, "backlash") > 0;
-  };
-  if (std::ranges::none_of(screen.tied, holds_the_gap)) return;
-  for (JudgedCandidate& candidate : diagnosis.candidates)
-    if (std::ranges::find(candidate.kinds, "compliance") != candidate.kinds.end()) {
-      candidate.probability *= 0.5;
-      diagnosis.verdict.probability_other += candidate.probability;
-      diagnosis.verdict.probability_unfitted += candidate.probability;
-    }
-}
-
 /// Every kind that was tried, with its probability: a later step's share what the steps before it hold, and what was
 /// chosen before the last step stands for its group.
 void assign_evidence(const EffortScreen& screen, Diagnosis& diagnosis) {
@@ -198,7 +180,7 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   auto screen =
       std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation, kMostEffects, sets.absent));
   if (!screen->empty()) seen = screen;
-  if (!effort_decides(*screen, sets.validation)) return {};
+  if (screen->chosen.empty() && !effort_decides(*screen, sets.validation)) return {};
   Diagnosis diagnosis(sets);
   diagnosis.measure = Measure::effort;
   diagnosis.rough = diagnosis.by_effort = true;
@@ -207,7 +189,6 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
   diagnosis.given_validate = diagnosis.before_validate = over_noise(*screen, screen->base, true);
   diagnosis.verdict = verdict_of(*screen, model);
   assign_evidence(*screen, diagnosis);
-  share_with_the_gap(*screen, diagnosis);
   std::ranges::stable_sort(diagnosis.candidates, {}, &JudgedCandidate::after);
   diagnosis.best = screen->best().model;
   diagnosis.after_train = over_noise(*screen, screen->best(), false);
@@ -321,16 +302,12 @@ nlohmann::json effort_screen_json(const EffortScreen& screen) {
   nlohmann::json steps = nlohmann::json::array();
   for (const ScreenedModel& step : screen.chosen)
     steps.push_back({{"kinds", step.kinds}, {"words", step.words}, {"relative_error", relative(step)}});
-  nlohmann::json hardening;  // null where no spring was found
-  if (screen.hardening)
-    hardening = {{"frequency_ratio", screen.hardening->frequency_ratio}, {"pull_ratio", screen.hardening->pull_ratio}};
   return {{"rows", screen.rows.size()},
           {"motion_from", screen.rows.by_speed ? "speed" : "position"},
           {"inertia_shows", !screen.rows.steady},
           {"lowest_cutoff_Hz", screen.rows.lowest_cutoff_Hz},
           {"relative_error", {{"before", relative(screen.base)}, {"after", relative(screen.best())}}},
           {"steps", std::move(steps)},
-          {"spring_hardening", std::move(hardening)},
           {"held", screen.held}};
 }
 

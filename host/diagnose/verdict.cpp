@@ -28,11 +28,16 @@ constexpr double kMoved = 0.05;
 
 double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
 
+/// What only helps at the end of its range is no name, unless nothing else is there.
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
   const JudgedCandidate* best = nullptr;
+  const auto is_better = [&](const JudgedCandidate& candidate) {
+    if (best == nullptr || candidate.on_bound.empty() != best->on_bound.empty())
+      return best == nullptr || candidate.on_bound.empty();
+    return error_of_both(candidate) < error_of_both(*best);
+  };
   for (const JudgedCandidate& candidate : diagnosis.candidates)
-    if (candidate.kinds.size() == size && (best == nullptr || error_of_both(candidate) < error_of_both(*best)))
-      best = &candidate;
+    if (candidate.kinds.size() == size && is_better(candidate)) best = &candidate;
   return best;
 }
 

@@ -10,6 +10,7 @@
 
 #include "host/effort/effort_memory.hpp"
 #include "host/effort/effort_waves.hpp"
+#include "host/effort/second_mass_terms.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/parallel.hpp"
 
@@ -106,6 +107,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
     : model_(model),
       rows_(rows),
       thin_(thinned(rows, std::max<std::size_t>(1, (rows.size() + kMostRows / 2) / kMostRows))),
+      second_masses_(second_mass_terms(model, rows)),
       coulomb_(coulomb),
       evidence_(thin_.rows.effort, runs_of(thin_.rows), effort_memory(thin_.rows, thin_.of(explained), coulomb),
                 std::max(rows.noise, 1e-9 * coulomb)) {
@@ -174,13 +176,17 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   std::map<std::string, std::vector<Form>> forms;
   std::map<std::string, double> counts;
   const auto is_excluded = [&](const std::string& kind) { return std::ranges::find(excluded, kind) != excluded.end(); };
-  for (const EffortTerm& term : terms) {
-    if (is_excluded(term.kind)) continue;
+  const auto weigh = [&](const EffortTerm& term) {
+    if (is_excluded(term.kind)) return;
     std::optional<Form> form =
         form_of(term.kind, thin_.of(term.columns), term.sign, term.acting, [&term] { return term; });
     counts[term.kind] += 1.0;
     if (form) forms[term.kind].push_back(*std::move(form));
-  }
+  };
+  std::ranges::for_each(terms, weigh);
+  if (std::ranges::none_of(chosen,
+                           [](const EffortTerm& term) { return term.kind == "compliance" || term.kind == "backlash"; }))
+    std::ranges::for_each(second_masses_, weigh);
   if (rows_.has_position) {
     const VectorXd one = VectorXd::Ones(rows_.w.size());
     const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });

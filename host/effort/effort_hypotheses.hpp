@@ -8,24 +8,10 @@
 
 #include "host/effort/effort_rows.hpp"
 #include "host/effort/effort_terms.hpp"
+#include "host/effort/next_effects.hpp"
 #include "host/infer/evidence.hpp"
 
 namespace host {
-
-/// One kind in its most probable form, given what was chosen before.
-struct NextEffect {
-  EffortTerm term;
-  std::vector<EffortTerm> others;  ///< further forms to start a refinement from, where the kind has any
-  double log_odds = 0.0;           ///< against nothing more, forms and sizes averaged out, nats
-  double probability = 0.0;        ///< among all kinds and nothing more
-};
-
-/// What may come next, most probable first.
-struct NextEffects {
-  std::vector<NextEffect> effects;
-  double nothing = 1.0;  ///< probability that no effect of the catalogue is missing
-  EvidenceFit fit;       ///< without a further effect
-};
 
 /// Plain training error of a form beside what was chosen before; nothing where it has no room within physics.
 using PlainFit = std::function<std::optional<double>(const EffortTerm&)>;
@@ -64,6 +50,7 @@ class EffortHypotheses {
   const sim::DriveDescription& model_;
   const EffortRows& rows_;
   ThinnedRows thin_;
+  std::vector<EffortTerm> second_masses_;
   Known base_;
   double coulomb_;
   Evidence evidence_;

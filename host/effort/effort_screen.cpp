@@ -18,25 +18,8 @@ namespace {
 
 /// Further waves of a kind included; a bound on time.
 constexpr int kMostRounds = 16;
-/// A group of more kinds is no answer.
-constexpr std::size_t kLargestGroup = 4;
-
 bool contains(const std::vector<std::string>& kinds, const std::string& kind) {
   return std::ranges::find(kinds, kind) != kinds.end();
-}
-
-/// Fewest kinds that together are certain, most probable first; empty where "nothing more" is more probable than one of
-/// them, or too many are needed.
-std::vector<std::string> certain_group(const NextEffects& next, double& probability) {
-  std::vector<std::string> group;
-  probability = 0.0;
-  for (const NextEffect& effect : next.effects) {
-    if (probability >= kClaimed || effect.probability < next.nothing || group.size() == kLargestGroup) break;
-    group.push_back(effect.term.kind);
-    probability += effect.probability;
-  }
-  if (probability < kClaimed) group.clear();
-  return group;
 }
 
 class Search {
@@ -44,12 +27,7 @@ class Search {
   /// Keeps references.
   Search(const sim::DriveDescription& model, EffortScreen& screen, EffortRegression& regression,
          const std::vector<EffortTerm>& base, const std::vector<std::string>& absent)
-      : model_(model),
-        screen_(screen),
-        regression_(regression),
-        base_(base),
-        excluded_(absent),
-        may_have_a_gap_(!contains(absent, "backlash")) {}
+      : model_(model), screen_(screen), regression_(regression), base_(base), excluded_(absent) {}
 
   void run(const EffortHypotheses& hypotheses, std::size_t most_effects) {
     for (int round = 0; round < kMostRounds && screen_.chosen.size() < most_effects && step(hypotheses); ++round)
@@ -93,15 +71,6 @@ class Search {
     }
     effect.others.clear();
     return true;
-  }
-
-  /// Takes kinds out of what may come next; the others share their probability.
-  static void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
-    std::erase_if(next.effects, [&](const NextEffect& effect) { return contains(kinds, effect.term.kind); });
-    double sum = next.nothing;
-    for (const NextEffect& effect : next.effects) sum += effect.probability;
-    next.nothing = sum > 0.0 ? next.nothing / sum : 1.0;
-    for (NextEffect& effect : next.effects) effect.probability = sum > 0.0 ? effect.probability / sum : 0.0;
   }
 
   /// What every kind would leave, for the reader and for `add`.
@@ -156,14 +125,17 @@ class Search {
 
   NextEffects weigh(const EffortHypotheses& hypotheses) {
     NextEffects next = hypotheses.next(chosen_, screen_.rows.effort - screen_.best().residual, excluded_,
-                                       [this](const EffortTerm& term) -> std::optional<double> {
-                                         ScreenedModel tried;
-                                         if (contains(refused_waves_, term.words) || !with(term, tried)) return {};
-                                         return tried.train;
-                                       });
+                                       [this](const EffortTerm& term) { return plain_error(term); });
     left_ = next.fit;
     regression_.weigh(hypotheses.weights(left_));
     return next;
+  }
+
+  /// Plain least squares of a form beside what was chosen.
+  std::optional<double> plain_error(const EffortTerm& term) const {
+    ScreenedModel tried;
+    if (contains(refused_waves_, term.words) || !with(term, tried)) return {};
+    return tried.train;
   }
 
   /// Adds the most probable effect that is certain, holds on validation rows and takes enough of the error; or those
@@ -177,15 +149,27 @@ class Search {
       if (!is_worth_naming(tried)) small.push_back(tried.kinds.back());
     NextEffects next = all;
     take_out(next, small);
+    take_out_needless_gap(list, next);
     if (take_one(next, all, list)) {
       to_be_followed_.clear();
       return true;
     }
     screen_.nothing = next.nothing;
-    if (to_be_followed_.empty() && take_small_ones_together(all, list)) return true;
+    if (to_be_followed_.empty() && (take_small_ones_together(all, list) || take_one_of_two(hypotheses, all, list)))
+      return true;
     for (const SmallOne& one : small_ones(std::move(all))) screen_.certain.push_back(one.certain);
     close_step(std::move(list), next);
     return false;
+  }
+
+  /// A spring is a gap of no width: a gap must take its part of what the spring leaves.
+  void take_out_needless_gap(const std::vector<ScreenedModel>& list, NextEffects& next) const {
+    const auto of = [&](const char* kind) {
+      return std::ranges::find_if(list, [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
+    };
+    const auto spring = of("compliance"), gap = of("backlash");
+    if (spring != list.end() && gap != list.end() && !is_worth_naming(spring->validate, gap->validate))
+      take_out(next, {"backlash"});
   }
 
   /// Of what may come next; what is refuted is taken out of it and, for good, of `all`.
@@ -224,17 +208,13 @@ class Search {
       if (is_there(kind))
         take_further_wave(kind, std::move(taken));
       else
-        take_effect(effect.term, group, probability, std::move(taken), list, next);
+        take_effect(group, probability, std::move(taken), list, next);
       keep(std::move(effect.term), group);
       return true;
     }
   }
 
   bool is_there(const std::string& kind) const { return contains(screen_.best().kinds, kind); }
-
-  static NextEffect& effect_of(NextEffects& next, const std::string& kind) {
-    return *std::ranges::find(next.effects, kind, [](const NextEffect& other) { return other.term.kind; });
-  }
 
   /// A wave that does not hold under one name is no other effect.
   void refuse_wave(const std::string& form, NextEffects& next) {
@@ -267,15 +247,14 @@ class Search {
     last = std::move(taken);
   }
 
-  void take_effect(const EffortTerm& term, const std::vector<std::string>& group, double probability,
-                   ScreenedModel taken, std::vector<ScreenedModel> list, const NextEffects& next) {
+  void take_effect(const std::vector<std::string>& group, double probability, ScreenedModel taken,
+                   std::vector<ScreenedModel> list, const NextEffects& next) {
     screen_.certain.push_back({group, probability, screen_.best().validate, taken.validate});
     std::erase_if(list, [&](const ScreenedModel& tried) { return tried.kinds == taken.kinds; });
     list.insert(list.begin(), taken);
     close_step(std::move(list), next);
     screen_.chosen.push_back(std::move(taken));
     screen_.tied.emplace_back(group.begin() + 1, group.end());
-    look_for_a_gap(term);
   }
 
   struct SmallOne {
@@ -340,18 +319,51 @@ class Search {
     if (!with(first.term, taken)) return false;
     taken.probability = first.certain.probability;
     taken.confidence = logistic(first.log_odds);
-    take_effect(first.term, first.certain.group, first.certain.probability, std::move(taken), list, all);
+    take_effect(first.certain.group, first.certain.probability, std::move(taken), list, all);
     keep(std::move(first.term), first.certain.group);
     to_be_followed_ = first.certain.group.front();
     return true;
   }
 
-  /// A spring that hardens as a gap does: the balance has no columns of a gap, and cannot tell which of them it is.
-  void look_for_a_gap(const EffortTerm& term) {
-    if (!term.at_frequency || !may_have_a_gap_) return;
-    screen_.hardening = spring_hardening(model_, screen_.rows, base_, chosen_, term);
-    if (screen_.hardening && screen_.hardening->shows_a_gap() && !contains(screen_.tied.back(), "backlash"))
-      screen_.tied.back().emplace_back("backlash");
+  /// Two effects may hide each other: beside either of them alone, what is left wanders as it did before. Of the two
+  /// that leave least, each of which takes enough beside the other: given one, is another certain?
+  bool take_one_of_two(const EffortHypotheses& hypotheses, const NextEffects& all,
+                       const std::vector<ScreenedModel>& list) {
+    std::vector<ScreenedModel> alone(all.effects.size());
+    for (std::size_t k = 0; k < alone.size(); ++k)
+      if (!with(all.effects[k].term, alone[k])) alone[k].validate = 0.0;  // nothing takes anything beside it
+    const NextEffect* beside = nullptr;
+    double least = HUGE_VAL;
+    for (std::size_t a = 0; a < alone.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b) {
+        throw_if_cancelled();
+        std::vector<const EffortTerm*> further = pointers_to(chosen_);
+        further.push_back(&all.effects[a].term);
+        further.push_back(&all.effects[b].term);
+        ScreenedModel both;
+        if (!regression_.fit(base_, further, both) || both.train >= least || !is_worth_naming(both) ||
+            !is_worth_naming(alone[a].validate, both.validate) || !is_worth_naming(alone[b].validate, both.validate))
+          continue;
+        least = both.train;
+        beside = &all.effects[alone[a].train > alone[b].train ? a : b];
+      }
+    if (beside == nullptr) return false;
+    std::vector<EffortTerm> chosen = chosen_;
+    chosen.push_back(beside->term);
+    std::vector<std::string> excluded = excluded_;
+    excluded.push_back(beside->term.kind);
+    const NextEffects next = hypotheses.next(chosen, screen_.rows.effort - screen_.best().residual, excluded,
+                                             [this](const EffortTerm& term) { return plain_error(term); });
+    double probability = 0.0;
+    const std::vector<std::string> group = certain_group(next, probability);
+    ScreenedModel taken;
+    if (group.empty() || is_there(group.front()) || !with(next.effects.front().term, taken)) return false;
+    taken.probability = next.effects.front().probability;
+    taken.confidence = logistic(next.effects.front().log_odds);
+    take_effect(group, probability, std::move(taken), list, next);
+    keep(next.effects.front().term, group);
+    to_be_followed_ = group.front();
+    return true;
   }
 
   /// The final model without a kind; nothing where that cannot be fitted.
@@ -409,7 +421,6 @@ class Search {
   std::vector<EffortTerm> chosen_ = {};
   std::vector<std::string> excluded_, refused_waves_ = {};
   std::string to_be_followed_ = {};  ///< chosen for what it shows together with another, which is still to be found
-  bool may_have_a_gap_;
   EvidenceFit left_ = {};
 };
 

@@ -10,7 +10,6 @@
 #include "host/effort/effort_rows.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/effort/repeatability.hpp"
-#include "host/effort/spring_hardening.hpp"
 
 namespace host {
 
@@ -31,7 +30,6 @@ struct EffortScreen {
   std::vector<CertainEffect> certain;             ///< in the order in which they were found, those not named too
   double nothing = 1.0;          ///< after the last step: probability that no effect of the catalogue follows
   double memory_log_odds = 0.0;  ///< that what is left depends on some coordinate, nats
-  std::optional<SpringHardening> hardening;  ///< of the spring that was chosen last
   std::optional<Repeatability> repeatable;   ///< of the best model's residual, where a motion was repeated
   std::optional<ScreenedModel> judge_alone;  ///< the base fitted to the judging rows, its `train` of these
   std::vector<std::string> held;             ///< base parameters that stayed as given, and why, in words

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/effort/effort_compliance.hpp"
 #include "host/effort/effort_waves.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/identify/motion.hpp"
@@ -79,6 +78,20 @@ EffortTerm stribeck_term(const sim::DriveDescription& model, const EffortRows& r
   term.write = [fading](const VectorXd& factors, sim::DriveDescription& fitted) {
     const double level = fitted.find("coulomb") == nullptr ? 0.0 : fitted.find("coulomb")->at("level");
     return append(fitted, "stribeck", {{"static", level + factors(0)}, {"omega1", fading}, {"omega2", fading}});
+  };
+  return term;
+}
+
+/// A pull towards a centre within the travel.
+EffortTerm spring_term(const EffortRows& rows, double centre) {
+  EffortTerm term =
+      simple("spring_torque", rows.x.array() - centre, 0, [centre](double stiffness, sim::DriveDescription& fitted) {
+        return append(fitted, "spring_torque", {{"stiffness", stiffness}, {"centre", centre}});
+      });
+  term.neighbours = [&rows, centre](double part) {
+    const double low = rows.x.minCoeff(), high = rows.x.maxCoeff(), step = part * (high - low);
+    return std::vector<EffortTerm>{spring_term(rows, std::min(centre + step, high)),
+                                   spring_term(rows, std::max(centre - step, low))};
   };
   return term;
 }
@@ -317,17 +330,13 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
       return lag_s > 0.0 && append(fitted, "current_loop_lag", {{"bandwidth", 1.0 / (2.0 * std::numbers::pi * lag_s)}});
     }));
   }
-  if (may_have("compliance") && may_have("backlash") && may_have("presliding")) append_compliance(model, rows, terms);
   if (!rows.has_position) return terms;
-  if (may_have("spring_torque")) {
-    EffortTerm term{"spring_torque", MatrixXd(rows.w.size(), 2), {0, 0}, {}, {}};
-    term.columns << rows.x, one;
-    term.write = [](const VectorXd& factors, sim::DriveDescription& fitted) {
-      return factors(0) != 0.0 &&
-             append(fitted, "spring_torque", {{"stiffness", factors(0)}, {"centre", -factors(1) / factors(0)}});
-    };
-    terms.push_back(std::move(term));
-  }
+  // A spring that is at rest nowhere within the travel is a weight, and what is left of it.
+  constexpr int kCentres = 5;
+  if (may_have("spring_torque"))
+    for (int k = 0; k < kCentres; ++k)
+      terms.push_back(
+          spring_term(rows, rows.x.minCoeff() + (rows.x.maxCoeff() - rows.x.minCoeff()) * k / (kCentres - 1)));
   return terms;
 }
 

@@ -22,8 +22,6 @@ struct EffortTerm {
   /// Forms whose shape differs by this part; empty where the forms that are tried lie close enough. It refers to the
   /// rows.
   std::function<std::vector<EffortTerm>(double part)> neighbours{};
-  /// The same form with its frequency so many times as high; empty where it has none. It refers to the rows.
-  std::function<EffortTerm(double factor)> at_frequency{};
   /// RMS of the effort that acts with this effect, over that of the logged one. What is left is measured in that: where
   /// nothing acts, nothing is left, and nothing is explained.
   double acting = 1.0;
@@ -47,8 +45,8 @@ sim::DriveDescription standing_part(const sim::DriveDescription& model);
 Eigen::VectorXd standing_effort(const sim::DriveDescription& model, const EffortRows& rows);
 
 /// All forms of the effects that could be added to the model and leave a trace while the axis slides, but for waves
-/// over the travel. `explained` is the effort by the terms so far: what is in proportion to the effort is taken in
-/// proportion to that, since the measured one would explain itself.
+/// over the travel and second masses. `explained` is the effort by the terms so far: what is in proportion to the
+/// effort is taken in proportion to that, since the measured one would explain itself.
 std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const EffortRows& rows,
                                      const Eigen::VectorXd& explained);
 

@@ -54,6 +54,28 @@ TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
   EXPECT_LT(found.certain.front().after, 0.5 * found.certain.front().before);
 }
 
+TEST(CertainEffects, FindsTwoThatHideEachOther) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  // Beside a weight alone, friction that differs by direction wanders with the speed, and the other way round.
+  const host::EffortScreen found =
+      screened([](const Point& point) { return 0.006 + 0.3 * kViscous * std::abs(point.w); });
+  EXPECT_THAT(named(found), Contains("viscous_asymmetry"));
+  EXPECT_EQ(named(found).size(), 2U);
+  EXPECT_LT(found.best().validate, 0.2 * found.base.validate);
+}
+
+TEST(CertainEffects, GivesASpringNoWeight) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const auto kinds_of = [](double weight, double stiffness) {
+    return named(screened([=](const Point& point) { return weight + stiffness * point.x; }));
+  };
+  EXPECT_EQ(kinds_of(0.0, 0.0008), std::vector<std::string>{"spring_torque"});
+  // At rest nowhere within the travel.
+  const std::vector<std::string> both = kinds_of(0.06, 0.0008);
+  EXPECT_THAT(both, Contains("spring_torque"));
+  EXPECT_EQ(both.size(), 2U);
+}
+
 TEST(CertainEffects, GivesABumpThatNoEffectIsToTheMemory) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::EffortScreen found =

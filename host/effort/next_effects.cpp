@@ -1,0 +1,35 @@
+#include "host/effort/next_effects.hpp"
+
+#include <algorithm>
+
+#include "host/infer/posterior.hpp"
+
+namespace host {
+
+std::vector<std::string> certain_group(const NextEffects& next, double& probability) {
+  constexpr std::size_t kLargestGroup = 4;  // more kinds are no answer
+  std::vector<std::string> group;
+  probability = 0.0;
+  for (const NextEffect& effect : next.effects) {
+    if (probability >= kClaimed || effect.probability < next.nothing || group.size() == kLargestGroup) break;
+    group.push_back(effect.term.kind);
+    probability += effect.probability;
+  }
+  if (probability < kClaimed) group.clear();
+  return group;
+}
+
+void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
+  std::erase_if(next.effects,
+                [&](const NextEffect& effect) { return std::ranges::find(kinds, effect.term.kind) != kinds.end(); });
+  double sum = next.nothing;
+  for (const NextEffect& effect : next.effects) sum += effect.probability;
+  next.nothing = sum > 0.0 ? next.nothing / sum : 1.0;
+  for (NextEffect& effect : next.effects) effect.probability = sum > 0.0 ? effect.probability / sum : 0.0;
+}
+
+NextEffect& effect_of(NextEffects& next, const std::string& kind) {
+  return *std::ranges::find(next.effects, kind, [](const NextEffect& other) { return other.term.kind; });
+}
+
+}  // namespace host

@@ -1,0 +1,171 @@
+#include "host/effort/second_mass_terms.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/identify/zero_phase_filter.hpp"
+#include "host/parallel.hpp"
+#include "sim/catalogue.hpp"
+#include "sim/drive.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// A load behind a spring whose motor end moves as recorded.
+struct Load {
+  double resonance_Hz;  ///< with the motor held: the antiresonance that the motor sees
+  double damping;
+  double friction;   ///< Coulomb friction over inertia, rad/s^2 or m/s^2
+  double gap = 0.0;  ///< free travel, rad or m
+};
+
+/// The coupling's pull over the load's inertia at every sample: w^2 d + 2 z w d', with d the twist beyond the gap,
+/// d'' = a - pull + friction sign(load's speed); behind a gap the contact pushes and never pulls (sim/coupling.hpp).
+/// Semi-implicit steps of an eighth of a radian; friction takes speed away at most, and then holds.
+std::vector<double> pull_over(const EffortSignals& signals, const Load& load) {
+  std::vector<double> pulls(signals.speed.size());
+  const double omega = 2.0 * std::numbers::pi * load.resonance_Hz, damping = 2.0 * load.damping * omega;
+  const auto parts = static_cast<int>(std::ceil(omega * signals.period_s / 0.125));
+  const double step = signals.period_s / parts, hold = step * load.friction, half_gap = 0.5 * load.gap;
+  double speed = signals.speed.empty() ? 0.0 : signals.speed.front(), twist = 0.0;
+  const auto pull_at = [&](double motor) {
+    if (half_gap <= 0.0) return omega * omega * twist + damping * (motor - speed);
+    const double beyond = twist - std::clamp(twist, -half_gap, half_gap);
+    if (beyond == 0.0) return 0.0;
+    const double pull = omega * omega * beyond + damping * (motor - speed);
+    return beyond > 0.0 ? std::max(pull, 0.0) : std::min(pull, 0.0);
+  };
+  for (std::size_t k = 0; k < signals.speed.size(); ++k) {
+    pulls[k] = pull_at(signals.speed[k]);
+    if (k + 1 == signals.speed.size()) break;
+    const double slope = (signals.speed[k + 1] - signals.speed[k]) / signals.period_s;
+    for (int part = 0; part < parts; ++part) {
+      const double motor = signals.speed[k] + slope * step * (part + 0.5);
+      const double moved = speed + step * pull_at(motor);
+      speed = moved > hold ? moved - hold : (moved < -hold ? moved + hold : 0.0);
+      twist += step * (motor - speed);
+    }
+  }
+  return pulls;
+}
+
+VectorXd pull_of(const EffortRows& rows, const Load& load) {
+  VectorXd column(rows.w.size());
+  for (const EffortSignals& signals : rows.signals) {
+    std::vector<double> pulls = pull_over(signals, load);
+    // A spring's pull is as smooth as the motion; what strikes is not, and the effort was smoothed.
+    if (load.gap > 0.0) pulls = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(pulls);
+    for (std::size_t k = 0; k < signals.kept.size(); ++k)
+      column(static_cast<Index>(signals.first_row + k)) = pulls[signals.kept[k]];
+  }
+  return column;
+}
+
+EffortTerm term_of(const EffortRows& rows, const Load& load) {
+  EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", pull_of(rows, load), {1}, {}, {}};
+  // A load that its friction holds is a hysteresis (a cable chain, a seal), whatever mass it has.
+  constexpr double kHeld = 0.7;  // of the RMS pull
+  const double pull = std::sqrt(term.columns.squaredNorm() / static_cast<double>(term.columns.rows()));
+  const bool held = load.friction > kHeld * pull;
+  // Frequency and damping with the motor held become those of both masses, free to move.
+  term.write = [load, held, lead = rows.lead](const VectorXd& factors, sim::DriveDescription& fitted) {
+    sim::EffectEntry& inertia = *fitted.find("inertia");
+    const double whole = inertia.at("J") + factors(0), share = factors(0) / whole;
+    if (held || !(share > 0.0) || !(share < 1.0)) return false;
+    const double ratio = 1.0 / std::sqrt(1.0 - share), on_load = load.friction * factors(0);
+    // With more damping nothing resounds, and a spring stands for something else; what strikes is damped as it may be.
+    constexpr double kSwings = 0.71;
+    if (load.gap <= 0.0 && load.damping * ratio > kSwings) return false;
+    inertia.parameters["J"] = whole;
+    double part = 0.0;
+    if (sim::EffectEntry* coulomb = fitted.find("coulomb"); coulomb != nullptr && on_load > 0.0) {
+      // The regression's level is the motor's own; the model's is that of both.
+      double level = 0.0;
+      for (const auto& [id, value] : coulomb->parameters)
+        level += std::abs(value) / static_cast<double>(coulomb->parameters.size());
+      part = on_load / (on_load + level);
+      for (auto& [id, value] : coulomb->parameters) value += value < 0.0 ? -on_load : on_load;
+    }
+    sim::EffectEntry entry;
+    entry.kind = load.gap > 0.0 ? "backlash" : "compliance";
+    entry.parameters = {{"resonance", load.resonance_Hz * ratio},
+                        {"damping_ratio", std::clamp(load.damping * ratio, 0.001, 1.0)},
+                        {"load_fraction", share},
+                        {"load_friction", part}};
+    if (load.gap > 0.0) entry.parameters["gap"] = load.gap * lead;
+    return append_within_bounds(fitted, std::move(entry));
+  };
+  if (load.gap > 0.0)
+    term.words = fmt::format("free travel {:.3g}{}", load.gap * rows.lead,
+                             load.friction > 0.0 ? ", friction on both sides" : "");
+  else
+    term.words = fmt::format("antiresonance {:.3g} Hz{}", load.resonance_Hz,
+                             load.friction > 0.0 ? ", friction on both sides" : "");
+  term.neighbours = [&rows, load](double part) {
+    std::vector<EffortTerm> around;
+    // Damping and friction show far less than the frequency; behind a gap, so does the frequency.
+    constexpr double kCoarser = 6.0;
+    for (const double sign : {-1.0, 1.0}) {
+      const double fine = std::exp(sign * part), coarse = std::exp(sign * kCoarser * part);
+      const auto moved = [&](double Load::*parameter, double factor) {
+        Load other = load;
+        other.*parameter *= factor;
+        around.push_back(term_of(rows, other));
+      };
+      if (load.gap > 0.0) moved(&Load::gap, fine);
+      moved(&Load::resonance_Hz, load.gap > 0.0 ? coarse : fine);
+      moved(&Load::damping, coarse);
+      if (load.friction > 0.0) moved(&Load::friction, coarse);
+    }
+    return around;
+  };
+  return term;
+}
+
+}  // namespace
+
+std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows) {
+  for (const char* contact : {"compliance", "backlash", "presliding"})
+    if (model.find(contact) != nullptr) return {};
+  if (rows.steady) return {};  // without acceleration a second mass does not show
+  constexpr double kLowest_Hz = 1.0, kStep = 1.12, kShareOfCutoff = 0.8;
+  sim::DriveDescription base = model;
+  std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
+  const sim::Drive drive(base);
+  const double usual = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia;
+  const double highest_Hz = kShareOfCutoff * rows.lowest_cutoff_Hz, span = std::log(highest_Hz / kLowest_Hz);
+  constexpr double kMost = 100.0;  // up to 90 kHz
+  const auto frequencies = static_cast<int>(std::ceil(std::clamp(span / std::log(kStep), 0.0, kMost)));
+  std::vector<Load> loads;
+  for (int k = 0; k < frequencies; ++k) {
+    const double resonance_Hz = kLowest_Hz * std::pow(kStep, k);
+    for (const double damping : {0.02, 0.1, 0.3}) loads.push_back({resonance_Hz, damping, 0.0});
+    if (usual > 0.0)
+      for (const double part : {0.25, 0.5, 1.0, 2.0, 4.0}) loads.push_back({resonance_Hz, 0.05, part * usual});
+  }
+  // Gaps from a few counts of the encoder to what the catalogue allows, and to a twentieth of the travel. A contact is
+  // stiff, and what it does beyond the cut-off does not show. It is damped well: where it bounces, no motion that is
+  // known to a count tells when.
+  if (rows.has_position) {
+    const sim::ParameterInfo& gap = *sim::find_effect("backlash")->parameter("gap");
+    constexpr double kFewCounts = 4.0, kOfTravel = 0.05;
+    const double most = std::min(gap.upper, kOfTravel * (rows.x.maxCoeff() - rows.x.minCoeff()));
+    for (double free = kFewCounts * model.data.encoder_resolution; free > 0.0 && free <= most; free *= 1.5)
+      for (const double resonance_Hz : {0.5 * highest_Hz, highest_Hz, 2.0 * highest_Hz})
+        for (const double damping : {0.3, 0.6})
+          for (const double part : {0.0, 0.5, 1.5})
+            loads.push_back({resonance_Hz, damping, part * usual, free / rows.lead});
+  }
+  std::vector<EffortTerm> terms(loads.size());
+  for_each_in_parallel(loads.size(), [&](std::size_t k) { terms[k] = term_of(rows, loads[k]); });
+  return terms;
+}
+
+}  // namespace host

@@ -1,0 +1,15 @@
+// A load on a spring, with or without a gap, as it shows in the effort of a motor whose motion is known.
+#pragma once
+
+#include <vector>
+
+#include "host/effort/effort_terms.hpp"
+
+namespace host {
+
+/// Compliance and backlash: loads of many frequencies and dampings, without and with friction of their own, and, of
+/// backlash, of many gaps. The column is the coupling's pull for a load of inertia 1, so that its factor is the load's
+/// inertia. The terms refer to the rows. Empty where nothing accelerates, and where the model has a contact already.
+std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows);
+
+}  // namespace host
