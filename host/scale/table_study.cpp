@@ -69,11 +69,14 @@ class Search {
     return evidence_.fit(columns, deviations, {.correlation = near.correlation, .sizes = near.sizes});
   }
 
+  bool can_show(std::string_view kind) const { return !table_forms(kind, rows_, inertia_, deceleration_).empty(); }
+
   /// The best form of a kind beside the chosen terms; the log evidence is averaged over all forms.
   std::optional<Fitted> best_form(std::string_view kind, const std::vector<TableTerm>& chosen,
                                   const EvidenceFit& before) const {
-    const std::vector<TableTerm> forms = table_forms(kind, rows_, inertia_, deceleration_);
+    std::vector<TableTerm> forms = table_forms(kind, rows_, inertia_, deceleration_);
     if (forms.empty()) return {};
+    for (TableTerm& form : forms) set_spring(form, chosen, before);
     std::vector<double> gains(forms.size(), -HUGE_VAL);
     for_each_in_parallel(forms.size(), [&](std::size_t f) {
       MatrixXd columns = forms[f].quick_columns(rows_);
@@ -109,17 +112,10 @@ class Search {
   void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     TableTerm& term = terms.back();
     if (term.kind == "backlash") {
-      constexpr int kRounds = 4;
-      for (int round = 0; round < kRounds; ++round) {
-        const double gap = 1e-3 * fit.factors(first_column(terms, terms.size() - 1));
-        if (!(gap > 1e-4) || std::abs(gap - term.shape[0]) < 1e-5) return;
-        std::vector<TableTerm> moved = terms;
-        moved.back().shape[0] = gap;
-        EvidenceFit again = fit_beside(fit, moved);
-        if (again.log_evidence < fit.log_evidence) return;
-        terms = std::move(moved);
-        fit = std::move(again);
-      }
+      set_spring(term, terms, fit);
+      fit = fit_beside(fit, terms);
+      settle_gap(terms, fit);
+      if (terms.back().shape.size() > kPlainGap) refine_beside_spring(terms, fit);
     } else if (term.kind == "encoder_cyclic_error" || (term.kind == "thermal_growth" && term.shape[0] > 0.0)) {
       const double travel = rows_.x.maxCoeff() - rows_.x.minCoeff();
       double step = term.kind == "thermal_growth" ? 0.5 : 0.1 * term.shape[0] / travel;  // relative
@@ -133,6 +129,74 @@ class Search {
           fit = std::move(again);
           break;
         }
+    }
+  }
+
+  /// Takes the gap that was fitted for the shape, until both agree.
+  void settle_gap(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
+    constexpr int kRounds = 4;
+    for (int round = 0; round < kRounds; ++round) {
+      const double gap = 1e-3 * fit.factors(first_column(terms, terms.size() - 1));
+      if (!(gap > 1e-4) || std::abs(gap - terms.back().shape[0]) < 1e-5) return;
+      std::vector<TableTerm> moved = terms;
+      moved.back().shape[0] = gap;
+      EvidenceFit again = fit_beside(fit, moved);
+      if (again.log_evidence < fit.log_evidence) return;
+      terms = std::move(moved);
+      fit = std::move(again);
+    }
+  }
+
+  /// A gap takes what a spring leaves and the reverse: both are moved until the evidence is largest.
+  void refine_beside_spring(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
+    // Less gap beside more spring loses as much at a reversal, and the other way round: no step of one alone leads
+    // there.
+    constexpr double kSprings[] = {0.5, 0.7, 1.0, 1.4, 2.0, 2.8}, kGaps[] = {0.25, 0.35, 0.5, 0.7, 1.0, 1.4};
+    std::vector<std::vector<TableTerm>> starts;
+    for (const double spring : kSprings)
+      for (const double gap : kGaps) {
+        starts.push_back(terms);
+        std::vector<double>& shape = starts.back().back().shape;
+        shape[0] *= gap;
+        for (std::size_t k = kPlainGap + 1; k < shape.size(); ++k) shape[k] *= spring;
+      }
+    std::vector<EvidenceFit> fits(starts.size());
+    for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_beside(fit, starts[k]); });
+    const auto best = std::ranges::max_element(fits, {}, &EvidenceFit::log_evidence);
+    if (best->log_evidence > fit.log_evidence) {
+      terms = starts[static_cast<std::size_t>(best - fits.begin())];
+      fit = *best;
+    }
+    constexpr double kLeastStep = 0.01;  // relative
+    for (double step = 1.0; step > kLeastStep; step *= 0.5)
+      for (const bool is_gap : {false, true})
+        for (const double way : {1.0 + step, 1.0 / (1.0 + step)}) {
+          std::vector<TableTerm> moved = terms;
+          std::vector<double>& shape = moved.back().shape;
+          const double spring = shape[kPlainGap + 1];
+          set_spring(moved.back(), terms, fit);
+          const double scale = spring / shape[kPlainGap + 1] * (is_gap ? 1.0 : way);
+          if (!std::isfinite(scale)) return;
+          for (std::size_t k = kPlainGap + 1; k < shape.size(); ++k) shape[k] *= scale;
+          if (is_gap) shape[0] *= way;
+          EvidenceFit again = fit_beside(fit, moved);
+          if (again.log_evidence <= fit.log_evidence) continue;
+          terms = std::move(moved);
+          fit = std::move(again);
+          break;
+        }
+    settle_gap(terms, fit);
+  }
+
+  /// Gives a gap the spring that stands beside it, or none.
+  void set_spring(TableTerm& gap, const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    if (gap.kind != "backlash") return;
+    gap.shape.resize(kPlainGap);
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (terms[k].kind != "compliance") continue;
+      const VectorXd factors = fit.factors.segment(first_column(terms, k), terms[k].columns(rows_).cols());
+      gap.shape.push_back(terms[k].shape[0]);
+      gap.shape.insert(gap.shape.end(), factors.begin(), factors.end());
     }
   }
 
@@ -245,6 +309,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   EvidenceFit fit = search.fit(chosen);
   while (chosen.size() < kMostEffects) {
     std::vector<Fitted> found;
+    std::vector<std::pair<std::string, double>> denied;
     std::vector<double> logs = {std::log(kNothingMore) + fit.log_evidence};
     for (const std::string_view kind : kTableKinds) {
       if (count_of(chosen, kind) >= (kind == "encoder_cyclic_error" ? kMostCyclic : 1) || stands_in(model, kind))
@@ -252,10 +317,12 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
       if (std::optional<Fitted> best = search.best_form(kind, chosen, fit)) {
         logs.push_back(std::log((1.0 - kNothingMore) / std::size(kTableKinds)) + best->log_evidence);
         found.push_back(*std::move(best));
+      } else if (count_of(chosen, kind) == 0 && search.can_show(kind)) {
+        denied.emplace_back(kind, 0.0);
       }
     }
     const std::vector<double> probable = posterior(logs);
-    study.absent_odds.clear();
+    study.absent_odds = std::move(denied);
     std::vector<std::size_t> order(found.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
       order[k] = k;
@@ -288,6 +355,8 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   for (std::size_t k = 0; k < chosen.size();) {
     std::vector<TableTerm> others = chosen;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    if (chosen[k].kind == "compliance")
+      for (TableTerm& term : others) search.set_spring(term, {}, fit);
     const EvidenceFit less = search.fit(others);
     const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
     const double needed = logistic(fit.log_evidence - less.log_evidence + prior);

@@ -19,29 +19,59 @@ double size_of(const VectorXd& values) {
   return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
 }
 
-/// The table in a gap, pushed by the motor at either side and slowed by its own friction between: its travel less the
-/// motor's, over the gap. Starts in the middle.
-std::vector<double> in_the_gap(const TableRecord& one, double gap, double deceleration) {
-  const double half = 0.5 * gap, period_s = one.record->sample_period_s;
-  std::vector<double> share(one.x.size());
-  double table = one.x.front(), speed = 0.0;
+/// A value at every sample of a record, between those of its rows, each at its row's middle.
+std::vector<double> at_samples(const TableRecord& one, const VectorXd& of_rows) {
+  std::vector<double> values(one.x.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(one.stride) - 0.5;
+    const double within = std::clamp(place, 0.0, static_cast<double>(one.rows - 1));
+    const Index left = std::min(static_cast<Index>(within), one.rows - 2);
+    const double share = within - static_cast<double>(left);
+    values[k] = (1.0 - share) * of_rows(one.first_row + left) + share * of_rows(one.first_row + left + 1);
+  }
+  return values;
+}
+
+/// The table in a gap, pushed at either side by what stands at `pusher`, mm, and slowed by its own friction between:
+/// its travel less the pusher's, over the gap. Starts in the middle.
+std::vector<double> in_the_gap(const std::vector<double>& pusher, double period_s, double gap, double deceleration) {
+  const double half = 0.5 * gap;
+  std::vector<double> share(pusher.size());
+  double table = pusher.front(), speed = 0.0;
   for (std::size_t k = 0; k < share.size(); ++k) {
-    const double motor_speed = k == 0 ? 0.0 : (one.x[k] - one.x[k - 1]) / period_s;
+    const double at = pusher[k], pusher_speed = k == 0 ? 0.0 : (at - pusher[k - 1]) / period_s;
     if (std::isfinite(deceleration)) {
       table += speed * period_s;
       const double slower = std::max(std::abs(speed) - deceleration * period_s, 0.0);
       speed = std::copysign(slower, speed);
     }
-    if (table < one.x[k] - half) {
-      table = one.x[k] - half;
-      speed = std::max(speed, motor_speed);
-    } else if (table > one.x[k] + half) {
-      table = one.x[k] + half;
-      speed = std::min(speed, motor_speed);
+    if (table < at - half) {
+      table = at - half;
+      speed = std::max(speed, pusher_speed);
+    } else if (table > at + half) {
+      table = at + half;
+      speed = std::min(speed, pusher_speed);
     }
-    share[k] = (table - one.x[k]) / gap;
+    share[k] = (table - at) / gap;
   }
   return share;
+}
+
+/// Gap and spring stand in series: the gap begins to close once the spring has unwound.
+VectorXd beside_a_spring(const std::vector<double>& shape, const TableRows& rows) {
+  VectorXd twist;
+  if (shape.size() > kPlainGap) {
+    const MatrixXd spring = TableTerm{"compliance", {shape[kPlainGap]}}.columns(rows);
+    twist = 1e-3 * spring * Eigen::Map<const VectorXd>(shape.data() + kPlainGap + 1, spring.cols());
+  }
+  return rows.means([&](const TableRecord& one) {
+    std::vector<double> pusher = one.x;
+    if (twist.size() > 0) {
+      const std::vector<double> twisted = at_samples(one, twist);
+      for (std::size_t k = 0; k < pusher.size(); ++k) pusher[k] += twisted[k];
+    }
+    return in_the_gap(pusher, one.record->sample_period_s, shape[0], shape[1]);
+  });
 }
 
 MatrixXd waves(const TableRows& rows, double period, double zero, int orders) {
@@ -87,8 +117,7 @@ MatrixXd hats_over(const VectorXd& at, double low, double high, int count, bool 
 }  // namespace
 
 MatrixXd TableTerm::columns(const TableRows& rows) const {
-  if (kind == "backlash")
-    return rows.means([this](const TableRecord& one) { return in_the_gap(one, shape[0], shape[1]); });
+  if (kind == "backlash") return beside_a_spring(shape, rows);
   if (kind == "compliance") {
     // Of the motor's effort its own inertia and friction do not reach the table. Without a measured force, the table's
     // inertia and its friction, whose size nobody knows.

@@ -10,10 +10,14 @@
 
 namespace host {
 
+/// Entries of a gap's shape where no spring stands beside it.
+inline constexpr std::size_t kPlainGap = 2;
+
 /// One effect in one form. Its columns are linear in what is fitted; what is not linear stands in the shape.
 struct TableTerm {
   std::string kind;  ///< of the catalogue
-  /// backlash: gap mm, deceleration of a table that slides free in the gap, mm/s^2 (infinite: it stays where it is);
+  /// backlash: gap mm, deceleration of a table that slides free in the gap, mm/s^2 (infinite: it stays where it is),
+  /// then, beside a spring, the shape and the factors of its compliance, in the order of its columns;
   /// compliance: inertia that the second column is of, Nm or N per mm/s^2; pitch_error: middle and length of the
   /// travel, mm; encoder_cyclic_error: period, mm; thermal_growth: time constant, s (0: by temp_C).
   std::vector<double> shape;
