@@ -98,6 +98,22 @@ TEST(TableStudy, TellsASpringFromAGap) {
   EXPECT_LT(found.probability("backlash").value_or(1.0), 0.05);
 }
 
+/// Catches a gap that is counted from where the motor turns instead of from where the spring has unwound.
+TEST(TableStudy, MeasuresAGapBesideASpring) {
+  const auto made = [] {
+    return [gap = gap_of(0.012)](double x, double torque, double t_s) mutable {
+      const double twist = 0.003 * torque;
+      return gap(x - twist, torque, t_s) - twist;
+    };
+  };
+  const host::TableStudy found = study(made(), made());
+  ASSERT_EQ(found.effects.size(), 2U) << host::table_words(found);
+  ASSERT_NE(found.find("backlash"), nullptr);
+  ASSERT_NE(found.find("compliance"), nullptr);
+  EXPECT_NEAR(found.find("backlash")->sizes[0].value, 12.0, 1.0);
+  EXPECT_NEAR(found.find("compliance")->sizes[0].value, 3.0, 0.3);
+}
+
 TEST(TableStudy, DrawsThePitchError) {
   const Difference pitch = [](double x, double, double) { return 40e-6 * x + 0.003 * std::sin(x / 17.0); };
   const host::TableStudy found = study(pitch, pitch);
