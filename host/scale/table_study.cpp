@@ -269,7 +269,7 @@ std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind)
 
 /// Terms whose own number of factors does not depend on the records come first, so that left_on() finds its factors.
 void records_last(std::vector<TableTerm>& terms) {
-  std::ranges::stable_partition(terms, [](const TableTerm& term) { return !term.is_of_the_record(); });
+  std::stable_partition(terms.begin(), terms.end(), [](const TableTerm& term) { return !term.is_of_the_record(); });
 }
 
 }  // namespace
