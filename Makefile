@@ -185,6 +185,15 @@ scoreboard: ## How often diagnose is right on cases whose truth is known (CASES=
 	$(BUILD)/bin/axistool scoreboard $(if $(REAL),--real $(REAL),$(or $(CASES),tests/data/drive-cases)) $(if $(CUTS),--cuts) \
 	  $(if $(REWRITTEN),--rewritten) $(if $(NULLS),--nulls $(NULLS)) $(if $(SAMPLE),--sample $(SAMPLE))
 
+.PHONY: made-machines
+made-machines: ## The scoreboard on drives of a plant that shares nothing with the simulator (EFFECTS=2 hidden in each, COUNT=28, SEED=1)
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool made_machines
+	rm -rf $(BUILD)/made
+	$(BUILD)/bin/made_machines $(or $(SEED),1) $(or $(COUNT),28) $(or $(EFFECTS),2) $(BUILD)/made
+	$(BUILD)/bin/axistool scoreboard $(BUILD)/made
+
 .PHONY: plan-bench
 plan-bench: ## Plan, run and decide on machines made by independent code, pair by pair (CASES=DIR: the public cases)
 	$(NEED) build test

@@ -16,7 +16,8 @@ enum class FlashResult : std::uint8_t {
   hardware_error,  ///< write protection, programming or erase error; contents undefined
 };
 
-/// Contract: `sector_count()` sectors of `sector_size()` bytes. `read` copies out. `program` turns ones into zeros, in
+/// Contract: `sector_count()` sectors of `sector_size()` bytes. `read` copies out; `view` shows a whole
+/// sector in its place, which later operations on it change. `program` turns ones into zeros, in
 /// units of `program_size()` bytes, each of which a power cut leaves old, new or unreadable, never its neighbours.
 /// `erase` sets a whole sector to 0xFF; a power cut leaves that sector undefined, never the others. `program` and
 /// `erase` return when the hardware has finished, and stall the bus: never call them while a drive is enabled.
@@ -26,6 +27,7 @@ concept Flash = requires(T& flash, const T& constant, std::size_t sector, std::s
   { constant.sector_count() } -> std::same_as<std::size_t>;
   { constant.sector_size() } -> std::same_as<std::size_t>;
   { constant.program_size() } -> std::same_as<std::size_t>;
+  { constant.view(sector) } -> std::same_as<std::span<const std::byte>>;
   { flash.read(sector, offset, out) } -> std::same_as<FlashResult>;
   { flash.program(sector, offset, in) } -> std::same_as<FlashResult>;
   { flash.erase(sector) } -> std::same_as<FlashResult>;

@@ -8,7 +8,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "firmware/app/axis_status.hpp"
 #include "firmware/app/capture_stream.hpp"
+#include "firmware/app/core_units.hpp"
 #include "firmware/app/excitation_service.hpp"
 #include "firmware/app/fault_log_service.hpp"
 #include "firmware/app/limit_reply.hpp"
@@ -17,9 +19,11 @@
 #include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
 #include "firmware/app/path_service.hpp"
+#include "firmware/app/period_timing.hpp"
 #include "firmware/app/protocol/messages.hpp"
 #include "firmware/app/refusal_status.hpp"
 #include "firmware/app/store/parameter_store.hpp"
+#include "firmware/app/store/pitch_check.hpp"
 #include "firmware/app/triggered_capture.hpp"
 #include "firmware/core/supervision/axis_group.hpp"
 #include "hal/board.hpp"
@@ -52,7 +56,7 @@ class BoardApplication {
     store_.load(active_);
     fault_log_.start();
     saved_crc_ = active_crc_ = set_crc(active_);
-    if (store_is_usable() && check<Scalar>(active_).kind != ValueRefusal::none) set_fits_ = false;
+    if (store_is_usable() && check_all(active_).kind != ValueRefusal::none) set_fits_ = false;
     configure_all();
   }
 
@@ -66,7 +70,8 @@ class BoardApplication {
                 .store_damaged = !store_is_usable()});
     capture_.take(axes_);
     if (trigger_.is_running()) trigger_.take(axes_);
-    note_timing(now_us);
+    timing_.note(now_us, board_.clock().now_us());
+    control_periods_ = control_periods_ + 1;
   }
 
   // Parameters. `staged` is the background's own copy; nothing acts before commit().
@@ -81,7 +86,7 @@ class BoardApplication {
       refused = {.key = key_at(changed).code, .bits = std::bit_cast<std::uint32_t>(staged_.at(changed))};
       return Status::drive_enabled;
     }
-    const SetRefusal found = check<Scalar>(staged_);
+    const SetRefusal found = check_all(staged_);
     if (found.kind != ValueRefusal::none) {
       const std::size_t place = place_of(found.key).value_or(0);
       refused = {.key = found.key.code,
@@ -117,10 +122,32 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     const SaveResult result = while_stalled([this] { return store_.save(active_); });
     if (result == SaveResult::saved) saved_crc_ = active_crc_;
-    if (!was_usable) configure_all();
-    return result == SaveResult::saved          ? Status::ok
-           : result == SaveResult::not_verified ? Status::not_verified
-                                                : Status::flash_failed;
+    if (was_usable)
+      use_tables();
+    else
+      configure_all();
+    return status_of(result);
+  }
+
+  /// Likewise, of a part of a table; while no drive is enabled.
+  template <typename Write>
+  auto write_store(Write write) {
+    const typename Board::ControlShutOut guard;
+    return while_stalled([&] { return write(store_); });
+  }
+
+  /// Makes the staged table the axis's, switches it, and saves it with the parameters; while no drive is enabled.
+  Status finish_table(std::uint32_t crc, bool on) {
+    staged_ = active_;
+    staged_.set(*place_of(ParameterKey::of_axis(store_.staged_table().axis, pitch_check::kSwitch)), on ? 1.0F : 0.0F);
+    const bool was_usable = store_is_usable();
+    const SaveResult result = write_store([&](Store& store) { return store.finish_table(staged_, crc); });
+    if (result == SaveResult::saved) {
+      active_ = staged_;
+      saved_crc_ = active_crc_ = set_crc(active_);
+    }
+    if (result == SaveResult::saved || !was_usable) configure_all();
+    return status_of(result);
   }
 
   Store& store() { return store_; }
@@ -169,7 +196,7 @@ class BoardApplication {
   /// Velocity in mm/s (m/s).
   Status jog(std::size_t axis, float velocity) {
     if (!ScalarTraits<float>::is_finite(velocity)) return Status::malformed;
-    const Scalar wanted = in_core_units(axis, velocity);
+    const Scalar wanted = to_core_travel_velocity<Scalar>(velocity, active_.axis(axis));
     const bool needs_home = exceeds_unhomed_limit(velocity, active_.axis(axis));
     const typename Board::ControlShutOut guard;
     if (is_led(axis)) return Status::wrong_state;
@@ -288,6 +315,8 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     while_stalled([this] { return fault_log_.write(); });
   }
+  /// After start().
+  void log_end_of_last_run(const LoggedFault& ended) { fault_log_.note(ended); }
   bool logged_fault(std::size_t age, FaultLogPayload& payload) { return fault_log_.read(age, payload); }
 
   bool is_in_motion() {
@@ -351,19 +380,8 @@ class BoardApplication {
     Scalar velocity;
     {
       const typename Board::ControlShutOut guard;
-      const auto& seen = axes_[axis].telemetry();
-      velocity = seen.estimate.velocity;
-      status.counts_low = static_cast<std::uint32_t>(seen.encoder_counts);
-      status.counts_high = static_cast<std::int32_t>(seen.encoder_counts >> 32);
-      status.state = static_cast<std::uint8_t>(axes_[axis].state());
-      status.fault = static_cast<std::uint8_t>(axes_[axis].fault());
-      status.second_fault = static_cast<std::uint8_t>(axes_[axis].second_fault());
-      const LimitingReasons limiting = axes_[axis].limiting();
-      status.flags = static_cast<std::uint8_t>(
-          (is_fitted(axis) ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
-          (limiting.velocity_limited ? kAxisVelocityLimited : 0) |
-          (axes_[axis].is_at_rest() && !axes_[axis].is_homing() ? kAxisAtRest : 0) |
-          (axes_[axis].is_homed() ? kAxisHomed : 0) | (axes_[axis].is_homing() ? kAxisHoming : 0));
+      status = firmware::axis_status(axes_[axis], is_fitted(axis), active_.axis(axis).template get<"pitch.on">());
+      velocity = axes_[axis].telemetry().estimate.velocity;
     }
     status.velocity = velocity_of_drive(axis, velocity);  // takes its time, and the control interrupt runs again
     return status;
@@ -383,11 +401,11 @@ class BoardApplication {
   std::uint32_t control_periods() const { return control_periods_; }
   TimingPayload timing() {
     const typename Board::ControlShutOut guard;
-    return timing_;
+    return timing_.seen();
   }
   void begin_timing_anew() {
     const typename Board::ControlShutOut guard;
-    timing_ = {};
+    timing_.begin_anew();
   }
 
   Board& board() { return board_; }
@@ -395,7 +413,6 @@ class BoardApplication {
 
  private:
   static constexpr bool kBoardKeepsCapture = requires(Board & board) { board.capture_rows(); };
-  static constexpr bool kIsFloat = std::is_same_v<Scalar, float>;
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
   bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
@@ -436,42 +453,28 @@ class BoardApplication {
     axes_.board().excuse_pause();
     excitation_.forget();
     if (!store_is_usable()) return;
+    use_tables();
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
+  }
+
+  /// Where they lie now.
+  void use_tables() {
+    for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].use_pitch_table(store_.table(axis).points);
+  }
+
+  /// With the tables that go with the values.
+  SetRefusal check_all(const ParameterValues& values) const {
+    const SetRefusal found = check<Scalar>(values);
+    return found.kind == ValueRefusal::none ? check_tables(values, store_) : found;
   }
 
   Status refusal(std::size_t axis) const {
     return axes_[axis].state() == SupervisorState::fault ? Status::device_fault : Status::wrong_state;
   }
 
-  FixedUnits<float> units(std::size_t axis) const {
-    return FixedUnits<float>(axis_parameters<float>(active_.axis(axis)));
-  }
-
-  Scalar in_core_units(std::size_t axis, float travel_velocity) const {
-    if constexpr (kIsFloat)
-      return travel_velocity;
-    else
-      return Scalar::from(travel_velocity / units(axis).travel_velocity);
-  }
-
   float velocity_of_drive(std::size_t axis, Scalar velocity) const {
-    if constexpr (kIsFloat)
-      return velocity;
-    else
-      return static_cast<float>(velocity.raw()) / static_cast<float>(Scalar(1).raw()) * units(axis).velocity;
-  }
-
-  void note_timing(std::uint32_t began_us) {
-    if (timing_.periods > 0) {
-      const std::uint32_t interval = began_us - last_period_us_;
-      timing_.shortest_us = timing_.periods == 1 ? interval : std::min(timing_.shortest_us, interval);
-      timing_.longest_us = std::max(timing_.longest_us, interval);
-    }
-    last_period_us_ = began_us;
-    timing_.busiest_us = std::max(timing_.busiest_us, board_.clock().now_us() - began_us);
-    timing_.periods = timing_.periods + 1;
-    control_periods_ = control_periods_ + 1;
+    return from_core_velocity(velocity, active_.axis(axis));
   }
 
   Board& board_;
@@ -489,8 +492,7 @@ class BoardApplication {
   ParameterValues staged_{kAxes};
   std::uint32_t active_crc_ = 0, saved_crc_ = 0;  ///< a copy of the saved set would take more memory
   bool set_fits_ = true;
-  TimingPayload timing_{};
-  std::uint32_t last_period_us_ = 0;
+  PeriodTiming timing_;
   volatile std::uint32_t control_periods_ = 0;  // written in the interrupt, read in the background
 };
 

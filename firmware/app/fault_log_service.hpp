@@ -24,6 +24,12 @@ class FaultLogService {
     written_s_ = run_s_ = log_.run_s();
   }
 
+  /// After start(): how the run before this one ended.
+  void note(LoggedFault ended) {
+    ended.run_s = run_s_;
+    if (waiting_ < kMostWaiting) queue_[waiting_++] = ended;
+  }
+
   /// Often. `periods`: of control so far, `rate` of them a second; `velocity_of(axis, scalar)`: rad/s (m/s).
   template <typename VelocityOf>
   void look(const Axes& axes, std::uint32_t periods, std::uint32_t rate, VelocityOf velocity_of) {

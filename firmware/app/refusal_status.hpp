@@ -1,7 +1,8 @@
-// What the core's refusals are on the wire.
+// What the core's and the store's refusals are on the wire.
 #pragma once
 
 #include "firmware/app/protocol/messages.hpp"
+#include "firmware/app/store/parameter_store.hpp"
 #include "firmware/core/refusal.hpp"
 
 namespace firmware {
@@ -20,6 +21,12 @@ constexpr Status status_of(Refusal refusal) {
     default:
       return Status::unreachable;
   }
+}
+
+constexpr Status status_of(SaveResult result) {
+  return result == SaveResult::saved          ? Status::ok
+         : result == SaveResult::not_verified ? Status::not_verified
+                                              : Status::flash_failed;
 }
 
 }  // namespace firmware

@@ -54,6 +54,7 @@ class Axis {
     compensation_.configure(parameters.compensation, parameters.friction_feedforward_on, parameters.friction,
                             parameters.sample_period_s);
     backlash_.configure(parameters.compensation.backlash);
+    pitch_.configure(parameters.compensation.pitch);
     filters_.configure(parameters.filters);
     generator_.configure(limits_);
     stopping_.configure(limits_);
@@ -74,6 +75,8 @@ class Axis {
       telemetry_.enabled = true;
       generator_.reset();  // with the usual deceleration
       is_closed_loop_ = !is_open_loop_;
+      is_plain_loop_ = is_closed_loop_ && !pitch_.is_on();
+      pitch_.enter(table_of_motor(), telemetry_.homed);
       energise();
     }
     return true;
@@ -85,6 +88,7 @@ class Axis {
   /// Opens the loop at once: 0 V, enable line off.
   constexpr void disable() {
     telemetry_.enabled = false;
+    pitch_.leave();
     forget_excitation();
     hal_.drive_enable().set(false);
     put_out_zero();
@@ -96,10 +100,15 @@ class Axis {
   /// where the axis is. Only while disabled.
   constexpr void open_loop() { is_open_loop_ = true; }
   constexpr void forget_excitation() {
-    is_open_loop_ = is_closed_loop_ = false;
+    is_open_loop_ = is_closed_loop_ = is_plain_loop_ = false;
     excitation_V_ = Scalar(0);
   }
   constexpr bool is_open_loop() const { return is_open_loop_; }
+
+  /// What pitch.on takes off the reference. Before configure(), while disabled; the table must stay where it is.
+  constexpr void use_pitch_table(PitchTable table) { pitch_.use(table); }
+  /// Counts by which the reference may lie beside what is wanted of the table.
+  constexpr std::int64_t largest_offset() const { return backlash_.largest_offset() + pitch_.largest_offset(); }
 
   /// A sensor that fails no longer opens the loop: whoever steps the axis sees telemetry().fault and decides.
   constexpr void leave_sensors_to_supervisor() { decides_on_sensors_ = false; }
@@ -133,6 +142,7 @@ class Axis {
     telemetry_.estimate.anchor_counts += origin;
     telemetry_.reference.counts += origin;
     preview_.shift(origin);
+    if (is_closed_loop_ && pitch_.is_on()) pitch_.shift(origin);
     telemetry_.homed = true;
   }
   /// Nothing is known of where the axis is, but of how far it moves.
@@ -148,6 +158,7 @@ class Axis {
     counter_.skip(static_cast<std::int32_t>(missed));
     telemetry_.estimate.anchor_counts += missed;
     preview_.shift(missed);
+    if (is_closed_loop_ && pitch_.is_on()) pitch_.shift(missed);
   }
 
   /// What a reading of the encoder means in this axis's counts.
@@ -190,7 +201,7 @@ class Axis {
   /// here.
   constexpr CountPosition leading() const {
     CountPosition leading = preview_.leading();
-    leading.advance(-backlash_.offset(kPreviewSamples));
+    leading.advance(-backlash_.offset(kPreviewSamples) - pitch_.offset(kPreviewSamples));
     return leading;
   }
 
@@ -215,7 +226,8 @@ class Axis {
 
   /// The reference, and what of it is still in the preview, has come to rest.
   constexpr bool is_at_rest() const {
-    return generator_.at_rest() && preview_.position() == preview_.leading() && !backlash_.is_crossing();
+    return generator_.at_rest() && preview_.position() == preview_.leading() && !backlash_.is_crossing() &&
+           !pitch_.is_crossing();
   }
 
   /// One control period with the axis's own reference. The encoder's reading comes from outside where several axes are
@@ -240,28 +252,40 @@ class Axis {
   /// Travel of the whole reference in the newest sample, kPreviewSamples ahead.
   constexpr Increment newest_increment() const { return preview_.newest(); }
 
-  /// The reference without what backlash compensation added to it: where the table is wanted.
+  /// The reference without what compensation of backlash and pitch added to it: where the table is wanted.
   constexpr CountPosition table_reference() const {
-    CountPosition table = preview_.position();
-    table.advance(-backlash_.offset(0));
+    CountPosition table = table_of_motor();
+    table.advance(-pitch_.offset(0));
     return table;
   }
 
  private:
   using Traits = ScalarTraits<Scalar>;
 
-  constexpr const AxisTelemetry<Scalar>& follow(const hal::EncoderReading& encoder, Increment increment) {
+  constexpr CountPosition table_of_motor() const {
+    CountPosition table = preview_.position();
+    table.advance(-backlash_.offset(0));
+    return table;
+  }
+
+  [[gnu::noinline]] constexpr const AxisTelemetry<Scalar>& follow(const hal::EncoderReading& encoder,
+                                                                  Increment increment) {
     if (!measure(encoder)) return telemetry_;
-    if (!is_closed_loop_) {
-      hold_reference_here();
-      if (telemetry_.enabled)
-        put_out_excitation();
-      else
-        put_out_zero();
-      return telemetry_;
+    if (!is_plain_loop_) {
+      if (!is_closed_loop_) return follow_nothing();
+      increment += pitch_.next(increment, telemetry_.homed);
     }
     preview_.push(backlash_.is_on() ? increment + backlash_.next(increment) : increment);
     control();
+    return telemetry_;
+  }
+
+  [[gnu::noinline]] constexpr const AxisTelemetry<Scalar>& follow_nothing() {
+    hold_reference_here();
+    if (telemetry_.enabled)
+      put_out_excitation();
+    else
+      put_out_zero();
     return telemetry_;
   }
 
@@ -287,6 +311,7 @@ class Axis {
     preview_.reset(CountPosition::at(counter_.counts()));
     model_input_V_ = Scalar(0);
     backlash_.reset();
+    pitch_.reset();
     is_synchronised_ = true;
   }
 
@@ -393,10 +418,12 @@ class Axis {
   bool decides_on_sensors_ = true;
   bool is_open_loop_ = false;
   bool is_closed_loop_ = false;  ///< enabled, and not in open loop
+  bool is_plain_loop_ = false;   ///< likewise, and nothing is added to the reference but backlash's share
   Scalar excitation_V_{};
   BacklashCrossing backlash_;
   ControlFilters<Scalar> filters_;
   DriveCompensation<Scalar> compensation_;
+  PitchCorrection pitch_;
   FrictionFeedforward<Scalar> friction_;  // its tables last, so that one load reaches each of the others
 };
 

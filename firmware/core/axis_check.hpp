@@ -34,12 +34,13 @@ constexpr Refusal check_compensation(const CompensationParameters<Scalar>& c) {
   if (contact.on && (!is_positive(contact.stiffness_V_per_rad) || !(contact.damping_V_s_per_rad >= Scalar(0)) ||
                      !ScalarTraits<Scalar>::is_finite(contact.damping_V_s_per_rad)))
     return Refusal::presliding;
+  const auto is_crossing_time = [](std::int32_t samples) { return samples >= 1 && samples <= CrossingRamp::kLongest; };
+  if (c.pitch.on && !is_crossing_time(c.pitch.crossing_samples)) return Refusal::pitch_crossing;
   if (!c.backlash.on) return Refusal::none;
   constexpr Increment kWidest = kOneCount << 10;  // a scalar of fixed point holds it
   if (c.backlash.gap <= 0 || c.backlash.gap >= kWidest || c.backlash.wind_up < 0 || c.backlash.wind_up >= kWidest)
     return Refusal::backlash;
-  const std::int32_t crossing = c.backlash.crossing_samples;
-  return crossing < 1 || crossing > BacklashCrossing::kLongestCrossing ? Refusal::backlash_crossing : Refusal::none;
+  return is_crossing_time(c.backlash.crossing_samples) ? Refusal::none : Refusal::backlash_crossing;
 }
 
 /// Length per second^order as an increment per sample^order; 0 where it is out of range.

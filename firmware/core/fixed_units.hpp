@@ -84,6 +84,7 @@ constexpr AxisParameters<FixedPoint> to_fixed(const AxisParameters<Real>& p) {
       .stiffness_V_per_rad = fixed(c.presliding.stiffness_V_per_rad * gain_velocity * unit.time_s),
       .damping_V_s_per_rad = fixed(c.presliding.damping_V_s_per_rad * gain_velocity)};
   q.compensation.backlash = c.backlash;
+  q.compensation.pitch = c.pitch;
   for (std::size_t i = 0; i < kControlFilters; ++i) {
     const BiquadParameters<Real>& f = p.filters[i];
     q.filters[i] = {.on = f.on,

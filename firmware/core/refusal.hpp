@@ -44,6 +44,7 @@ enum class Refusal : std::uint16_t {
   brake_feedback = 248,             ///< a brake, and no tachometer that shows a dead encoder at rest
   index_spacing = 251,              ///< below 0
   filters = 273,                    ///< on, and not below 0.45 of the rate; or the loop with them does not settle
+  pitch_crossing = 289,             ///< on, and not 1..4096 samples
   controller_is_enabled = 1 << 12,  ///< parameters change only while the axis is disabled
   move_too_long = 2 << 12,          ///< more than 2^30 samples: raise the velocity limit or split the move
   outside_travel = 3 << 12,         ///< the target is beyond a limit of travel

@@ -74,7 +74,7 @@ class SimulatedBoardOf {
   SimulatedSupply supply_;
   SimulatedClock clock_;
   SimulatedUsb usb_{16};
-  SimulatedFlash flash_{4, 4096, 4};
+  SimulatedFlash flash_{4, 16384, 4};  // two full tables of pitch errors fit
   std::uint32_t control_period_us_ = 1000;
   bool wants_restart_ = false;
 };

@@ -33,6 +33,8 @@ class SimulatedFlash {
   std::size_t sector_size() const { return sectors_.empty() ? 0 : sectors_.front().size(); }
   std::size_t program_size() const { return program_size_; }
 
+  std::span<const std::byte> view(std::size_t sector) const { return sectors_[sector]; }
+
   FlashResult read(std::size_t sector, std::size_t offset, std::span<std::byte> out) {
     if (!contains(sector, offset, out.size())) return FlashResult::out_of_range;
     std::copy_n(sectors_[sector].begin() + static_cast<std::ptrdiff_t>(offset), out.size(), out.begin());

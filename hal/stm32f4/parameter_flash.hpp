@@ -22,6 +22,8 @@ class ParameterFlash {
   std::size_t sector_size() const { return 128 * 1024; }
   std::size_t program_size() const { return sizeof(std::uint32_t); }
 
+  std::span<const std::byte> view(std::size_t sector) const { return {at(sector, 0), sector_size()}; }
+
   FlashResult read(std::size_t sector, std::size_t offset, std::span<std::byte> out) {
     if (!contains(sector, offset, out.size())) return FlashResult::out_of_range;
     std::copy_n(at(sector, offset), out.size(), out.begin());

@@ -52,6 +52,7 @@ void add_all_commands(CLI::App& app) {
   add_bode(app);
   add_run(app);
   add_circle(app);
+  add_pitch(app);
   add_faults(app);
   add_clear_faults(app);
   add_bench(app);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "hal/linux/gpio_line.hpp"
+#include "host/atomic_file.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/device/flash_sequence.hpp"
@@ -91,6 +92,14 @@ void run_on_hardware(const host::FlashRequest& request, const host::ImageFile& i
     const std::string back = host::read_file(request.read_back);
     return std::ranges::equal(std::as_bytes(std::span(back)), image.bytes);
   };
+  actions.read_options = [&request] {
+    const std::string bytes = host::read_file(request.options);
+    std::filesystem::remove(request.options);
+    return bytes;
+  };
+  actions.write_options = [](const std::string& file, const std::string& bytes) {
+    host::write_file_atomically(file, bytes);
+  };
   actions.tell = [](const std::string& text) { fmt::print("{}\n", text); };
   host::run_flash(request, actions);
 }
@@ -101,6 +110,7 @@ void run(const FlashArguments& arguments) {
   const ScratchFolder scratch;
   host::FlashRequest request = request_of(arguments, image);
   request.read_back = scratch.file("read-back.bin");
+  request.options = scratch.file("options.bin");
   fmt::print("{}: {} {} ({}), {} bytes\n", arguments.image, image.header.board.data(), image.header.version.data(),
              image.header.git_hash.data(), image.bytes.size());
   if (arguments.dry_run) {
@@ -140,8 +150,10 @@ void add_flash(CLI::App& app) {
       "  axistool flash --serial /dev/ttyAMA0 --gpiochip /dev/gpiochip0 --boot0 17 --reset 27\n"
       "  axistool flash                                                      # board already in its USB bootloader\n"
       "  axistool flash --stlink --dry-run\n"
-      "Exit codes: 3 no device or program; 4 permission; 5 verification failed; 8 wrong chip; 9 image damaged or for\n"
-      "another board.");
+      "Also sets the chip's brown-out reset to 2.7 V where it is not (not over --serial): without it the board "
+      "enables\n"
+      "no drive. Exit codes: 3 no device or program; 4 permission; 5 verification failed; 8 wrong chip, or its read\n"
+      "protection is on; 9 image damaged or for another board.");
   command->callback([arguments] { run(*arguments); });
 }
 

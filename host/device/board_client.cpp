@@ -464,7 +464,7 @@ FaultLog BoardClient::fault_log() {
     const auto told = payload_of<firmware::FaultLogPayload>(reply);
     log.run_h = told.run_s / 3600.0;
     if (reply.status == Status::no_such_row) break;
-    if (told.entry.axis >= hal::kMostAxes)
+    if (told.entry.axis >= hal::kMostAxes && told.entry.reset == 0)
       fail(ExitCode::protocol, fmt::format("the board logged a fault of axis number {}", told.entry.axis));
     log.faults.push_back(told.entry);
   }

@@ -97,6 +97,9 @@ class BoardClient {
   /// Empty on a board whose firmware has none.
   FaultLog fault_log();
 
+  /// The reply to any other request. Throws where its status is not ok.
+  firmware::Message exchange(firmware::Message message, std::chrono::milliseconds patience);
+
   struct Samples {
     std::uint32_t first_row = 0;
     std::vector<std::uint32_t> words;
@@ -118,7 +121,6 @@ class BoardClient {
   template <typename Payload>
   firmware::Message request(firmware::MessageType type, const Payload& payload);
   firmware::Message request(firmware::MessageType type);
-  firmware::Message exchange(firmware::Message message, std::chrono::milliseconds patience);
   /// The reply, whatever its status.
   firmware::Message reply_to(firmware::Message message, std::chrono::milliseconds patience);
   std::optional<firmware::Message> receive(std::chrono::steady_clock::time_point deadline);

@@ -59,8 +59,8 @@ std::string reset_text(std::uint8_t reset_cause) {
 
 std::string brown_out_problem() {
   return "the chip's brown-out reset is off, as it was delivered: while its supply fails it may do anything, so no "
-         "drive "
-         "is enabled. Set it once, then restart: STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=0";
+         "drive is enabled. `axistool flash` sets it, by a probe or over USB; or STM32_Programmer_CLI -c port=SWD -ob "
+         "BOR_LEV=0";
 }
 
 std::optional<std::string> store_problem(const BoardState& status) {
@@ -102,7 +102,8 @@ nlohmann::json board_json(const std::string& device, const firmware::IdentityPay
                     {"velocity", now.velocity},
                     {"saturated", (now.flags & firmware::kAxisSaturated) != 0},
                     {"at_rest", (now.flags & firmware::kAxisAtRest) != 0},
-                    {"homed", (now.flags & firmware::kAxisHomed) != 0}});
+                    {"homed", (now.flags & firmware::kAxisHomed) != 0},
+                    {"pitch_corrected", (now.flags & firmware::kAxisPitch) != 0}});
     if (const auto place = place_of_counts(now.counts(), axis, values))
       axes.back().update({{"position", place->value}, {"position_unit", place->unit}});
   }
@@ -151,11 +152,12 @@ std::string board_text(const std::string& device, const firmware::IdentityPayloa
     const firmware::AxisStatus& now = status.axis[axis];
     const auto place = place_of_counts(now.counts(), axis, values);
     text += fmt::format(
-        "axis {}       {}, {}{}{}\n", firmware::kAxisNames[axis], state_text(now),
+        "axis {}       {}, {}{}{}{}\n", firmware::kAxisNames[axis], state_text(now),
         place ? fmt::format("{:.4f} {}", place->value, place->unit) : fmt::format("{} counts", now.counts()),
         (now.flags & firmware::kAxisHoming) != 0  ? ", looks for home"
         : (now.flags & firmware::kAxisHomed) != 0 ? " from home"
                                                   : " from where it was (not homed)",
+        (now.flags & firmware::kAxisPitch) != 0 ? ", pitch error taken off" : "",
         now.fault == 0 ? "" : ", " + fault_text(now));
   }
   if (const auto problem = store_problem(status)) text += *problem + "\n";

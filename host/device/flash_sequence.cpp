@@ -19,6 +19,11 @@ constexpr const char* kSectors = "04*016Kg,01*064Kg,07*128Kg";
 constexpr milliseconds kResetPulse{20};        // the pin wants 20 us (datasheet, table 47); RC on the board: 1 ms
 constexpr milliseconds kBootloaderStart{300};  // USB bootloader ready: AN2606, section "STM32F40xxx"; plus enumeration
 constexpr milliseconds kSettle{1};
+constexpr const char* kNew = ".new";      // file of the option bytes to write, beside that of those read
+constexpr milliseconds kComesBack{1500};  // the bootloader resets itself, then USB enumerates
+// 16 bytes of which the first has the level and the second the read protection (RM0090, 3.6.2 and table 13).
+constexpr const char* kOptions = "0x1FFFC000";
+constexpr unsigned kBrownOutField = 0x0C, kUnprotected = 0xAA;  // the level of 2.7 V is 0 (RM0090, 3.9.6)
 
 FlashStep set(Kind kind, bool level, const char* meaning) { return {kind, level, {}, {}, meaning}; }
 FlashStep wait(milliseconds time, const char* meaning) { return {Kind::pause, false, time, {}, meaning}; }
@@ -45,10 +50,27 @@ std::vector<FlashStep> start_image() {
           set(Kind::set_reset, true, "start the image")};
 }
 
+std::vector<std::string> read_options(const FlashRequest& request) {
+  return {"dfu-util", "-d", kBootloader, "-a", "1", "-s", std::string(kOptions) + ":16", "-U", request.options};
+}
+
+/// For openocd, by the chip's register, which has the option bytes as they were loaded (RM0090, 3.9.6). Writes them
+/// with all other bits as they are.
+std::vector<std::string> brown_out_commands() {
+  return {"-c", "init",
+          "-c", "reset halt",
+          "-c", "set optcr [mrw 0x40023C14]",
+          "-c", "if {(($optcr >> 8) & 0xFF) != 0xAA} {echo {axistool: read protection is on}; shutdown error}",
+          "-c", "if {($optcr & 0x0C) != 0} {stm32f2x options_write 0 [expr {$optcr & 0xF0}]; reset halt}",
+          "-c", "if {([mrw 0x40023C14] & 0x0C) != 0} {echo {axistool: the level was not taken}; shutdown error}"};
+}
+
 std::vector<FlashStep> dfu_steps(const FlashRequest& request) {
   const std::string place = fmt::format("{}:{}", kFlashStart, request.image_size);
   std::vector<FlashStep> steps{
       run({"dfu-util", "-l", "-d", kBootloader}, "find the board and see which chip it is"),
+      run(read_options(request), "read the option bytes"),
+      {Kind::brown_out, false, {}, {}, "set the brown-out reset to 2.7 V unless it is, and read protection is off"},
       run({"dfu-util", "-d", kBootloader, "-a", "0", "-s", kFlashStart, "-D", request.image}, "write"),
       run({"dfu-util", "-d", kBootloader, "-a", "0", "-s", place, "-U", request.read_back}, "read back"),
       {Kind::compare, false, {}, {}, "compare what was read back with the image"}};
@@ -57,6 +79,16 @@ std::vector<FlashStep> dfu_steps(const FlashRequest& request) {
         run({"dfu-util", "-d", kBootloader, "-a", "0", "-s", std::string(kFlashStart) + ":leave", "-D", request.image},
             "write again and leave the bootloader"));
   return steps;
+}
+
+constexpr const char* kLevelNotTaken =
+    "the chip did not take the level of its brown-out reset: the image was not written; try again, or set it by ST's "
+    "programmer (STM32_Programmer_CLI -ob BOR_LEV=0)";
+
+[[noreturn]] void refuse_protected() {
+  throw Failure(ExitCode::refused,
+                "the chip's read protection is on, and to change its option bytes might erase it: nothing was written. "
+                "Take the protection off by ST's programmer first, which erases the chip: parameters and fault log go");
 }
 
 [[noreturn]] void explain(const FlashStep& step, const CommandResult& result) {
@@ -77,6 +109,8 @@ std::vector<FlashStep> dfu_steps(const FlashRequest& request) {
     fail(ExitCode::no_such_device, program + ": no bootloader answers on the serial port: check port, BOOT0, reset");
   if (says("UNEXPECTED") || says("unexpected idcode") || says("Device ID mismatch"))
     fail(ExitCode::refused, program + ": another chip than an STM32F405 is connected; nothing was written");
+  if (says("axistool: read protection is on")) refuse_protected();
+  if (says("axistool: the level was not taken")) fail(ExitCode::protocol, kLevelNotTaken);
   if (says("Verify Failed") || says("verify failed") || says("Failed to verify"))
     fail(ExitCode::protocol, program + ": verification failed: flash again; if it fails again, the flash is worn out");
   throw Failure(ExitCode::protocol, fmt::format("{} failed with status {}: {}", program, result.status, result.output));
@@ -89,6 +123,36 @@ void check_chip(const FlashStep& step, const CommandResult& result) {
     throw Failure(
         ExitCode::refused,
         "another chip than an STM32F405 with 1 MB is connected (its flash sectors differ); nothing was written");
+}
+
+/// Of the option bytes that were read; says whether the level of the brown-out reset is right.
+bool has_brown_out_level(const std::string& options) {
+  if (options.size() < 2)
+    throw Failure(ExitCode::protocol, "the option bytes cannot be read: try another cable or port, and flash again");
+  if (static_cast<unsigned char>(options[1]) != kUnprotected) refuse_protected();
+  return (static_cast<unsigned char>(options[0]) & kBrownOutField) == 0;
+}
+
+/// The bootloader takes option bytes over by a reset, in which dfu-util may lose it: what counts is read back.
+void set_brown_out(const FlashRequest& request, const FlashActions& actions) {
+  std::string options = actions.read_options();
+  if (has_brown_out_level(options)) return;
+  const auto user = static_cast<unsigned char>(static_cast<unsigned char>(options[0]) & ~kBrownOutField);
+  options[0] = static_cast<char>(user);
+  if (options.size() > 2) options[2] = static_cast<char>(~user);  // the complement that the chip keeps beside it
+  actions.write_options(request.options + kNew, options);
+  const FlashStep write = run({"dfu-util", "-d", kBootloader, "-a", "1", "-s", kOptions, "-D", request.options + kNew},
+                              "set the brown-out reset to 2.7 V");
+  actions.tell(describe(write, request));
+  const CommandResult written = actions.run(write.command);
+  actions.pause(kComesBack);
+  const FlashStep again = run(read_options(request), "read the option bytes back");
+  actions.tell(describe(again, request));
+  const CommandResult result = actions.run(again.command);
+  if (result.status != 0) explain(again, result);
+  if (!has_brown_out_level(actions.read_options()))
+    throw Failure(ExitCode::protocol, written.status == 0 ? std::string(kLevelNotTaken)
+                                                          : fmt::format("{} ({})", kLevelNotTaken, written.output));
 }
 
 void act(const FlashStep& step, const FlashRequest& request, const FlashActions& actions) {
@@ -109,6 +173,9 @@ void act(const FlashStep& step, const FlashRequest& request, const FlashActions&
       check_chip(step, result);
       break;
     }
+    case Kind::brown_out:
+      set_brown_out(request, actions);
+      break;
     case Kind::compare:
       if (!actions.read_back_equals())
         throw Failure(ExitCode::protocol,
@@ -133,8 +200,9 @@ std::vector<FlashStep> flash_steps(const FlashRequest& request) {
     case FlashWay::probe: {
       std::vector<std::string> command{"openocd", "-f", "interface/stlink.cfg", "-f", "target/stm32f4x.cfg"};
       if (!request.probe.empty()) command.insert(command.end(), {"-c", "adapter serial " + request.probe});
+      for (const std::string& word : brown_out_commands()) command.push_back(word);
       command.insert(command.end(), {"-c", fmt::format("program {} verify reset exit {}", request.image, kFlashStart)});
-      steps.push_back(run(command, "write, verify and start"));
+      steps.push_back(run(command, "set the brown-out reset to 2.7 V unless it is, write, verify and start"));
       break;
     }
   }
@@ -159,6 +227,7 @@ std::string describe(const FlashStep& step, const FlashRequest& request) {
       return fmt::format("wait {} ms: {}", step.pause.count(), step.meaning);
     case Kind::run:
       return fmt::format("run {}: {}", fmt::join(step.command, " "), step.meaning);
+    case Kind::brown_out:
     case Kind::compare:
       break;
   }

@@ -31,10 +31,11 @@ struct FlashRequest {
   std::string serial_port;         ///< way serial
   std::string probe;               ///< way probe: serial number; empty if there is only one
   std::string read_back;           ///< file for what is read back, way dfu
+  std::string options;             ///< likewise for the option bytes
 };
 
 struct FlashStep {
-  enum class Kind { set_boot0, set_reset, pause, run, compare };
+  enum class Kind { set_boot0, set_reset, pause, run, brown_out, compare };
   Kind kind = Kind::pause;
   bool level = false;                  ///< set_*: level of the pin; reset is low active
   std::chrono::milliseconds pause{0};  ///< pause
@@ -42,7 +43,9 @@ struct FlashStep {
   std::string meaning;
 };
 
-/// The whole sequence. After a failure between its steps, recovery_steps() lets the board start what it has.
+/// The whole sequence. Over USB and by a probe it also sets the level of the chip's brown-out reset, once, unless read
+/// protection is on; the serial bootloader is left to the image alone. After a failure between its steps,
+/// recovery_steps() lets the board start what it has.
 std::vector<FlashStep> flash_steps(const FlashRequest& request);
 std::vector<FlashStep> recovery_steps(const FlashRequest& request);
 
@@ -55,11 +58,13 @@ struct FlashActions {
   std::function<void(std::chrono::milliseconds)> pause;
   std::function<CommandResult(const std::vector<std::string>&)> run;
   std::function<bool()> read_back_equals;
+  std::function<std::string()> read_options;  ///< takes away the file of the last upload: dfu-util replaces none
+  std::function<void(const std::string& file, const std::string& bytes)> write_options;
   std::function<void(const std::string&)> tell;
 };
 
-/// Runs the steps. Throws Failure that names the cause (no device, permission, wrong chip, verification) and the
-/// remedy; by then the board has been reset out of its bootloader.
+/// Runs the steps. Throws Failure that names the cause (no device, permission, wrong chip, read protection,
+/// verification) and the remedy; by then the board has been reset out of its bootloader.
 void run_flash(const FlashRequest& request, const FlashActions& actions);
 
 }  // namespace host

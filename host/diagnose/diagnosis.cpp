@@ -126,6 +126,7 @@ bool acts_late(const sim::EffectInfo& effect) {
 
 Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                            const Diagnosis* before, const std::vector<std::string>& absent) {
+  if (progress) progress(0.01);
   const sim::DriveDescription model = with_measured_sensors(given, measured);
   const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const bool by_short_windows = before != nullptr && before->rough;

@@ -8,6 +8,7 @@
 #include "host/effort/closest_form.hpp"
 #include "host/effort/effort_hypotheses.hpp"
 #include "host/effort/effort_waves.hpp"
+#include "host/effort/hidden_pair.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/infer/posterior.hpp"
 #include "sim/drive.hpp"
@@ -325,28 +326,11 @@ class Search {
     return true;
   }
 
-  /// Two effects may hide each other: beside either of them alone, what is left wanders as it did before. Of the two
-  /// that leave least, each of which takes enough beside the other: given one, is another certain?
+  /// Beside one of two effects that hide each other, is another certain?
   bool take_one_of_two(const EffortHypotheses& hypotheses, const NextEffects& all,
                        const std::vector<ScreenedModel>& list) {
-    std::vector<ScreenedModel> alone(all.effects.size());
-    for (std::size_t k = 0; k < alone.size(); ++k)
-      if (!with(all.effects[k].term, alone[k])) alone[k].validate = 0.0;  // nothing takes anything beside it
-    const NextEffect* beside = nullptr;
-    double least = HUGE_VAL;
-    for (std::size_t a = 0; a < alone.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b) {
-        throw_if_cancelled();
-        std::vector<const EffortTerm*> further = pointers_to(chosen_);
-        further.push_back(&all.effects[a].term);
-        further.push_back(&all.effects[b].term);
-        ScreenedModel both;
-        if (!regression_.fit(base_, further, both) || both.train >= least || !is_worth_naming(both) ||
-            !is_worth_naming(alone[a].validate, both.validate) || !is_worth_naming(alone[b].validate, both.validate))
-          continue;
-        least = both.train;
-        beside = &all.effects[alone[a].train > alone[b].train ? a : b];
-      }
+    const NextEffect* beside = less_seen_of_two(regression_, base_, chosen_, screen_.best(), all,
+                                                [this](const ScreenedModel& both) { return is_worth_naming(both); });
     if (beside == nullptr) return false;
     std::vector<EffortTerm> chosen = chosen_;
     chosen.push_back(beside->term);
@@ -357,7 +341,7 @@ class Search {
     double probability = 0.0;
     const std::vector<std::string> group = certain_group(next, probability);
     ScreenedModel taken;
-    if (group.empty() || is_there(group.front()) || !with(next.effects.front().term, taken)) return false;
+    if (group.empty() || next.effects.front().term.can_repeat || !with(next.effects.front().term, taken)) return false;
     taken.probability = next.effects.front().probability;
     taken.confidence = logistic(next.effects.front().log_odds);
     take_effect(group, probability, std::move(taken), list, next);

@@ -23,16 +23,16 @@ constexpr std::uint8_t kPowerOn = 1, kSoftwareReset = 3;
 void load_flash(hal::pc::SimulatedFlash& flash, const std::string& file) {
   if (file.empty() || !std::filesystem::exists(file)) return;
   const std::string bytes = read_file(file);
-  // A file may end earlier, behind any sector: those of older versions had no fault log.
-  if (bytes.empty() || bytes.size() % flash.sector_size() != 0 ||
-      bytes.size() > flash.sector_count() * flash.sector_size())
+  // Those of older versions had smaller sectors, and may end behind any of them: the first had no fault log.
+  constexpr std::size_t kOldSector = 4096;
+  const std::size_t sector_size = bytes.size() <= 4 * kOldSector ? kOldSector : flash.sector_size();
+  if (bytes.empty() || bytes.size() % sector_size != 0 || bytes.size() > flash.sector_count() * flash.sector_size())
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: {} bytes are no simulated flash (it has {}): remove the file, or name another", file,
                               bytes.size(), flash.sector_count() * flash.sector_size()));
   auto next = bytes.begin();
   for (auto& sector : flash.contents())
-    for (auto cell = sector.begin(); cell != sector.end() && next != bytes.end(); ++cell)
-      *cell = static_cast<std::byte>(*next++);
+    for (std::size_t i = 0; i < sector_size && next != bytes.end(); ++i) sector[i] = static_cast<std::byte>(*next++);
 }
 
 firmware::ImageHeader image_of_simulation() {

@@ -32,6 +32,7 @@ NOT_RUN = [
     (r"--map x/mapping.toml|pid.txt", "a log of the reader's own"),
     (r"\bbench\b", "ten minutes"),
     (r"\bscoreboard\b", "minutes; make scoreboard"),
+    (r"\bpitch screw", "a measured screw and an axis that is disabled; host/device's tests run it"),
     (r"\bcommission\b", "a minute and more; host/commission's tests run it"),
     (r"\bbode\b", "two minutes of motion; host/response's tests run it"),
     (r"\bplan\b|run\.(toml|csv)", "a minute and more; host/plan's tests run it"),

@@ -69,6 +69,9 @@ constexpr CompensationParameters<float> compensation(const AxisValues& v, float 
       .gap = bounded_counts(v.get<"backlash.gap">() / encoder_resolution),
       .wind_up = bounded_counts(v.get<"backlash.wind_up">() / encoder_resolution),
       .crossing_samples = ScalarTraits<float>::nearest_product(v.get<"backlash.crossing_time">(), samples_a_second)};
+  c.pitch = {
+      .on = v.get<"pitch.on">(),
+      .crossing_samples = ScalarTraits<float>::nearest_product(v.get<"pitch.crossing_time">(), samples_a_second)};
   return c;
 }
 

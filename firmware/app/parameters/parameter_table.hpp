@@ -187,6 +187,12 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
     {277, axis, "low_pass.frequency", real, "Hz", "Hz", 1, 1e4F, 300, while_disabled,
      "of its two poles; below 0.45 of the control rate"},
     {278, axis, "low_pass.damping", real, "1", "1", 0.1F, 2, 0.7F, while_disabled, "of its two poles"},
+
+    // The table itself lies beside the parameters in the store: firmware/core/compensation/pitch_table.hpp.
+    {288, axis, "pitch.on", toggle, "", "", 0, 1, 0, while_disabled,
+     "take the screw's error off the reference, by the axis's table (axistool pitch); acts once homed"},
+    {289, axis, "pitch.crossing_time", real, "s", "s", 1e-3F, 0.2F, 0.05F, while_disabled,
+     "time that the way across takes at a reversal"},
 });
 
 inline constexpr std::size_t kThresholds = [] {

@@ -9,20 +9,23 @@ namespace firmware {
 
 inline constexpr std::size_t kLoggedFaults = 64;  ///< the newest ones
 
+/// A fault of an axis; or, where `reset` is not 0, that the program ended by itself: then counts() says where the
+/// processor was, `second_fault` is the exception's number, and bit n of `activity` says that axis n was enabled.
 struct LoggedFault {
-  std::uint32_t number = 0;  ///< of the faults since the log began, the first is 1
-  std::uint32_t run_s = 0;   ///< that the board had run in all
-  std::uint32_t counts_low = 0;
-  std::int32_t counts_high = 0;
-  float velocity = 0;  ///< estimated, rad/s (m/s)
+  std::uint32_t number = 0;      ///< of the faults since the log began, the first is 1
+  std::uint32_t run_s = 0;       ///< that the board had run in all
+  std::uint32_t counts_low = 0;  ///< of a reset: the address that the processor was at; 0: not known
+  std::int32_t counts_high = 0;  ///< of a reset: the processor's fault status, CFSR
+  float velocity = 0;            ///< estimated, rad/s (m/s)
   std::int16_t dac_code = 0;
   std::uint8_t axis = 0;
   std::uint8_t fault = 0;
   std::uint8_t second_fault = 0;
   std::uint8_t activity = 0;  ///< AxisActivity
   std::uint8_t homed = 0;     ///< 1: the counts are from home
-  std::uint8_t reserved = 0;
+  std::uint8_t reset = 0;     ///< boards::ResetCause of the start that wrote this
 
+  constexpr bool is_event() const { return fault != 0 || reset != 0; }  ///< else it says the time alone
   constexpr std::int64_t counts() const {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
                                      counts_low);

@@ -23,6 +23,10 @@ enum class MessageType : std::uint8_t {
   commit = 0x13,
   save = 0x14,
   read_stored = 0x15,
+  begin_table = 0x16,
+  table_points = 0x17,
+  finish_table = 0x18,
+  read_table = 0x19,
   enable = 0x20,
   disable = 0x21,
   stop = 0x22,
@@ -70,7 +74,7 @@ enum class Status : std::uint8_t {
   bad_value = 5,          ///< RefusedValuePayload says which and why
   unknown_parameter = 6,  ///< RefusedValuePayload says which
   drive_enabled = 7,      ///< refused while a drive is enabled; RefusedValuePayload may say which parameter
-  set_differs = 8,        ///< the staged set is not the one that was to be committed
+  set_differs = 8,        ///< the staged set, or table, is not the one that was to be committed
   wrong_state = 9,        ///< the axis is not in a state that allows this
   not_fitted = 10,
   flash_failed = 11,
@@ -115,7 +119,8 @@ struct AxisStatus {
   }
 };
 inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8,
-                              kAxisHomed = 16, kAxisHoming = 32;
+                              kAxisHomed = 16, kAxisHoming = 32,
+                              kAxisPitch = 64;  ///< the screw's error is taken off the reference
 
 /// Of the board as a whole, as the asking client sees it.
 struct BoardStatus {

@@ -6,6 +6,7 @@
 #include "firmware/app/protocol/excitation_messages.hpp"
 #include "firmware/app/protocol/fault_log_messages.hpp"
 #include "firmware/app/protocol/path_messages.hpp"
+#include "firmware/app/protocol/pitch_messages.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
 
 namespace firmware {
@@ -48,6 +49,12 @@ inline constexpr std::array kRules = std::to_array<RequestRule>({
     {MessageType::commit,             commander,      true,  false, kSize<CommitRequest>, kSize<CommitRequest>},
     {MessageType::save,               commander,      false, false, 0, 0},
     {MessageType::read_stored,        anyone,         true,  false, kSize<ReadRequest>, kSize<ReadRequest>},
+    {MessageType::begin_table,        commander,      false, false, kSize<BeginTableRequest>, kSize<BeginTableRequest>},
+    {MessageType::table_points,       commander,      false, false, kSize<TablePointsRequest>,
+                                                                    kSize<TablePointsRequest>},
+    {MessageType::finish_table,       commander,      false, false, kSize<FinishTableRequest>,
+                                                                    kSize<FinishTableRequest>},
+    {MessageType::read_table,         anyone,         true,  false, kSize<ReadTableRequest>, kSize<ReadTableRequest>},
     {MessageType::enable,             commander,      true,  true,  kSize<AxesRequest>, kSize<AxesRequest>},
     {MessageType::disable,            anyone,         true,  false, kSize<AxesRequest>, kSize<AxesRequest>},
     {MessageType::stop,               anyone,         true,  false, 0, kPayloadSize},

@@ -6,8 +6,9 @@
 #include <bit>
 
 #include "firmware/app/board_application.hpp"
-#include "firmware/app/image_header.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
+#include "firmware/app/protocol/identity_reply.hpp"
+#include "firmware/app/protocol/pitch_requests.hpp"
 #include "firmware/app/protocol/program_facts.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/request_rules.hpp"
@@ -119,7 +120,7 @@ class ProtocolServer {
   Status handle(const Message& request, Message& reply) {
     switch (request.type) {
       case MessageType::identify:
-        reply.put(identity());
+        reply.put(identity_of<Application>(image_));
         return Status::ok;
       case MessageType::status:
         if (request.length == 0) return tell_status({}, request.asker(), reply);
@@ -139,6 +140,11 @@ class ProtocolServer {
         return with<CommitRequest>(request, [&](const CommitRequest& r) { return commit(r, reply); });
       case MessageType::save:
         return app_.save();
+      case MessageType::begin_table:
+      case MessageType::table_points:
+      case MessageType::finish_table:
+      case MessageType::read_table:
+        return PitchRequests<Application>(app_).answer(request, reply);
       case MessageType::restart:
         return restart();
       case MessageType::heartbeat:
@@ -277,18 +283,6 @@ class ProtocolServer {
       default:
         return Status::unknown_request;
     }
-  }
-
-  IdentityPayload identity() const {
-    IdentityPayload payload;
-    payload.schema_hash = kSchemaHash;
-    payload.parameter_count = static_cast<std::uint16_t>(app_.active().size());
-    payload.axis_count = kAxes;
-    payload.fixed_point = std::is_same_v<typename Application::Number, float> ? 0 : 1;
-    payload.board = image_.board;
-    payload.version = image_.version;
-    std::copy_n(image_.git_hash.begin(), payload.git_hash.size(), payload.git_hash.begin());
-    return payload;
   }
 
   BoardStatus board_status(ClientToken client) {

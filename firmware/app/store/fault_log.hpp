@@ -15,7 +15,7 @@ namespace firmware {
 
 /// Entries are appended to one sector. When it is full the newest faults are copied to the other one, whose head is
 /// written last and makes it the one in use: at any power cut all that was ever added is there, and of the entry that
-/// was being written all or nothing. An entry without a fault only says how long the board has run.
+/// was being written all or nothing. An entry without an event only says how long the board has run.
 template <hal::Flash Flash>
 class FaultLog {
  public:
@@ -47,7 +47,7 @@ class FaultLog {
 
   /// Stalls the processor as ParameterStore::save does. False where the flash does not take it.
   bool add(LoggedFault entry) {
-    entry.number = entry.fault != 0 ? number_ + 1 : number_;
+    entry.number = entry.is_event() ? number_ + 1 : number_;
     if (next_ >= entries() && !begin_sector()) return false;
     if (!put_next(sector_, next_, entry) && !(begin_sector() && put_next(sector_, next_, entry))) return false;
     note(next_ - 1, entry);
@@ -115,7 +115,7 @@ class FaultLog {
   void note(std::size_t place, const LoggedFault& entry) {
     run_s_ = entry.run_s;
     number_ = entry.number;
-    if (entry.fault != 0) places_[kept_++ % kLoggedFaults] = static_cast<std::uint16_t>(place);
+    if (entry.is_event()) places_[kept_++ % kLoggedFaults] = static_cast<std::uint16_t>(place);
   }
 
   /// The other sector takes over, with what is kept.

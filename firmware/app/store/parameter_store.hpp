@@ -1,4 +1,4 @@
-// Parameters in flash: two slots, of which one always holds a whole set.
+// Parameters and tables of pitch errors in flash: two slots, of which one always holds a whole set.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "firmware/app/crc32.hpp"
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "firmware/app/store/stored_set.hpp"
+#include "firmware/app/store/stored_tables.hpp"
 #include "hal/flash.hpp"
 
 namespace firmware {
@@ -33,10 +34,10 @@ struct StoreReport {
   std::uint16_t not_migrated = 0;
 };
 
-/// A save erases the slot beside the newest set, writes entries and header there, reads them back, and only then
-/// programs the mark that makes them valid; last it marks the older set as superseded. So at any power cut the newest
-/// valid set is the old or the new one, and a superseded set without a successor betrays damage that no power cut
-/// explains: it is never put in place of what the user saved last.
+/// A save erases the slot beside the newest set, writes tables, entries and header there, reads them back, and only
+/// then programs the mark that makes them valid; last it marks the older set as superseded. So at any power cut the
+/// newest valid set is the old or the new one, and a superseded set without a successor betrays damage that no power
+/// cut explains: it is never put in place of what the user saved last.
 template <hal::Flash Flash>
 class ParameterStore {
  public:
@@ -70,15 +71,93 @@ class ParameterStore {
   /// Stalls the processor for as long as an erase lasts: never while a drive is enabled, and with a watchdog that
   /// allows for it. After anything but saved the store holds what it held.
   SaveResult save(const ParameterValues& values) {
+    if (!begin_set()) return SaveResult::flash_failed;
+    return finish_set(values, kNoAxis);
+  }
+
+  /// A table comes part by part into the slot that the next save would take, and becomes part of the store, with the
+  /// parameters, by finish_table(). Until then the store holds what it held; a save in between forgets the table.
+  /// `values`: as many as will be saved with it.
+  SaveResult begin_table(std::size_t values, std::uint16_t axis, std::uint16_t points, std::uint32_t resolution_bits) {
+    const std::size_t size = tables_offset(values) + sizeof staged_ + points * sizeof(PitchPoint);
+    if (size > flash_.sector_size() || !begin_set()) return SaveResult::flash_failed;
+    staged_ = {kTableMagic, axis, points, resolution_bits, 0};
+    staged_at_ = tables_offset(values);
+    is_staging_ = true;
+    return SaveResult::saved;
+  }
+  bool is_staging_table() const { return is_staging_; }
+  const StoredTableHead& staged_table() const { return staged_; }
+  std::size_t staged_points() const { return staged_count_; }
+
+  /// The next points of it. False where there are too many, one may not follow the one before, or flash refuses.
+  bool add_point(const PitchPoint& point) {
+    if (!is_staging_ || staged_count_ == staged_.points || !is_valid(point)) return false;
+    if (staged_count_ > 0 && !may_follow(last_point_, point)) return false;
+    const std::size_t offset = staged_at_ + sizeof staged_ + staged_count_ * sizeof point;
+    if (!program(target(), offset, point)) return false;
+    last_point_ = point;
+    ++staged_count_;
+    return true;
+  }
+
+  /// `crc`: of the points that were meant. A table without points removes the axis's.
+  SaveResult finish_table(const ParameterValues& values, std::uint32_t crc) {
+    if (!is_staging_ || staged_count_ != staged_.points) return SaveResult::not_verified;
+    const std::size_t size = staged_count_ * sizeof(PitchPoint);
+    const auto points = flash_.view(target()).subspan(staged_at_ + sizeof staged_, size);
+    if (crc32(points) != crc) return SaveResult::not_verified;
+    staged_.crc = crc_of_table(staged_, points);
+    if (staged_.points != 0 && !program(target(), staged_at_, staged_)) return SaveResult::flash_failed;
+    return finish_set(values, staged_.axis);
+  }
+
+  const StoreReport& report() const { return report_; }
+
+  /// Of the newest valid set; without points where the axis has none. Lies in flash, until the second save from now.
+  StoredTable table(std::size_t axis) const {
+    StoredTable found;
+    for_each_table([&](const StoredTable& one) {
+      if (one.head.axis == axis) found = one;
+    });
+    return found;
+  }
+
+  /// The entries of the newest valid set as they lie in flash, for a backup that keeps what this table does not know.
+  std::size_t entry_count() const { return newest_ ? slots_[*newest_].header.length / sizeof(StoredEntry) : 0; }
+  std::optional<StoredEntry> entry(std::size_t index) {
+    if (index >= entry_count()) return std::nullopt;
+    return read_at<StoredEntry>(*newest_, kEntriesOffset + index * sizeof(StoredEntry));
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 2;
+  static constexpr std::size_t kNoAxis = ~std::size_t{0};
+
+  static constexpr std::size_t tables_offset(std::size_t values) {
+    return kEntriesOffset + values * sizeof(StoredEntry);
+  }
+
+  std::size_t target() const { return newest_ ? 1 - *newest_ : 0; }
+
+  bool begin_set() {
     examine();
-    const std::size_t target = newest_ ? 1 - *newest_ : 0;
+    is_staging_ = false;
+    staged_count_ = 0;
+    return flash_.erase(target()) == hal::FlashResult::ok;
+  }
+
+  /// `replaced`: the axis whose table was staged.
+  SaveResult finish_set(const ParameterValues& values, std::size_t replaced) {
+    is_staging_ = false;
+    const std::size_t target = this->target();
+    if (!copy_tables(target, tables_offset(values.size()), replaced)) return SaveResult::flash_failed;
     StoredHeader header{kStoreMagic,
                         kSchemaHash,
                         highest_sequence() + 1,
                         static_cast<std::uint32_t>(values.size() * sizeof(StoredEntry)),
                         most_erases() + 1,
                         0};
-    if (flash_.erase(target) != hal::FlashResult::ok) return SaveResult::flash_failed;
     Crc32 crc;
     crc.add(bytes_of(header).first(offsetof(StoredHeader, crc)));
     for (std::size_t place = 0; place < values.size(); ++place) {
@@ -97,22 +176,31 @@ class ParameterStore {
     return SaveResult::saved;
   }
 
-  const StoreReport& report() const { return report_; }
-
-  /// The entries of the newest valid set as they lie in flash, for a backup that keeps what this table does not know.
-  std::size_t entry_count() const { return newest_ ? slots_[*newest_].header.length / sizeof(StoredEntry) : 0; }
-  std::optional<StoredEntry> entry(std::size_t index) {
-    if (index >= entry_count()) return std::nullopt;
-    return read_at<StoredEntry>(*newest_, kEntriesOffset + index * sizeof(StoredEntry));
+  /// Of the newest set, behind what was staged.
+  bool copy_tables(std::size_t target, std::size_t offset, std::size_t replaced) {
+    if (replaced != kNoAxis && staged_.points != 0) offset += sizeof staged_ + staged_.points * sizeof(PitchPoint);
+    bool all_copied = true;
+    for_each_table([&](const StoredTable& one) {
+      if (one.head.axis == replaced || !all_copied) return;
+      all_copied = flash_.program(target, offset, one.bytes) == hal::FlashResult::ok &&
+                   std::ranges::equal(flash_.view(target).subspan(offset, one.bytes.size()), one.bytes);
+      offset += one.bytes.size();
+    });
+    return all_copied;
   }
 
- private:
-  static constexpr std::size_t kSlots = 2;
+  /// Of the newest set, unless it is known that another one came after it.
+  template <typename Visit>
+  void for_each_table(Visit visit) const {
+    if (!newest_ || slots_[*newest_].marks.superseded != kNotProgrammed) return;
+    const std::size_t length = slots_[*newest_].header.length;
+    firmware::for_each_table(flash_.view(*newest_), kEntriesOffset + length, visit);
+  }
 
   struct Slot {
     StoredHeader header{};
     StoredMarks marks{};
-    bool whole = false;  ///< header and entries agree with the checksum
+    bool whole = false;  ///< header, entries and tables agree with their checksums
     bool valid() const { return whole && marks.valid == kValidMark; }
   };
 
@@ -138,7 +226,9 @@ class ParameterStore {
     for (std::size_t i = 0; i < kSlots; ++i) {
       Slot& slot = slots_[i];
       slot = {read_at<StoredHeader>(i, 0), read_at<StoredMarks>(i, kMarksOffset), false};
-      slot.whole = has_right_length(slot.header) && crc_of(i) == slot.header.crc;
+      slot.whole =
+          has_right_length(slot.header) && crc_of(i) == slot.header.crc &&
+          firmware::for_each_table(flash_.view(i), kEntriesOffset + slot.header.length, [](const StoredTable&) {});
       if (slot.valid() && (!newest_ || slot.header.sequence > slots_[*newest_].header.sequence)) newest_ = i;
     }
   }
@@ -205,6 +295,10 @@ class ParameterStore {
   std::array<Slot, kSlots> slots_{};
   std::optional<std::size_t> newest_;
   StoreReport report_{};
+  StoredTableHead staged_{};
+  PitchPoint last_point_{};
+  std::size_t staged_at_ = 0, staged_count_ = 0;
+  bool is_staging_ = false;
 };
 
 }  // namespace firmware

@@ -2,6 +2,7 @@
 #include "firmware/app/protocol/server.hpp"
 #include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
+#include "firmware/boards/image/reset_entry.hpp"
 #include "firmware/boards/image/stack_use.hpp"
 #include "firmware/boards/program/application.hpp"
 
@@ -69,6 +70,7 @@ extern "C" [[noreturn]] void run_board() {
   if (!periphery_works || image != ImageState::whole) stay_safe(last_run, image);
   survival_record().watchdog_armed = 1;
   application.start();
+  if (const auto ended = entry_of(last_run)) application.log_end_of_last_run(*ended);
   const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
                                  false, board.lacks_brown_out_reset()};
   firmware::ProtocolServer<Application> server(application, this_image(), boot);

@@ -30,6 +30,8 @@ class MemoryFlash {
   std::size_t sector_size() const { return kSectorSize; }
   std::size_t program_size() const { return kProgramSize; }
 
+  std::span<const std::byte> view(std::size_t sector) const { return cells_.sectors[sector]; }
+
   hal::FlashResult read(std::size_t sector, std::size_t offset, std::span<std::byte> out) {
     if (!contains(sector, offset, out.size())) return hal::FlashResult::out_of_range;
     std::copy_n(cells_.sectors[sector].begin() + offset, out.size(), out.begin());

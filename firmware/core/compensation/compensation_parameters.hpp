@@ -4,6 +4,7 @@
 #include <array>
 
 #include "firmware/core/compensation/backlash_crossing.hpp"
+#include "firmware/core/compensation/pitch_correction.hpp"
 #include "firmware/core/compensation/presliding_friction.hpp"
 #include "firmware/core/compensation/travel_harmonic.hpp"
 
@@ -20,6 +21,7 @@ struct CompensationParameters {
   TravelHarmonic<Scalar> position_friction{};  ///< what friction grows by along the travel, relative
   PreslidingParameters<Scalar> presliding{};
   BacklashParameters backlash{};
+  PitchParameters pitch{};
 };
 
 }  // namespace firmware

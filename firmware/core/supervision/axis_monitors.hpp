@@ -17,12 +17,12 @@ template <typename Scalar>
 class AxisMonitors {
  public:
   /// `p.monitors` has passed its check. `longest_stop`: counts, of a jog.
-  constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t longest_stop) {
+  constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t longest_stop, std::int64_t beyond = 0) {
     limits_ = p.monitors;
     velocity_per_count_ = p.encoder_resolution / (p.lead * p.sample_period_s);
     tachometer_fitted_ = p.tachometer_fitted;
     effort_.configure(p);
-    travel_.configure(p, longest_stop);
+    travel_.configure(p, longest_stop, beyond);
     restart();
     forget_high_water();
   }

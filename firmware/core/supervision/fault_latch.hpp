@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/core/supervision/fault_table.hpp"
+#include "firmware/core/supervision/supervisor_state.hpp"
 
 namespace firmware {
 
@@ -21,6 +22,17 @@ enum class AxisActivity : std::uint8_t {
 };
 inline constexpr std::array<const char*, 8> kActivityNames{"disabled", "starting",  "standing",  "moving",
                                                            "homing",   "following", "open loop", "stopping"};
+
+constexpr AxisActivity activity_of(SupervisorState state, bool homing, bool open_loop, bool at_rest,
+                                   bool interpolated) {
+  if (!outputs_are_on(state)) return AxisActivity::disabled;
+  if (state == SupervisorState::starting) return AxisActivity::starting;
+  if (state == SupervisorState::stopping) return AxisActivity::stopping;
+  if (homing) return AxisActivity::homing;
+  if (open_loop) return AxisActivity::open_loop;
+  if (at_rest) return AxisActivity::standing;
+  return interpolated ? AxisActivity::following : AxisActivity::moving;
+}
 
 class FaultLatch {
  public:

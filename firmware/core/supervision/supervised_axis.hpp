@@ -117,6 +117,7 @@ class SupervisedAxis {
     return true;
   }
   constexpr void forget_home() { axis_.forget_home(); }
+  constexpr void use_pitch_table(PitchTable table) { axis_.use_pitch_table(table); }  ///< as of Axis
   constexpr bool is_homed() const { return axis_.telemetry().homed; }
   constexpr bool is_homing() const { return homing_.is_active(); }
   /// As of HomingSequence.
@@ -155,7 +156,8 @@ class SupervisedAxis {
   }
   constexpr void step_with(Increment increment, AxisFault outer, const hal::EncoderReading& encoder) {
     is_led_ = false;
-    if (state_ != SupervisorState::enabled || homing_.is_active()) return step(outer, encoder);
+    if (state_ != SupervisorState::enabled || homing_.is_active()) return step_by_itself(outer, encoder);
+    is_guided_ = false;
     is_interpolated_ = true;
     if (!increments_.allow(increment, axis_.newest_increment())) {
       axis_.stop_interpolated();  // what cannot be right never reaches the drive
@@ -200,7 +202,7 @@ class SupervisedAxis {
   constexpr Refusal take(const AxisParameters<Scalar>& parameters) {
     const Refusal error = axis_.configure(parameters);
     if (error != Refusal::none) return error;
-    monitors_.configure(parameters, axis_.farthest_stop());
+    monitors_.configure(parameters, axis_.farthest_stop(), axis_.largest_offset());
     homing_.configure(parameters.homing);
     sequence_.configure(parameters.sequence);
     index_.configure(parameters.monitors.index_spacing);
@@ -247,9 +249,13 @@ class SupervisedAxis {
 
   /// Of an axis that is led, homing, or stopping by one sensor.
   [[gnu::noinline]] constexpr void step_guided(AxisFault outer, const hal::EncoderReading& encoder) {
+    is_led_ ? step_with(led_increment_, outer, encoder) : step_by_itself(outer, encoder);
+  }
+
+  /// Of an axis that nothing leads now.
+  [[gnu::noinline]] constexpr void step_by_itself(AxisFault outer, const hal::EncoderReading& encoder) {
     if (sensor_stop_.is_active()) return step_sensor_stop(outer, encoder);
     is_guided_ = homing_.is_active();
-    if (is_led_) return step_with(led_increment_, outer, encoder);
     axis_.step(encoder);
     supervise(is_guided_ && outer == AxisFault::none ? guide_home() : outer);
   }
@@ -411,13 +417,7 @@ class SupervisedAxis {
   }
 
   constexpr AxisActivity activity() const {
-    if (!outputs_are_on(state_)) return AxisActivity::disabled;
-    if (state_ == SupervisorState::starting) return AxisActivity::starting;
-    if (state_ == SupervisorState::stopping) return AxisActivity::stopping;
-    if (homing_.is_active()) return AxisActivity::homing;
-    if (axis_.is_open_loop()) return AxisActivity::open_loop;
-    if (axis_.is_at_rest()) return AxisActivity::standing;
-    return is_interpolated_ ? AxisActivity::following : AxisActivity::moving;
+    return activity_of(state_, homing_.is_active(), axis_.is_open_loop(), axis_.is_at_rest(), is_interpolated_);
   }
 
   constexpr bool brake_holds() {

@@ -18,8 +18,9 @@ namespace firmware {
 template <typename Scalar>
 class TravelMonitor {
  public:
-  /// `stop`: counts that the longest stop of a jog takes.
-  constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t stop) {
+  /// Counts: `stop`, that the longest stop of a jog takes; `beyond`, that compensation may add to a reference inside.
+  constexpr void configure(const AxisParameters<Scalar>& p, std::int64_t stop, std::int64_t beyond = 0) {
+    beyond_ = beyond;
     min_counts_ = p.monitors.travel_min_counts;
     max_counts_ = p.monitors.travel_max_counts;
     play_ = play_in_counts(p);
@@ -90,8 +91,8 @@ class TravelMonitor {
     const std::int64_t counts = seen.encoder_counts;
     const bool at_positive_end = positive_end_.filtered(switches.positive_end);
     const bool at_negative_end = negative_end_.filtered(switches.negative_end);
-    const bool is_above = at_positive_end || (seen.homed && counts > max_counts_);
-    const bool is_below = at_negative_end || (seen.homed && counts < min_counts_);
+    const bool is_above = at_positive_end || (seen.homed && counts > max_counts_ + beyond_);
+    const bool is_below = at_negative_end || (seen.homed && counts < min_counts_ - beyond_);
     is_near_end_ =
         is_above || is_below || !is_far_inside(seen) || positive_end_.is_pending() || negative_end_.is_pending();
     if (is_above) {
@@ -118,7 +119,7 @@ class TravelMonitor {
   CountRange far_inside_;  ///< with room for any stop and any following error
   bool is_near_end_ = true;
   InputFilter positive_end_, negative_end_;
-  std::int64_t min_counts_ = 0, max_counts_ = 0, play_ = 0;
+  std::int64_t min_counts_ = 0, max_counts_ = 0, play_ = 0, beyond_ = 0;
   std::int64_t upper_bound_ = 0, lower_bound_ = 0;
 };
 

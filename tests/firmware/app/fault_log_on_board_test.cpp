@@ -40,6 +40,35 @@ class FaultLogOnBoard : public testing::Test {
 using Numbers = testing::Types<float, firmware::FixedPoint>;
 TYPED_TEST_SUITE(FaultLogOnBoard, Numbers);
 
+/// Catches an entry that is lost, that takes a fault's place, or that is written while a drive is enabled.
+TYPED_TEST(FaultLogOnBoard, KeepsHowTheLastRunEnded) {
+  typename TestFixture::Bench bench;
+  firmware::LoggedFault ended;
+  ended.reset = 5;
+  ended.second_fault = 3;
+  ended.counts_low = 0x08001234;
+  bench.application.log_end_of_last_run(ended);
+  bench.run(3);
+  firmware::LoggedFault first = this->read(bench, 0).entry;
+  EXPECT_EQ(first.number, 1u);
+  EXPECT_EQ(first.reset, 5);
+  EXPECT_EQ(first.counts_low, 0x08001234u);
+  this->read(bench, 1, Status::no_such_row);
+  bench.fit_and_enable_x();
+  ended.reset = 4;
+  const std::size_t operations = bench.board.parameter_flash().operations();
+  bench.application.log_end_of_last_run(ended);
+  bench.run(50);
+  EXPECT_EQ(bench.board.parameter_flash().operations(), operations) << "a drive is enabled";
+  this->press_stop(bench);
+  this->clear(bench);
+  typename TestFixture::Bench again(&bench.board.parameter_flash());
+  EXPECT_EQ(this->read(again, 2).entry.reset, 5);
+  EXPECT_EQ(this->read(again, 1).entry.reset, 4);
+  EXPECT_EQ(this->read(again, 0).entry.fault, static_cast<std::uint8_t>(AxisFault::emergency_stop));
+  EXPECT_EQ(this->read(again, 0).entry.number, 3u);
+}
+
 TYPED_TEST(FaultLogOnBoard, TellsWhatTheAxisDidAndWhere) {
   typename TestFixture::Bench bench;
   bench.fit_and_enable_x();

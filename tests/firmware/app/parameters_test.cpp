@@ -46,6 +46,8 @@ std::pair<SetRefusal, std::vector<std::int32_t>> behaviour(const ParameterValues
   sim::Plant plant(machine(), 1);
   hal::pc::SimulatedAxis wires(plant);
   firmware::Axis<Scalar, hal::pc::SimulatedAxis> axis(wires);
+  constexpr std::array<firmware::PitchPoint, 3> kPitch{{{-40000, 0, 10 << 16}, {0, 50 << 16, 20 << 16}, {40000, 0, 0}}};
+  axis.use_pitch_table(kPitch);
   EXPECT_EQ(axis.configure(firmware::axis_parameters<Scalar>(values.axis(0))), firmware::Refusal::none);
   for (int k = 0; k < 500; ++k) {
     if (k == 5) {
@@ -78,7 +80,7 @@ TYPED_TEST_SUITE(Parameters, Scalars);
 
 /// Every part of the compensation on, each large enough to show within the travel of behaviour().
 void compensate(ParameterValues& values) {
-  for (const char* part : {"cogging", "presliding", "position_friction", "backlash", "notch", "low_pass"})
+  for (const char* part : {"cogging", "presliding", "position_friction", "backlash", "notch", "low_pass", "pitch"})
     set(values, std::string("x.") + part + ".on", 1);
   for (const char* harmonic : {"_1", "_2", "_3"}) {
     set(values, std::string("x.cogging.cosine") + harmonic, 0.3);
@@ -246,6 +248,7 @@ TEST(ParameterTable, HasTheParametersThatTheCoreRefuses) {
                                       {Refusal::position_friction, "position_friction.period"},
                                       {Refusal::backlash, "backlash.gap"},
                                       {Refusal::backlash_crossing, "backlash.crossing_time"},
+                                      {Refusal::pitch_crossing, "pitch.crossing_time"},
                                       {Refusal::homing, "homing.velocity"},
                                       {Refusal::amplifier_ready, "amplifier.ready_time"},
                                       {Refusal::brake_feedback, "brake.fitted"},
@@ -349,6 +352,8 @@ TEST(ParameterTable, IdsAreFrozen) {
       {225, "backlash.gap"},
       {226, "backlash.crossing_time"},
       {227, "backlash.wind_up"},
+      {288, "pitch.on"},
+      {289, "pitch.crossing_time"},
   };
   for (const auto& [id, name] : kReleased)
     for (const firmware::ParameterInfo& row : firmware::kParameters)

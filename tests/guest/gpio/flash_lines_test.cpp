@@ -24,11 +24,14 @@ constexpr const char* kDfuUtil = R"(#!/bin/bash
 here=$(dirname "$0")
 echo "$EPOCHREALTIME $*" >>"$here/calls"
 [ ! -e "$here/no-board" ] || { echo "No DFU capable USB device available"; exit 74; }
+what=flash
+[ -e "$here/options" ] || printf '\343\252\034\125\0\0\0\0\377\17\0\360\0\0\0\0' >"$here/options"
 while [ $# -gt 0 ]; do
   case $1 in
+    -a) [ "$2" = 0 ] || what=options ;;
     -l) echo 'Found DFU: [0483:df11] name="@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg"' ;;
-    -D) cp "$2" "$here/flash" ;;
-    -U) cp "$here/flash" "$2" ;;
+    -D) cp "$2" "$here/$what" ;;
+    -U) [ ! -e "$2" ] || exit 74; cp "$here/$what" "$2" ;;
   esac
   shift
 done
@@ -90,13 +93,13 @@ TEST_P(FlashLines, RiseAndFallInOrderAndInTime) {
   EXPECT_TRUE(chip_.drives(kBoot0));
   EXPECT_FALSE(chip_.drives(kReset)) << "open drain: whoever else pulls NRST low, a probe or the watchdog, must win";
   const auto dfu_util = calls();
-  ASSERT_EQ(dfu_util.size(), 3u) << "list, write, read back";
+  ASSERT_EQ(dfu_util.size(), 4u) << "list, option bytes, write, read back";
   // STM32F405 datasheet, table 47: a reset pulse of 20 us; with the board's capacitor at NRST, 1 ms. AN2606: the
   // bootloader takes some 100 ms to its USB connection.
   EXPECT_GE(edges[1].at - edges[0].at, 1ms) << "BOOT0 is stable before reset";
   EXPECT_GE(edges[2].at - edges[1].at, 10ms) << "reset pulse";
   EXPECT_GE(dfu_util[0] - edges[2].at, 100ms) << "the bootloader needs time";
-  EXPECT_GE(edges[3].at, dfu_util[2]) << "BOOT0 falls after the last use of the bootloader";
+  EXPECT_GE(edges[3].at, dfu_util[3]) << "BOOT0 falls after the last use of the bootloader";
   EXPECT_GE(edges[4].at - edges[3].at, 1ms) << "BOOT0 is stable before reset";
   EXPECT_GE(edges[5].at - edges[4].at, 10ms) << "reset pulse";
 }

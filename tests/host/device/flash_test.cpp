@@ -1,6 +1,8 @@
 // Flashing: the edges and pauses of the sequence, and what becomes of each failure.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "host/device/flash_sequence.hpp"
 #include "host/device/image_file.hpp"
 #include "host/exit_codes.hpp"
@@ -25,6 +27,11 @@ struct Bench {
   std::chrono::milliseconds now{0};
   host::CommandResult list{0, kListing}, write{0, ""};
   bool equal = true;
+  /// Of the chip, as 0x1FFFC000 shows them: user byte, read protection, their complements.
+  std::string options{"\xE3\xAA\x1C\x55\0\0\0\0\xFF\x0F\0\xF0\0\0\0\0", 16};
+  std::string sent;        ///< option bytes that the host wrote
+  bool takes_them = true;  ///< the chip, when it resets
+  int status_of_options = 0;
 
   host::FlashActions actions() {
     host::FlashActions all;
@@ -33,10 +40,21 @@ struct Bench {
     all.pause = [this](std::chrono::milliseconds time) { now += time; };
     all.run = [this](const std::vector<std::string>& command) {
       const bool lists = command[1] == "-l";
+      if (command[0] == "dfu-util" && command.size() > 4 && command[4] == "1") {
+        const bool writes = std::find(command.begin(), command.end(), "-D") != command.end();
+        events.push_back({writes ? "write options" : "read options", now});
+        if (writes && takes_them) options = sent;
+        return host::CommandResult{writes ? status_of_options : 0, "LIBUSB_ERROR_NO_DEVICE"};
+      }
       events.push_back({lists ? "list" : command[0], now});
       return lists ? list : write;
     };
     all.read_back_equals = [this] { return equal; };
+    all.read_options = [this] { return options; };
+    all.write_options = [this](const std::string& file, const std::string& bytes) {
+      EXPECT_EQ(file, "options.bin.new");
+      sent = bytes;
+    };
     all.tell = [](const std::string&) {};
     return all;
   }
@@ -52,6 +70,7 @@ host::FlashRequest with_gpio() {
   host::FlashRequest request;
   request.image = "image.bin";
   request.image_size = 1234;
+  request.options = "options.bin";
   request.gpio = host::GpioWiring{"/dev/gpiochip0", 17, 27};
   return request;
 }
@@ -59,13 +78,98 @@ host::FlashRequest with_gpio() {
 TEST(Flash, EdgesComeInOrderWithTheirPauses) {
   Bench bench;
   host::run_flash(with_gpio(), bench.actions());
-  const std::vector<std::string> expected{"boot0 high", "reset low", "reset high", "list",      "dfu-util",
-                                          "dfu-util",   "boot0 low", "reset low",  "reset high"};
+  const std::vector<std::string> expected{"boot0 high", "reset low", "reset high", "list",      "read options",
+                                          "dfu-util",   "dfu-util",  "boot0 low",  "reset low", "reset high"};
   ASSERT_EQ(bench.names(), expected);
   EXPECT_GE(bench.events[1].at - bench.events[0].at, 1ms) << "BOOT0 is stable before reset";
   EXPECT_GE(bench.events[2].at - bench.events[1].at, 10ms) << "reset pulse";
   EXPECT_GE(bench.events[3].at - bench.events[2].at, 100ms) << "the bootloader needs time";
-  EXPECT_GE(bench.events[8].at - bench.events[7].at, 10ms) << "reset pulse";
+  EXPECT_GE(bench.events[9].at - bench.events[8].at, 10ms) << "reset pulse";
+}
+
+/// Catches a level written into the wrong bits, one that is written again and again, and other bits that change.
+TEST(Flash, SetsTheBrownOutLevelOnceBeforeTheImage) {
+  for (const int status : {0, 74}) {  // dfu-util may lose the bootloader, which resets
+    Bench bench;
+    bench.status_of_options = status;
+    bench.options[0] = '\xEF';
+    bench.options[2] = '\x10';
+    const std::string before = bench.options;
+    host::run_flash(with_gpio(), bench.actions());
+    const std::vector<std::string> expected{"boot0 high",   "reset low",     "reset high",   "list",
+                                            "read options", "write options", "read options", "dfu-util",
+                                            "dfu-util",     "boot0 low",     "reset low",    "reset high"};
+    ASSERT_EQ(bench.names(), expected);
+    EXPECT_GE(bench.events[6].at - bench.events[5].at, 1000ms) << "the bootloader starts again";
+    ASSERT_EQ(bench.sent.size(), 16u);
+    EXPECT_EQ(bench.sent[0], '\xE3');
+    EXPECT_EQ(bench.sent[2], '\x1C') << "the complement";
+    for (const std::size_t i : {1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
+      EXPECT_EQ(bench.sent[i], before[i]) << i;
+    bench.events.clear();
+    host::run_flash(with_gpio(), bench.actions());
+    EXPECT_EQ(bench.names().size(), 10u) << "it is set: nothing to write";
+  }
+}
+
+TEST(Flash, WritesNothingWhereReadProtectionIsOn) {
+  for (const char level : {'\x55', '\xCC', '\xAB', '\0'}) {
+    Bench bench;
+    bench.options[1] = level;
+    bench.options[0] = '\xEF';
+    try {
+      host::run_flash(with_gpio(), bench.actions());
+      FAIL() << "no failure";
+    } catch (const host::Failure& failure) {
+      EXPECT_EQ(failure.code, host::ExitCode::refused);
+      EXPECT_NE(std::string(failure.what()).find("nothing was written"), std::string::npos);
+    }
+    EXPECT_TRUE(bench.sent.empty());
+    const auto names = bench.names();
+    EXPECT_EQ(std::count(names.begin(), names.end(), "dfu-util"), 0);
+    EXPECT_EQ(names.back(), "reset high") << "the board is let go";
+  }
+}
+
+TEST(Flash, SaysSoWhereTheChipDoesNotTakeTheLevel) {
+  Bench bench;
+  bench.options[0] = '\xEF';
+  bench.takes_them = false;
+  EXPECT_THROW(host::run_flash(with_gpio(), bench.actions()), host::Failure);
+  const auto names = bench.names();
+  EXPECT_EQ(std::count(names.begin(), names.end(), "dfu-util"), 0) << "no image";
+  bench.options.clear();
+  EXPECT_THROW(host::run_flash(with_gpio(), bench.actions()), host::Failure) << "an empty upload";
+}
+
+/// In openocd's script protection is looked at first, the image comes last.
+TEST(Flash, GivesTheProbeTheSameRule) {
+  host::FlashRequest request;
+  request.way = host::FlashWay::probe;
+  request.image = "image.bin";
+  const auto steps = host::flash_steps(request);
+  ASSERT_EQ(steps.size(), 1u);
+  const auto& command = steps[0].command;
+  const auto place = [&](const std::string& text) {
+    return std::find_if(command.begin(), command.end(),
+                        [&](const std::string& word) { return word.find(text) != std::string::npos; }) -
+           command.begin();
+  };
+  const auto size = static_cast<std::ptrdiff_t>(command.size());
+  EXPECT_LT(place("!= 0xAA"), place("options_write"));
+  EXPECT_LT(place("options_write"), place("program image.bin"));
+  EXPECT_LT(place("program image.bin"), size);
+  Bench bench;
+  for (const auto& [output, code] : {std::pair{"axistool: read protection is on", host::ExitCode::refused},
+                                     std::pair{"axistool: the level was not taken", host::ExitCode::protocol}}) {
+    bench.write = {1, output};
+    try {
+      host::run_flash(request, bench.actions());
+      FAIL() << "no failure";
+    } catch (const host::Failure& failure) {
+      EXPECT_EQ(failure.code, code) << output;
+    }
+  }
 }
 
 struct Trouble {

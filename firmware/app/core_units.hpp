@@ -1,0 +1,30 @@
+// Velocities between the host, in mm/s, rad/s and m/s, and a core that may compute in fixed point.
+#pragma once
+
+#include <type_traits>
+
+#include "firmware/app/parameters/axis_values.hpp"
+#include "firmware/core/fixed_units.hpp"
+
+namespace firmware {
+
+/// Of a jog, mm/s (m/s).
+template <typename Scalar>
+Scalar to_core_travel_velocity(float velocity, const AxisValues& values) {
+  if constexpr (std::is_same_v<Scalar, float>)
+    return velocity;
+  else
+    return Scalar::from(velocity / FixedUnits<float>(axis_parameters<float>(values)).travel_velocity);
+}
+
+/// Of the drive, rad/s (m/s).
+template <typename Scalar>
+float from_core_velocity(Scalar velocity, const AxisValues& values) {
+  if constexpr (std::is_same_v<Scalar, float>)
+    return velocity;
+  else
+    return static_cast<float>(velocity.raw()) / static_cast<float>(Scalar(1).raw()) *
+           FixedUnits<float>(axis_parameters<float>(values)).velocity;
+}
+
+}  // namespace firmware
