@@ -1,11 +1,16 @@
 // What the effects of a second mass have in common.
 #pragma once
 
+#include <string_view>
+
 #include "sim/coupling.hpp"
 #include "sim/drive_description.hpp"
 #include "sim/effect.hpp"
 
 namespace sim {
+
+/// Whether an effect puts a second mass behind the motor.
+inline bool is_second_mass(std::string_view kind) { return kind == "compliance" || kind == "backlash"; }
 
 /// Of an entry of compliance or backlash; all friction acts on the load's side unless the entry says otherwise.
 inline SecondMass second_mass_of(const EffectEntry& entry) {

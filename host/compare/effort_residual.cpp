@@ -2,14 +2,15 @@
 
 #include <cmath>
 
+#include "sim/second_mass.hpp"
+
 namespace host {
 
 namespace {
 
 /// A drive whose load moves with its motor.
 sim::DriveDescription moving_as_one(sim::DriveDescription model) {
-  std::erase_if(model.effects,
-                [](const sim::EffectEntry& entry) { return entry.kind == "compliance" || entry.kind == "backlash"; });
+  std::erase_if(model.effects, [](const sim::EffectEntry& entry) { return sim::is_second_mass(entry.kind); });
   return model;
 }
 

@@ -30,8 +30,12 @@ const char* fault_name(std::uint8_t fault) {
   return firmware::fault_info(static_cast<firmware::AxisFault>(fault)).name;
 }
 
+bool is_linear(std::size_t axis, const firmware::ParameterValues& values) {
+  return values.axis(axis).get<"drive.lead">() == 1.0F;
+}
+
 const char* travel_unit(std::size_t axis, const firmware::ParameterValues& values) {
-  return values.axis(axis).get<"drive.lead">() == 1.0F ? "m" : "mm";
+  return is_linear(axis, values) ? "m" : "mm";
 }
 
 std::optional<AxisPlace> place_of_counts(std::int64_t counts, std::size_t axis,

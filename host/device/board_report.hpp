@@ -13,7 +13,9 @@ std::string state_text(const firmware::AxisStatus& axis);
 std::string store_text(std::uint8_t store_state);
 std::string reset_text(std::uint8_t reset_cause);
 
-/// mm, or m of a linear drive: its lead is 1.
+/// A linear drive's lead is 1.
+bool is_linear(std::size_t axis, const firmware::ParameterValues& values);
+/// mm, or m of a linear drive.
 const char* travel_unit(std::size_t axis, const firmware::ParameterValues& values);
 
 struct AxisPlace {

@@ -9,12 +9,14 @@
 #include "host/device/pitch_table.hpp"
 #include "host/exit_codes.hpp"
 #include "host/number.hpp"
+#include "host/record/table_layout.hpp"
 
 namespace host {
 
 namespace {
 
 constexpr double kUnitsPerCount = 65536.0;
+constexpr TableLayout kCommas{.separator = ','};
 constexpr std::string_view kColumns = "x_mm, and forward_um with backward_um, or error_um";
 
 struct Field {
@@ -30,7 +32,7 @@ class PitchFile {
   PitchPoints read() {
     while (next_line()) {
       if (trim_blanks(line_).empty() || line_.front() == '#') continue;
-      split();
+      kCommas.split(line_, fields_);
       if (columns_.empty())
         take_header();
       else
@@ -49,23 +51,9 @@ class PitchFile {
   }
 
   bool next_line() {
-    if (text_.empty()) return false;
-    ++number_;
-    const std::size_t end = std::min(text_.find('\n'), text_.size());
-    line_ = text_.substr(0, end);
-    if (number_ == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
-    text_.remove_prefix(std::min(end + 1, text_.size()));
+    if (!take_line(text_, line_)) return false;
+    if (++number_ == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
     return true;
-  }
-
-  void split() {
-    fields_.clear();
-    for (std::string_view rest = line_;;) {
-      const std::size_t end = rest.find(',');
-      fields_.push_back(trim_blanks(rest.substr(0, end)));
-      if (end == std::string_view::npos) return;
-      rest.remove_prefix(end + 1);
-    }
   }
 
   void take_header() {

@@ -6,6 +6,7 @@
 
 #include "firmware/app/crc32.hpp"
 #include "firmware/app/protocol/pitch_messages.hpp"
+#include "host/device/board_report.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -29,9 +30,8 @@ Message ask(BoardClient& board, MessageType type, const Payload& payload, std::c
 }  // namespace
 
 double count_mm_of(const firmware::ParameterValues& values, std::size_t axis) {
-  const auto drive = values.axis(axis);
-  const double resolution = static_cast<double>(drive.get<"drive.encoder_resolution">());
-  return drive.get<"drive.lead">() == 1.0F ? 1000.0 * resolution : resolution;
+  const double resolution = static_cast<double>(values.axis(axis).get<"drive.encoder_resolution">());
+  return is_linear(axis, values) ? 1000.0 * resolution : resolution;
 }
 
 PitchPoints read_pitch(BoardClient& board, std::uint8_t axis) {

@@ -132,9 +132,7 @@ void settle_status(Diagnosis& diagnosis) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const bool named = verdict.status == Status::missing || verdict.status == Status::ambiguous;
   if (!named || diagnosis.candidates.empty()) return;
-  if (verdict.status == Status::ambiguous &&
-      probability_of_any(diagnosis, verdict.effects) + verdict.probability_unfitted >= kNamed)
-    return;
+  if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kNamed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
   const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
   if (verdict.status == Status::missing && !hardly_helps &&

@@ -75,7 +75,6 @@ struct DiagnosisVerdict {
   double probability_nothing = 0.0;     ///< that nothing is missing, 0..1
   std::vector<std::string> data_sheet;  ///< where the data fight what the model file holds or believes, in words
   double probability_other = 0.0;       ///< that something is missing that is no candidate, 0..1
-  double probability_unfitted = 0.0;    ///< part of it: members of an ambiguous group of which no form was fitted
 };
 
 /// What it began with, and what came of it.

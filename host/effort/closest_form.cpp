@@ -10,8 +10,7 @@ EffortTerm closest_form(const EffortRegression& regression, const std::vector<Ef
                         const std::vector<EffortTerm>& chosen, EffortTerm term, ScreenedModel& model) {
   constexpr double kFirstPart = 0.03, kLastPart = 0.001;  // a quarter of what the forms lie apart, to 0.1 %
   constexpr double kLeastStep = 1e-4;                     // of the error: what a smaller one gains, noise takes
-  std::vector<const EffortTerm*> further;
-  for (const EffortTerm& before : chosen) further.push_back(&before);
+  std::vector<const EffortTerm*> further = pointers_to(chosen);
   further.push_back(nullptr);
   for (double part = kFirstPart; part > kLastPart && term.neighbours;) {
     throw_if_cancelled();

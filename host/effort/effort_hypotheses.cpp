@@ -13,6 +13,7 @@
 #include "host/effort/second_mass_terms.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/parallel.hpp"
+#include "sim/second_mass.hpp"
 
 namespace host {
 
@@ -103,11 +104,12 @@ std::vector<Wave> most_promising(std::vector<Wave> waves, const EffortRows& rows
 }  // namespace
 
 EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const EffortRows& rows,
-                                   const std::vector<EffortTerm>& base, const VectorXd& explained, double coulomb)
+                                   const std::vector<EffortTerm>& base, const VectorXd& explained, double coulomb,
+                                   const std::vector<std::string>& absent)
     : model_(model),
       rows_(rows),
       thin_(thinned(rows, std::max<std::size_t>(1, (rows.size() + kMostRows / 2) / kMostRows))),
-      second_masses_(second_mass_terms(model, rows)),
+      second_masses_(second_mass_terms(model, rows, absent)),
       coulomb_(coulomb),
       evidence_(thin_.rows.effort, runs_of(thin_.rows), effort_memory(thin_.rows, thin_.of(explained), coulomb),
                 std::max(rows.noise, 1e-9 * coulomb)) {
@@ -184,8 +186,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     if (form) forms[term.kind].push_back(*std::move(form));
   };
   std::ranges::for_each(terms, weigh);
-  if (std::ranges::none_of(chosen,
-                           [](const EffortTerm& term) { return term.kind == "compliance" || term.kind == "backlash"; }))
+  if (std::ranges::none_of(chosen, [](const EffortTerm& term) { return sim::is_second_mass(term.kind); }))
     std::ranges::for_each(second_masses_, weigh);
   if (rows_.has_position) {
     const VectorXd one = VectorXd::Ones(rows_.w.size());

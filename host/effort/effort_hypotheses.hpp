@@ -19,10 +19,10 @@ using PlainFit = std::function<std::optional<double>(const EffortTerm&)>;
 /// The force balance of one drive, with what is fitted in every hypothesis: base and effects chosen so far.
 class EffortHypotheses {
  public:
-  /// `coulomb`: the drive's friction level, Nm or N, to which all usual sizes compare. Keeps references to model and
-  /// rows.
+  /// `absent`: kinds that next() will not be asked for. `coulomb`: the drive's friction level, Nm or N, to which all
+  /// usual sizes compare. Keeps references to model and rows.
   EffortHypotheses(const sim::DriveDescription& model, const EffortRows& rows, const std::vector<EffortTerm>& base,
-                   const Eigen::VectorXd& explained, double coulomb);
+                   const Eigen::VectorXd& explained, double coulomb, const std::vector<std::string>& absent);
 
   /// Fits all kinds but those `excluded` beside the terms chosen so far.
   NextEffects next(const std::vector<EffortTerm>& chosen, const Eigen::VectorXd& explained,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/compare/chance.hpp"
+#include "sim/second_mass.hpp"
 
 namespace host {
 
@@ -37,8 +38,8 @@ bool EffortRegression::fit(const std::vector<EffortTerm>& base, const std::vecto
   for (const EffortTerm* term : terms) width += term->columns.cols();
   MatrixXd phi(rows_.effort.size(), width);
   Index at = 0;
-  const bool second_mass = std::ranges::any_of(
-      further, [](const EffortTerm* term) { return term->kind == "compliance" || term->kind == "backlash"; });
+  const bool second_mass =
+      std::ranges::any_of(further, [](const EffortTerm* term) { return sim::is_second_mass(term->kind); });
   for (std::size_t t = 0; t < terms.size(); ++t) {
     phi.middleCols(at, terms[t]->columns.cols()) = terms[t]->columns;
     at += terms[t]->columns.cols();

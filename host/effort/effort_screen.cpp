@@ -34,17 +34,11 @@ class Search {
     for (int round = 0; round < kMostRounds && screen_.chosen.size() < most_effects && step(hypotheses); ++round)
       throw_if_cancelled();
     drop_what_nothing_followed();
-    if (most_effects > 0) screen_.memory_log_odds = hypotheses.memory_log_odds(left_, chosen_);
+    screen_.memory_log_odds = hypotheses.memory_log_odds(left_, chosen_);
     drop_what_others_explain(hypotheses);
   }
 
  private:
-  static std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms) {
-    std::vector<const EffortTerm*> pointers;
-    for (const EffortTerm& term : terms) pointers.push_back(&term);
-    return pointers;
-  }
-
   /// The best model with a further term, fitted to the training rows; its kinds hold the term's once.
   bool with(const EffortTerm& term, ScreenedModel& out) const {
     std::vector<const EffortTerm*> further = pointers_to(chosen_);
@@ -124,9 +118,14 @@ class Search {
     return is_worth_naming(screen_.best().validate, fitted.validate);
   }
 
+  NextEffects next_beside(const EffortHypotheses& hypotheses, const std::vector<EffortTerm>& chosen,
+                          const std::vector<std::string>& excluded) const {
+    return hypotheses.next(chosen, screen_.rows.effort - screen_.best().residual, excluded,
+                           [this](const EffortTerm& term) { return plain_error(term); });
+  }
+
   NextEffects weigh(const EffortHypotheses& hypotheses) {
-    NextEffects next = hypotheses.next(chosen_, screen_.rows.effort - screen_.best().residual, excluded_,
-                                       [this](const EffortTerm& term) { return plain_error(term); });
+    NextEffects next = next_beside(hypotheses, chosen_, excluded_);
     left_ = next.fit;
     regression_.weigh(hypotheses.weights(left_));
     return next;
@@ -336,8 +335,7 @@ class Search {
     chosen.push_back(beside->term);
     std::vector<std::string> excluded = excluded_;
     excluded.push_back(beside->term.kind);
-    const NextEffects next = hypotheses.next(chosen, screen_.rows.effort - screen_.best().residual, excluded,
-                                             [this](const EffortTerm& term) { return plain_error(term); });
+    const NextEffects next = next_beside(hypotheses, chosen, excluded);
     double probability = 0.0;
     const std::vector<std::string> group = certain_group(next, probability);
     ScreenedModel taken;
@@ -444,13 +442,16 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
       !regression.fit(base, {}, screen.base, &screen.held))
     return {};
   if (screen.rows.steady) screen.held.emplace_back("the speed hardly changes, so the inertia does not show");
-  // The level that usual sizes compare to; where nothing rubs, a twentieth of what the motor gives.
-  constexpr double kLeastLevel = 0.05;
-  const sim::Drive fitted(screen.base.model);
-  const double coulomb =
-      std::max(0.5 * (fitted.friction[0].coulomb + fitted.friction[1].coulomb), kLeastLevel * screen.effort_train);
-  const EffortHypotheses hypotheses(model, screen.rows, base, screen.rows.effort - screen.base.residual, coulomb);
-  Search(model, screen, regression, base, absent).run(hypotheses, most_effects);
+  if (most_effects > 0) {
+    // The level that usual sizes compare to; where nothing rubs, a twentieth of what the motor gives.
+    constexpr double kLeastLevel = 0.05;
+    const sim::Drive fitted(screen.base.model);
+    const double coulomb =
+        std::max(0.5 * (fitted.friction[0].coulomb + fitted.friction[1].coulomb), kLeastLevel * screen.effort_train);
+    const EffortHypotheses hypotheses(model, screen.rows, base, screen.rows.effort - screen.base.residual, coulomb,
+                                      absent);
+    Search(model, screen, regression, base, absent).run(hypotheses, most_effects);
+  }
   if (screen.chosen.empty()) {
     EffortRows swapped = screen.rows;
     swapped.judges.flip();

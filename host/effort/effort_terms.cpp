@@ -131,6 +131,12 @@ EffortTerm current_limit_term(const sim::DriveDescription& model, const EffortRo
 
 }  // namespace
 
+std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms) {
+  std::vector<const EffortTerm*> pointers;
+  for (const EffortTerm& term : terms) pointers.push_back(&term);
+  return pointers;
+}
+
 bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry) {
   if (!in_bounds(entry)) return false;
   model.effects.push_back(std::move(entry));

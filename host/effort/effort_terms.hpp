@@ -27,6 +27,9 @@ struct EffortTerm {
   double acting = 1.0;
 };
 
+/// Where the terms are, for a fit that takes further ones.
+std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms);
+
 /// Adds an effect to a model; false where a parameter is out of the catalogue's bounds.
 bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry);
 

@@ -1,6 +1,7 @@
 #include "host/effort/hidden_pair.hpp"
 
 #include <cmath>
+#include <initializer_list>
 
 #include "host/cancellation.hpp"
 
@@ -23,10 +24,9 @@ const NextEffect* less_seen_of_two(const EffortRegression& regression, const std
                                    const std::vector<EffortTerm>& chosen, const ScreenedModel& now,
                                    const NextEffects& all,
                                    const std::function<bool(const ScreenedModel&)>& is_worth_naming) {
-  std::vector<const EffortTerm*> known;
-  for (const EffortTerm& term : chosen) known.push_back(&term);
-  const auto fitted = [&](std::vector<const EffortTerm*> further, ScreenedModel& out) {
-    further.insert(further.begin(), known.begin(), known.end());
+  const auto fitted = [&](std::initializer_list<const EffortTerm*> more, ScreenedModel& out) {
+    std::vector<const EffortTerm*> further = pointers_to(chosen);
+    further.insert(further.end(), more);
     return regression.fit(base, further, out);
   };
   struct Alone {

@@ -68,7 +68,7 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
   return column;
 }
 
-EffortTerm term_of(const EffortRows& rows, const Load& load) {
+EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
   EffortTerm term{load.gap > 0.0 ? "backlash" : "compliance", pull_of(rows, load), {1}, {}, {}};
   // A load that its friction holds is a hysteresis (a cable chain, a seal), whatever mass it has.
   constexpr double kHeld = 0.7;  // of the RMS pull
@@ -103,12 +103,12 @@ EffortTerm term_of(const EffortRows& rows, const Load& load) {
     return append_within_bounds(fitted, std::move(entry));
   };
   if (load.gap > 0.0)
-    term.words = fmt::format("free travel {:.3g}{}", load.gap * rows.lead,
+    term.words = fmt::format("free travel {:.3g} {}{}", load.gap * rows.lead, unit,
                              load.friction > 0.0 ? ", friction on both sides" : "");
   else
     term.words = fmt::format("antiresonance {:.3g} Hz{}", load.resonance_Hz,
                              load.friction > 0.0 ? ", friction on both sides" : "");
-  term.neighbours = [&rows, load](double part) {
+  term.neighbours = [&rows, load, unit](double part) {
     std::vector<EffortTerm> around;
     // Damping and friction show far less than the frequency; behind a gap, so does the frequency.
     constexpr double kCoarser = 6.0;
@@ -117,7 +117,7 @@ EffortTerm term_of(const EffortRows& rows, const Load& load) {
       const auto moved = [&](double Load::*parameter, double factor) {
         Load other = load;
         other.*parameter *= factor;
-        around.push_back(term_of(rows, other));
+        around.push_back(term_of(rows, other, unit));
       };
       if (load.gap > 0.0) moved(&Load::gap, fine);
       moved(&Load::resonance_Hz, load.gap > 0.0 ? coarse : fine);
@@ -131,7 +131,9 @@ EffortTerm term_of(const EffortRows& rows, const Load& load) {
 
 }  // namespace
 
-std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows) {
+std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows,
+                                          const std::vector<std::string>& absent) {
+  const auto may_be = [&](const char* kind) { return std::ranges::find(absent, kind) == absent.end(); };
   for (const char* contact : {"compliance", "backlash", "presliding"})
     if (model.find(contact) != nullptr) return {};
   if (rows.steady) return {};  // without acceleration a second mass does not show
@@ -144,7 +146,7 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   constexpr double kMost = 100.0;  // up to 90 kHz
   const auto frequencies = static_cast<int>(std::ceil(std::clamp(span / std::log(kStep), 0.0, kMost)));
   std::vector<Load> loads;
-  for (int k = 0; k < frequencies; ++k) {
+  for (int k = 0; k < frequencies && may_be("compliance"); ++k) {
     const double resonance_Hz = kLowest_Hz * std::pow(kStep, k);
     for (const double damping : {0.02, 0.1, 0.3}) loads.push_back({resonance_Hz, damping, 0.0});
     if (usual > 0.0)
@@ -153,7 +155,7 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   // Gaps from a few counts of the encoder to what the catalogue allows, and to a twentieth of the travel. A contact is
   // stiff, and what it does beyond the cut-off does not show. It is damped well: where it bounces, no motion that is
   // known to a count tells when.
-  if (rows.has_position) {
+  if (rows.has_position && may_be("backlash")) {
     const sim::ParameterInfo& gap = *sim::find_effect("backlash")->parameter("gap");
     constexpr double kFewCounts = 4.0, kOfTravel = 0.05;
     const double most = std::min(gap.upper, kOfTravel * (rows.x.maxCoeff() - rows.x.minCoeff()));
@@ -163,8 +165,9 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
           for (const double part : {0.0, 0.5, 1.5})
             loads.push_back({resonance_Hz, damping, part * usual, free / rows.lead});
   }
+  const char* const unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   std::vector<EffortTerm> terms(loads.size());
-  for_each_in_parallel(loads.size(), [&](std::size_t k) { terms[k] = term_of(rows, loads[k]); });
+  for_each_in_parallel(loads.size(), [&](std::size_t k) { terms[k] = term_of(rows, loads[k], unit); });
   return terms;
 }
 
