@@ -26,9 +26,9 @@ bool contains(const std::vector<std::string>& kinds, const std::string& kind) {
 class Search {
  public:
   /// Keeps references.
-  Search(const sim::DriveDescription& model, EffortScreen& screen, EffortRegression& regression,
-         const std::vector<EffortTerm>& base, const std::vector<std::string>& absent)
-      : model_(model), screen_(screen), regression_(regression), base_(base), excluded_(absent) {}
+  Search(EffortScreen& screen, EffortRegression& regression, const std::vector<EffortTerm>& base,
+         const std::vector<std::string>& absent)
+      : screen_(screen), regression_(regression), base_(base), excluded_(absent) {}
 
   void run(const EffortHypotheses& hypotheses, std::size_t most_effects) {
     for (int round = 0; round < kMostRounds && screen_.chosen.size() < most_effects && step(hypotheses); ++round)
@@ -396,7 +396,6 @@ class Search {
     }
   }
 
-  const sim::DriveDescription& model_;
   EffortScreen& screen_;
   EffortRegression& regression_;
   const std::vector<EffortTerm>& base_;
@@ -450,7 +449,7 @@ EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& 
         std::max(0.5 * (fitted.friction[0].coulomb + fitted.friction[1].coulomb), kLeastLevel * screen.effort_train);
     const EffortHypotheses hypotheses(model, screen.rows, base, screen.rows.effort - screen.base.residual, coulomb,
                                       absent);
-    Search(model, screen, regression, base, absent).run(hypotheses, most_effects);
+    Search(screen, regression, base, absent).run(hypotheses, most_effects);
   }
   if (screen.chosen.empty()) {
     EffortRows swapped = screen.rows;
