@@ -83,7 +83,7 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::DataS
   Index count = 0;
   for (const Record* record : records) {
     if (!record->has_position() || !record->has_table_position() || record->size() < 4 * stride) continue;
-    TableRecord one{record, record->x, {}, count, static_cast<Index>(record->size() / stride), stride};
+    TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride};
     const double mm = mm_of(*record);
     for (double& x : one.x) x *= mm;
     if (record->u_V.empty() && record->i_A.empty())

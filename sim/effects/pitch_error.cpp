@@ -2,6 +2,7 @@
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/periodic_effect.hpp"
 
 namespace sim::effects {
 
@@ -32,29 +33,9 @@ const EffectInfo pitch_error{
                     .upper = 5000.0,
                     .starts = {10.0},
                     .optional = true},
-                   {.id = "cosine",
-                    .rotary_key = "cosine_mm",
-                    .linear_key = "cosine_m",
-                    .doc = "c",
-                    .lower = -1.0,
-                    .upper = 1.0,
-                    .scale = Scale::millimetre,
-                    .starts = {0.002}},
-                   {.id = "sine",
-                    .rotary_key = "sine_mm",
-                    .linear_key = "sine_m",
-                    .doc = "s",
-                    .lower = -1.0,
-                    .upper = 1.0,
-                    .scale = Scale::millimetre,
-                    .starts = {0.002}},
-                   {.id = "period",
-                    .rotary_key = "period_mm",
-                    .linear_key = "period_m",
-                    .doc = "L: travel of one period",
-                    .lower = 1e-5,
-                    .upper = 1e5,
-                    .scale = Scale::millimetre}},
+                   position_error_parameter(true),
+                   position_error_parameter(false),
+                   period_parameter()},
     .shows =
         "Only a scale on the table or a laser sees it: x2 - x is one curve over the travel, the same in both "
         "directions "

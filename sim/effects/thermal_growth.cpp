@@ -1,16 +1,16 @@
 // Thermal growth between motor and table.
-#include "sim/decay.hpp"
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
+#include "sim/warming.hpp"
 
 namespace sim::effects {
 
 namespace {
 
 void install_thermal_growth(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  const double tau = entry.at("time_constant"), growth = entry.at("growth");
-  const double cold_s = entry.has("cold_start") ? entry.at("cold_start") : 0.0;
-  drive.table_error.push_back([=](double t_s, double) { return growth * (1.0 - decay((t_s - cold_s) / tau)); });
+  const Warming warming(entry);
+  drive.table_error.push_back(
+      [warming, growth = entry.at("growth")](double t_s, double) { return growth * warming(t_s); });
 }
 
 }  // namespace
@@ -37,15 +37,7 @@ const EffectInfo thermal_growth{
                     .upper = 1e5,
                     .scale = Scale::duration,
                     .starts = {1.0}},
-                   {.id = "cold_start",
-                    .rotary_key = "cold_start_s",
-                    .linear_key = "cold_start_s",
-                    .doc = "t0: when nothing had grown yet, on the clock of the records; absent: 0",
-                    .lower = -1e10,
-                    .upper = 1e10,
-                    .scale = Scale::first_stamp,
-                    .starts = {1.0},
-                    .optional = true}},
+                   cold_start_parameter("t0: when nothing had grown yet, on the clock of the records; absent: 0")},
     .shows = "Only a scale on the table sees it: x2 - x moves slowly with the time, alike in both directions",
     .along = {"time", "temperature"},
     .confused_with = {"pitch_error", "backlash"},

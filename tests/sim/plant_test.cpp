@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "tests/sim/small_drive.hpp"
 
@@ -146,23 +147,24 @@ TEST(Plant, RefusesAnUnknownEffect) {
   EXPECT_THROW(Plant(with(quantised_drive(), "gremlins", {}), 1), std::invalid_argument);
 }
 
-/// Of a drive that has been driven forth and back, with a table behind a gap: what the scale reads at both ends.
+/// Of a drive that drives forth, then back: what the scale reads and where the motor is meanwhile. Left alone, a motor
+/// without friction of its own would float in the gap.
 struct Ends {
   double forth, back, motor_forth, motor_back;
 };
 
 Ends ends_of(const sim::DriveDescription& drive) {
   Plant plant(drive, 1);
-  const auto go = [&](double u_V) {
+  const auto go = [&](double u_V, double for_s) {
     plant.set_command(u_V);
-    plant.advance(0.5);
-    plant.set_command(0.0);
-    plant.advance(2.0);
+    plant.advance(for_s);
+    return std::pair(*plant.read_load_encoder(), plant.truth().x);
   };
-  go(2.0);
-  const double forth = *plant.read_load_encoder(), motor_forth = plant.truth().x;
-  go(-1.0);
-  return {forth, *plant.read_load_encoder(), motor_forth, plant.truth().x};
+  const auto [forth, motor_forth] = go(2.0, 0.5);
+  plant.set_command(0.0);
+  plant.advance(2.0);
+  const auto [back, motor_back] = go(-2.0, 2.0);
+  return {forth, back, motor_forth, motor_back};
 }
 
 TEST(LoadEncoder, IsThereWhereTheDriveHasOne) {
