@@ -36,6 +36,13 @@ TableSize amplitude_of(std::string name, const VectorXd& factors, const MatrixXd
   return size(std::move(name), "um", value, std::sqrt(std::max(0.0, along.dot(covariance * along))));
 }
 
+double turn_of(const sim::DataSheet& data) {
+  return data.kind == sim::DriveKind::rotary ? 2.0 * std::numbers::pi * data.lead : 0.0;
+}
+
+/// Discs, couplings, pole pairs and resolvers err a few times a turn; a grating may be any part of it by chance.
+constexpr int kFewParts = 8;
+
 /// A turn of the motor, a half, a third, …: within what the travel resolves. Empty where it is none.
 std::optional<int> part_of_a_turn(double period, const TableRows& rows, double turn) {
   constexpr int kMostParts = 512;
@@ -88,7 +95,34 @@ void fill_pitch(const TableTerm& term, const VectorXd& factors, const MatrixXd& 
                              in_words(effect.sizes[0]), spread, high - low);
 }
 
+/// `own`: covariance of the term's factors, the lag in um a mm/s^2 first, then the logarithm of the deceleration.
+void fill_compliance(const TableTerm& term, const MatrixXd& own, const sim::DriveDescription& model,
+                     TableEffect& effect) {
+  const double lag = 1e3 * term.drive.lag, lag_off = std::sqrt(own(0, 0)) / lag;  // relative
+  const double resonance = 1.0 / (2.0 * std::numbers::pi * std::sqrt(term.drive.lag));
+  const sim::Drive drive(model);
+  // The motor's motion tells the table's friction over its inertia; the model tells what the friction is. Bearings and
+  // seals of the motor take a tenth of a drive's friction, give or take as much (textbook).
+  constexpr double kMotorsFriction = 0.1;
+  const double friction = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) * (1.0 - kMotorsFriction);
+  if (friction > 0.0) {
+    const bool rotary = model.data.kind == sim::DriveKind::rotary;
+    const double value = lag * term.drive.deceleration / friction;
+    const double off = value * std::hypot(lag_off, std::sqrt(own(1, 1)), kMotorsFriction);
+    effect.sizes.push_back(size("compliance", rotary ? "um/Nm" : "um/N", value, off));
+    const double force = 1e-3 * model.data.lead;  // Nm a N
+    if (rotary) effect.sizes.push_back(size("compliance_by_force", "um/N", value * force, off * force));
+  }
+  effect.sizes.push_back(size("resonance", "Hz", resonance, 0.5 * resonance * lag_off));
+  effect.words = fmt::format("compliance of {}", in_words(effect.sizes[0]));
+}
+
 }  // namespace
+
+std::string place_of(const TableTerm& term, const TableRows& rows, const sim::DriveDescription& model) {
+  const std::optional<int> part = part_of_a_turn(term.shape[0], rows, turn_of(model.data));
+  return !part ? "scale" : *part <= kFewParts ? "motor" : "scale or motor";
+}
 
 bool stands_in(const sim::DriveDescription& model, std::string_view kind) {
   return kind != "encoder_cyclic_error" && model.find(kind) != nullptr;
@@ -116,13 +150,29 @@ MatrixXd factor_covariance(const EvidenceFit& fit, Index base, const std::vector
                            const TableRows& rows, double usual) {
   const Index known = fit.factors.size();
   const MatrixXd inverse = fit.information.solve(MatrixXd::Identity(fit.whitened.cols(), fit.whitened.cols()));
+  // What the model of a reversal lacks is alike over the whole stroke after it: strokes are what is drawn at random
+  // (cluster-robust; Liang and Zeger, Biometrika 73 (1986) 13-22). Never less than the noise alone says.
+  MatrixXd scores(0, fit.whitened.cols());
+  for (Index k = 0; k < rows.size(); ++k) {
+    const bool begins = k == 0 || rows.way(k) != rows.way(k - 1) ||
+                        std::ranges::any_of(rows.runs, [k](const RowRun& run) { return run.first == k; });
+    if (begins) {
+      scores.conservativeResize(scores.rows() + 1, Eigen::NoChange);
+      scores.bottomRows(1).setZero();
+    }
+    scores.bottomRows(1) += fit.weights(k) * fit.residual(k) * fit.whitened.row(k);
+  }
+  const auto strokes = static_cast<double>(scores.rows());
+  const MatrixXd spread = scores * inverse * std::sqrt(strokes / std::max(1.0, strokes - 1.0));
   VectorXd deviations = VectorXd::Ones(known);
   Index first = base;
   for (const TableTerm& term : terms) {
-    const MatrixXd own = term.columns(rows);
+    const MatrixXd own = term.slopes(rows);
     deviations.segment(first, own.cols()) = term.deviations(own, usual);
     first += own.cols();
   }
+  for (Index c = 0; c < known; ++c)
+    deviations(c) *= std::sqrt(std::max(1.0, spread.col(c).squaredNorm() / inverse(c, c)));
   return deviations.asDiagonal() * inverse.topLeftCorner(known, known) * deviations.asDiagonal();
 }
 
@@ -130,28 +180,21 @@ TableEffect table_effect(const TableTerm& term, const EvidenceFit& fit, const Ma
                          const TableRows& rows, const sim::DriveDescription& model) {
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
   const double to_unit = rotary ? 1e-3 : 1e-6;  // um to the model's unit
-  const Index count = term.columns(rows).cols();
+  const Index count = term.count(rows);
   const VectorXd factors = fit.factors.segment(first, count);
   const MatrixXd own = covariance.block(first, first, count, count);
   TableEffect effect;
   effect.entry.kind = term.kind;
   if (term.kind == "backlash") {
-    effect.sizes.push_back(size("gap", "um", factors(0), std::sqrt(own(0, 0))));
+    effect.sizes.push_back(size("gap", "um", 1e3 * term.drive.gap, std::sqrt(own(0, 0))));
     effect.words = fmt::format("backlash of {}", in_words(effect.sizes[0]));
   } else if (term.kind == "compliance") {
-    effect.sizes.push_back(size("compliance", rotary ? "um/Nm" : "um/N", factors(0), std::sqrt(own(0, 0))));
-    effect.words = fmt::format("compliance of {}", in_words(effect.sizes[0]));
-    if (!rotary) return effect;
-    const double force = 1e-3 * model.data.lead;  // Nm a N
-    effect.sizes.push_back(size("compliance_by_force", "um/N", factors(0) * force, std::sqrt(own(0, 0)) * force));
+    fill_compliance(term, own, model, effect);
   } else if (term.kind == "pitch_error") {
     fill_pitch(term, factors, own, rows, to_unit, effect);
   } else if (term.kind == "encoder_cyclic_error") {
-    const double turn = rotary ? 2.0 * std::numbers::pi * model.data.lead : 0.0;
-    const std::optional<int> part = part_of_a_turn(term.shape[0], rows, turn);
-    // Discs, couplings, pole pairs and resolvers err a few times a turn; a grating may be any part of it by chance.
-    constexpr int kFewParts = 8;
-    effect.place = !part ? "scale" : *part <= kFewParts ? "motor" : "scale or motor";
+    const std::optional<int> part = part_of_a_turn(term.shape[0], rows, turn_of(model.data));
+    effect.place = place_of(term, rows, model);
     effect.sizes.push_back(amplitude_of("amplitude", factors, own));
     effect.sizes.push_back({"period", "mm", term.shape[0], {term.shape[0], term.shape[0]}});
     effect.words =

@@ -11,7 +11,10 @@ bool stands_in(const sim::DriveDescription& model, std::string_view kind);
 /// Takes out of the rows what the model says of its scale, its encoder, its screw and its growth.
 void take_out_known(const sim::DriveDescription& model, TableRows& rows);
 
-/// Of the fit's factors, base columns first, in their own units.
+/// Whose a cyclic error is: "motor", "scale", "scale or motor".
+std::string place_of(const TableTerm& term, const TableRows& rows, const sim::DriveDescription& model);
+
+/// Of the factors of Search::fit_slopes(), base columns first, in their own units.
 Eigen::MatrixXd factor_covariance(const EvidenceFit& fit, Eigen::Index base, const std::vector<TableTerm>& terms,
                                   const TableRows& rows, double usual);
 

@@ -60,16 +60,14 @@ void note_travel(TableRows& rows, const TableRecord& one, double step) {
 
 }  // namespace
 
+void TableRecord::put_means(const std::vector<double>& samples, VectorXd& of_all_rows) const {
+  const Eigen::Map<const Eigen::MatrixXd> by_row(samples.data(), static_cast<Index>(stride), rows);
+  of_all_rows.segment(first_row, rows) = by_row.colwise().mean().transpose();
+}
+
 VectorXd TableRows::means(const std::function<std::vector<double>(const TableRecord&)>& of) const {
   VectorXd all(size());
-  for (const TableRecord& one : records) {
-    const std::vector<double> values = of(one);
-    for (Index k = 0; k < one.rows; ++k) {
-      const Eigen::Map<const VectorXd> samples(values.data() + static_cast<std::size_t>(k) * one.stride,
-                                               static_cast<Index>(one.stride));
-      all(one.first_row + k) = samples.mean();
-    }
-  }
+  for (const TableRecord& one : records) one.put_means(of(one), all);
   return all;
 }
 
@@ -83,9 +81,10 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::DataS
   Index count = 0;
   for (const Record* record : records) {
     if (!record->has_position() || !record->has_table_position() || record->size() < 4 * stride) continue;
-    TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride};
+    TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride, {}};
     const double mm = mm_of(*record);
     for (double& x : one.x) x *= mm;
+    one.pusher = one.x;
     if (record->u_V.empty() && record->i_A.empty())
       all_have_effort = false;
     else

@@ -17,7 +17,11 @@ struct TableRecord {
   std::vector<double> x;           ///< mm, of either kind of drive
   std::vector<double> effort;      ///< of the motor, Nm or N
   Eigen::Index first_row = 0, rows = 0;
-  std::size_t stride = 1;  ///< samples of which one row is the mean
+  std::size_t stride = 1;      ///< samples of which one row is the mean
+  std::vector<double> pusher;  ///< mm: where the motor is, without what is known of its encoder's error
+
+  /// Means over each row's samples of a value at every sample.
+  void put_means(const std::vector<double>& samples, Eigen::VectorXd& of_all_rows) const;
 };
 
 /// All records after one another; a row is the mean of a few samples.

@@ -7,6 +7,7 @@
 
 #include "host/infer/posterior.hpp"
 #include "host/parallel.hpp"
+#include "host/scale/drive_fit.hpp"
 #include "host/scale/table_effect.hpp"
 #include "sim/drive.hpp"
 
@@ -39,16 +40,20 @@ struct Fitted {
   double log_evidence = 0.0;  ///< forms averaged out, nats
 };
 
+std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind) {
+  return static_cast<std::size_t>(std::ranges::count(terms, kind, &TableTerm::kind));
+}
+
 class Search {
  public:
-  Search(const sim::DriveDescription& model, const TableRows& rows, double usual)
-      : rows_(rows),
+  Search(const sim::DriveDescription& model, TableRows& rows, double usual)
+      : model_(model),
+        rows_(rows),
         usual_(usual),
         base_(table_base(rows)),
         evidence_(rows.y, rows.runs, table_memory(rows, usual), rows.noise_um) {
     const sim::Drive drive(model);
     const double to_mm = model.data.kind == sim::DriveKind::linear ? 1e3 : drive.lead;
-    inertia_ = drive.inertia / to_mm;
     if (drive.inertia > 0.0)
       deceleration_ = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia * to_mm;
   }
@@ -69,14 +74,23 @@ class Search {
     return evidence_.fit(columns, deviations, {.correlation = near.correlation, .sizes = near.sizes});
   }
 
-  bool can_show(std::string_view kind) const { return !table_forms(kind, rows_, inertia_, deceleration_).empty(); }
+  /// For intervals: with what changes of the sizes do.
+  EvidenceFit fit_slopes(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms, true);
+    return evidence_.fit(columns, deviations,
+                         {.correlation = near.correlation, .sizes = near.sizes, .hold_sizes = true});
+  }
+
+  bool can_show(std::string_view kind) const {
+    return kind == "compliance" || kind == "backlash" || !table_forms(kind, rows_).empty();
+  }
 
   /// The best form of a kind beside the chosen terms; the log evidence is averaged over all forms.
   std::optional<Fitted> best_form(std::string_view kind, const std::vector<TableTerm>& chosen,
                                   const EvidenceFit& before) const {
-    std::vector<TableTerm> forms = table_forms(kind, rows_, inertia_, deceleration_);
+    if (kind == "compliance" || kind == "backlash") return best_driven(kind, chosen, before);
+    const std::vector<TableTerm> forms = table_forms(kind, rows_);
     if (forms.empty()) return {};
-    for (TableTerm& form : forms) set_spring(form, chosen, before);
     std::vector<double> gains(forms.size(), -HUGE_VAL);
     for_each_in_parallel(forms.size(), [&](std::size_t f) {
       MatrixXd columns = forms[f].quick_columns(rows_);
@@ -111,11 +125,9 @@ class Search {
   /// Moves what is not linear in the last term to where the evidence is largest.
   void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     TableTerm& term = terms.back();
-    if (term.kind == "backlash") {
-      set_spring(term, terms, fit);
+    if (term.is_driven()) {
+      settle_drive(terms, fit.correlation, {term.drive});
       fit = fit_beside(fit, terms);
-      settle_gap(terms, fit);
-      if (terms.back().shape.size() > kPlainGap) refine_beside_spring(terms, fit);
     } else if (term.kind == "encoder_cyclic_error" || (term.kind == "thermal_growth" && term.shape[0] > 0.0)) {
       const double travel = rows_.x.maxCoeff() - rows_.x.minCoeff();
       double step = term.kind == "thermal_growth" ? 0.5 : 0.1 * term.shape[0] / travel;  // relative
@@ -132,78 +144,41 @@ class Search {
     }
   }
 
-  /// Takes the gap that was fitted for the shape, until both agree.
-  void settle_gap(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
-    constexpr int kRounds = 4;
-    for (int round = 0; round < kRounds; ++round) {
-      const double gap = 1e-3 * fit.factors(first_column(terms, terms.size() - 1));
-      if (!(gap > 1e-4) || std::abs(gap - terms.back().shape[0]) < 1e-5) return;
-      std::vector<TableTerm> moved = terms;
-      moved.back().shape[0] = gap;
-      EvidenceFit again = fit_beside(fit, moved);
-      if (again.log_evidence < fit.log_evidence) return;
-      terms = std::move(moved);
-      fit = std::move(again);
-    }
+  /// Gives all driven terms the most probable drive beside the others.
+  void settle_drive(std::vector<TableTerm>& terms, double correlation, std::vector<TableDrive> starts) const {
+    std::vector<TableTerm> others = terms;
+    std::erase_if(others, [](const TableTerm& term) { return term.is_driven(); });
+    const TableDrive drive = fit_drive(std::move(starts), rows_, evidence_, known(others).first,
+                                       std::min(correlation, kMostAlike), deceleration_);
+    for (TableTerm& term : terms)
+      if (term.is_driven()) term.drive = drive;
   }
 
-  /// A gap takes what a spring leaves and the reverse: both are moved until the evidence is largest.
-  void refine_beside_spring(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
-    // Less gap beside more spring loses as much at a reversal, and the other way round: no step of one alone leads
-    // there.
-    constexpr double kSprings[] = {0.5, 0.7, 1.0, 1.4, 2.0, 2.8}, kGaps[] = {0.25, 0.35, 0.5, 0.7, 1.0, 1.4};
-    std::vector<std::vector<TableTerm>> starts;
-    for (const double spring : kSprings)
-      for (const double gap : kGaps) {
-        starts.push_back(terms);
-        std::vector<double>& shape = starts.back().back().shape;
-        shape[0] *= gap;
-        for (std::size_t k = kPlainGap + 1; k < shape.size(); ++k) shape[k] *= spring;
-      }
-    std::vector<EvidenceFit> fits(starts.size());
-    for_each_in_parallel(starts.size(), [&](std::size_t k) { fits[k] = fit_beside(fit, starts[k]); });
-    const auto best = std::ranges::max_element(fits, {}, &EvidenceFit::log_evidence);
-    if (best->log_evidence > fit.log_evidence) {
-      terms = starts[static_cast<std::size_t>(best - fits.begin())];
-      fit = *best;
-    }
-    constexpr double kLeastStep = 0.01;  // relative
-    for (double step = 1.0; step > kLeastStep; step *= 0.5)
-      for (const bool is_gap : {false, true})
-        for (const double way : {1.0 + step, 1.0 / (1.0 + step)}) {
-          std::vector<TableTerm> moved = terms;
-          std::vector<double>& shape = moved.back().shape;
-          const double spring = shape[kPlainGap + 1];
-          set_spring(moved.back(), terms, fit);
-          const double scale = spring / shape[kPlainGap + 1] * (is_gap ? 1.0 : way);
-          if (!std::isfinite(scale)) return;
-          for (std::size_t k = kPlainGap + 1; k < shape.size(); ++k) shape[k] *= scale;
-          if (is_gap) shape[0] *= way;
-          EvidenceFit again = fit_beside(fit, moved);
-          if (again.log_evidence <= fit.log_evidence) continue;
-          terms = std::move(moved);
-          fit = std::move(again);
-          break;
-        }
-    settle_gap(terms, fit);
+  /// From all starts: after a gap or a spring came or went.
+  void settle_drive_anew(std::vector<TableTerm>& terms, double correlation) const {
+    const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
+    if (gap || spring) settle_drive(terms, correlation, drive_starts(gap, spring, rows_, deceleration_));
   }
 
-  /// Gives a gap the spring that stands beside it, or none.
-  void set_spring(TableTerm& gap, const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
-    if (gap.kind != "backlash") return;
-    gap.shape.resize(kPlainGap);
+  /// Where the motor is, without the errors of its encoder that are among the terms.
+  void note_motor(TableRows& rows, const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    for (TableRecord& one : rows.records) one.pusher = one.x;
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      if (terms[k].kind != "compliance") continue;
-      const VectorXd factors = fit.factors.segment(first_column(terms, k), terms[k].columns(rows_).cols());
-      gap.shape.push_back(terms[k].shape[0]);
-      gap.shape.insert(gap.shape.end(), factors.begin(), factors.end());
+      if (terms[k].kind != "encoder_cyclic_error" || place_of(terms[k], rows_, model_) != "motor") continue;
+      const VectorXd factors = fit.factors.segment(first_column(terms, k), 2);
+      for (TableRecord& one : rows.records)
+        for (std::size_t sample = 0; sample < one.x.size(); ++sample) {
+          const double at = 2.0 * std::numbers::pi * one.x[sample] / terms[k].shape[0];
+          one.pusher[sample] += 1e-3 * (factors(0) * std::cos(at) + factors(1) * std::sin(at));
+        }
     }
   }
+  void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) { note_motor(rows_, terms, fit); }
 
   /// The column at which a term's own begin.
   Index first_column(const std::vector<TableTerm>& terms, std::size_t which) const {
     Index first = base_.cols();
-    for (std::size_t k = 0; k < which; ++k) first += terms[k].columns(rows_).cols();
+    for (std::size_t k = 0; k < which; ++k) first += terms[k].count(rows_);
     return first;
   }
 
@@ -221,13 +196,27 @@ class Search {
   }
 
  private:
-  std::pair<MatrixXd, VectorXd> known(const std::vector<TableTerm>& terms) const {
+  /// More correlated noise than this is what no term explains yet; it says nothing of how sharp a reversal is.
+  static constexpr double kMostAlike = 0.7;
+
+  /// A gap or a spring, beside the other where that is chosen.
+  std::optional<Fitted> best_driven(std::string_view kind, const std::vector<TableTerm>& chosen,
+                                    const EvidenceFit& before) const {
+    std::vector<TableTerm> all = chosen;
+    all.push_back({std::string(kind), {}, {}, deceleration_});
+    settle_drive_anew(all, before.correlation);
+    const EvidenceFit fit = fit_from(before, all);
+    if (wrong_way(all, fit) || rms_of_last(all, fit) < rows_.step_um / std::sqrt(12.0)) return {};
+    return Fitted{all.back(), fit.log_evidence};
+  }
+
+  std::pair<MatrixXd, VectorXd> known(const std::vector<TableTerm>& terms, bool slopes = false) const {
     MatrixXd columns = base_;
     VectorXd deviations(base_.cols());
     constexpr double kWide = 10.0;  // offsets and delays are known to nothing
     for (Index c = 0; c < base_.cols(); ++c) deviations(c) = kWide * usual_ / std::max(rms(base_.col(c)), 1e-12);
     for (const TableTerm& term : terms) {
-      const MatrixXd own = term.columns(rows_);
+      const MatrixXd own = slopes ? term.slopes(rows_) : term.columns(rows_);
       const VectorXd known_to = term.deviations(own, usual_);
       columns.conservativeResize(Eigen::NoChange, columns.cols() + own.cols());
       columns.rightCols(own.cols()) = own;
@@ -237,11 +226,12 @@ class Search {
     return {std::move(columns), std::move(deviations)};
   }
 
-  const TableRows& rows_;
+  const sim::DriveDescription& model_;
+  TableRows& rows_;
   double usual_;
   MatrixXd base_;
   Evidence evidence_;
-  double inertia_ = 0.0, deceleration_ = 0.0;
+  double deceleration_ = 0.0;
 };
 
 /// What terms with the training rows' factors leave on the rows that judge. What belongs to a record is fitted there.
@@ -263,13 +253,21 @@ VectorXd left_on(const TableRows& judge, const std::vector<TableTerm>& terms, co
   return without(left, own);
 }
 
-std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind) {
-  return static_cast<std::size_t>(std::ranges::count(terms, kind, &TableTerm::kind));
-}
-
 /// Terms whose own number of factors does not depend on the records come first, so that left_on() finds its factors.
-void records_last(std::vector<TableTerm>& terms) {
-  std::stable_partition(terms.begin(), terms.end(), [](const TableTerm& term) { return !term.is_of_the_record(); });
+void records_last(std::vector<TableTerm>& terms, std::vector<std::vector<std::string>>& groups,
+                  std::vector<double>& odds) {
+  for (std::size_t k = 0, left = terms.size(); left > 0; --left) {
+    if (!terms[k].is_of_the_record()) {
+      ++k;
+      continue;
+    }
+    std::rotate(terms.begin() + static_cast<std::ptrdiff_t>(k), terms.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                terms.end());
+    std::rotate(groups.begin() + static_cast<std::ptrdiff_t>(k), groups.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                groups.end());
+    std::rotate(odds.begin() + static_cast<std::ptrdiff_t>(k), odds.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                odds.end());
+  }
 }
 
 }  // namespace
@@ -300,7 +298,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   take_out_known(model, study.judge);
   study.noise_um = study.train.noise_um;
   const double usual = std::max(rms(without(study.train.y, table_base(study.train))), study.noise_um);
-  const Search search(model, study.train, usual);
+  Search search(model, study.train, usual);
   const Index base = table_base(study.train).cols();
 
   std::vector<TableTerm> chosen;
@@ -339,6 +337,9 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     }
     if (held < kClaimed) break;
     chosen.push_back(found[order.front()].term);
+    if (chosen.back().is_driven())
+      for (TableTerm& term : chosen)
+        if (term.is_driven()) term.drive = chosen.back().drive;
     groups.push_back(std::move(group));
     odds.push_back(held);
     fit = search.fit_from(fit, chosen);
@@ -349,50 +350,44 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
       std::rotate(odds.begin(), odds.begin() + 1, odds.end());
       fit = search.fit_from(fit, chosen);
       search.refine(chosen, fit);
+      search.note_motor(chosen, fit);
     }
   }
-  // Whether each is still needed beside the others.
+  records_last(chosen, groups, odds);
+  fit = search.fit_from(fit, chosen);
+  // Whether each is still needed beside the others; once more when one has gone.
+  std::vector<std::vector<TableTerm>> others_of(chosen.size());
+  std::vector<EvidenceFit> less_of(chosen.size());
   for (std::size_t k = 0; k < chosen.size();) {
-    std::vector<TableTerm> others = chosen;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    if (chosen[k].kind == "compliance")
-      for (TableTerm& term : others) search.set_spring(term, {}, fit);
-    const EvidenceFit less = search.fit(others);
+    others_of[k] = chosen;
+    others_of[k].erase(others_of[k].begin() + static_cast<std::ptrdiff_t>(k));
+    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.correlation);
+    less_of[k] = search.fit(others_of[k]);
     const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
-    const double needed = logistic(fit.log_evidence - less.log_evidence + prior);
+    const double needed = logistic(fit.log_evidence - less_of[k].log_evidence + prior);
     if (needed >= kClaimed && !search.wrong_way(chosen, fit)) {
       odds[k] = std::min(odds[k], needed);
       ++k;
       continue;
     }
     study.absent_odds.emplace_back(chosen[k].kind, needed);
-    chosen = std::move(others);
     groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
     odds.erase(odds.begin() + static_cast<std::ptrdiff_t>(k));
-    fit = less;
+    chosen = others_of[k];
+    fit = less_of[k];
+    k = 0;
   }
-  std::vector<TableTerm> ordered = chosen;
-  records_last(ordered);
-  fit = search.fit_from(fit, ordered);
   study.delay_s = -1e-3 * fit.factors(base - 1);
-  const MatrixXd covariance = factor_covariance(fit, base, ordered, study.train, usual);
-  study.left = left_on(study.judge, ordered, fit.factors, base);
+  search.note_motor(study.judge, chosen, fit);
+  const MatrixXd covariance = factor_covariance(search.fit_slopes(fit, chosen), base, chosen, study.train, usual);
+  study.left = left_on(study.judge, chosen, fit.factors, base);
   study.left_um = rms(study.left);
   study.before_um = rms(left_on(study.judge, {}, fit.factors, base));
-  for (std::size_t k = 0; k < ordered.size(); ++k) {
-    std::vector<TableTerm> others = ordered;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    const EvidenceFit less = search.fit_from(fit, others);
-    TableEffect effect = table_effect(ordered[k], fit, covariance, search.first_column(ordered, k), study.train, model);
-    const auto at = static_cast<std::size_t>(std::ranges::find_if(chosen,
-                                                                  [&](const TableTerm& term) {
-                                                                    return term.kind == ordered[k].kind &&
-                                                                           term.shape == ordered[k].shape;
-                                                                  }) -
-                                             chosen.begin());
-    effect.group = groups[at];
-    effect.probability = odds[at];
-    effect.before = rms(left_on(study.judge, others, less.factors, base));
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    TableEffect effect = table_effect(chosen[k], fit, covariance, search.first_column(chosen, k), study.train, model);
+    effect.group = groups[k];
+    effect.probability = odds[k];
+    effect.before = rms(left_on(study.judge, others_of[k], less_of[k].factors, base));
     effect.after = study.left_um;
     const double taken = effect.before * effect.before - effect.after * effect.after;
     effect.worth_naming = taken >= kWorthNaming * effect.before * effect.before &&

@@ -19,61 +19,6 @@ double size_of(const VectorXd& values) {
   return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
 }
 
-/// A value at every sample of a record, between those of its rows, each at its row's middle.
-std::vector<double> at_samples(const TableRecord& one, const VectorXd& of_rows) {
-  std::vector<double> values(one.x.size());
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(one.stride) - 0.5;
-    const double within = std::clamp(place, 0.0, static_cast<double>(one.rows - 1));
-    const Index left = std::min(static_cast<Index>(within), one.rows - 2);
-    const double share = within - static_cast<double>(left);
-    values[k] = (1.0 - share) * of_rows(one.first_row + left) + share * of_rows(one.first_row + left + 1);
-  }
-  return values;
-}
-
-/// The table in a gap, pushed at either side by what stands at `pusher`, mm, and slowed by its own friction between:
-/// its travel less the pusher's, over the gap. Starts in the middle.
-std::vector<double> in_the_gap(const std::vector<double>& pusher, double period_s, double gap, double deceleration) {
-  const double half = 0.5 * gap;
-  std::vector<double> share(pusher.size());
-  double table = pusher.front(), speed = 0.0;
-  for (std::size_t k = 0; k < share.size(); ++k) {
-    const double at = pusher[k], pusher_speed = k == 0 ? 0.0 : (at - pusher[k - 1]) / period_s;
-    if (std::isfinite(deceleration)) {
-      table += speed * period_s;
-      const double slower = std::max(std::abs(speed) - deceleration * period_s, 0.0);
-      speed = std::copysign(slower, speed);
-    }
-    if (table < at - half) {
-      table = at - half;
-      speed = std::max(speed, pusher_speed);
-    } else if (table > at + half) {
-      table = at + half;
-      speed = std::min(speed, pusher_speed);
-    }
-    share[k] = (table - at) / gap;
-  }
-  return share;
-}
-
-/// Gap and spring stand in series: the gap begins to close once the spring has unwound.
-VectorXd beside_a_spring(const std::vector<double>& shape, const TableRows& rows) {
-  VectorXd twist;
-  if (shape.size() > kPlainGap) {
-    const MatrixXd spring = TableTerm{"compliance", {shape[kPlainGap]}}.columns(rows);
-    twist = 1e-3 * spring * Eigen::Map<const VectorXd>(shape.data() + kPlainGap + 1, spring.cols());
-  }
-  return rows.means([&](const TableRecord& one) {
-    std::vector<double> pusher = one.x;
-    if (twist.size() > 0) {
-      const std::vector<double> twisted = at_samples(one, twist);
-      for (std::size_t k = 0; k < pusher.size(); ++k) pusher[k] += twisted[k];
-    }
-    return in_the_gap(pusher, one.record->sample_period_s, shape[0], shape[1]);
-  });
-}
-
 MatrixXd waves(const TableRows& rows, double period, double zero, int orders) {
   MatrixXd columns(rows.size(), 2 * orders);
   for (int order = 1; order <= orders; ++order)
@@ -114,24 +59,47 @@ MatrixXd hats_over(const VectorXd& at, double low, double high, int count, bool 
   return columns;
 }
 
+/// A gap beside a spring leaves the shape to the spring.
+bool has_shape(const TableTerm& term) { return term.kind == "compliance" || !(term.drive.lag > 0.0); }
+
+MatrixXd beside_shape(const TableTerm& term, const TableRows& rows, const VectorXd& own, const VectorXd& all) {
+  MatrixXd columns(rows.size(), term.count(rows));
+  columns.col(0) = own;
+  if (!has_shape(term)) return columns;
+  Index next = 1;
+  for (const DriveRange& range : shape_ranges(term.drive, term.deceleration))
+    columns.col(next++) = slope_of(term.drive, range.which, range.step, rows, all);
+  return columns;
+}
+
 }  // namespace
 
 MatrixXd TableTerm::columns(const TableRows& rows) const {
-  if (kind == "backlash") return beside_a_spring(shape, rows);
-  if (kind == "compliance") {
-    // Of the motor's effort its own inertia and friction do not reach the table. Without a measured force, the table's
-    // inertia and its friction, whose size nobody knows.
-    MatrixXd columns(rows.size(), 3);
-    columns.col(0) = rows.has_effort() ? VectorXd(-rows.effort) : VectorXd(-shape[0] * rows.a);
-    columns.col(1) = rows.has_effort() ? rows.way : VectorXd(-rows.way);
-    columns.col(2) = shape[0] * rows.a;
-    return rows.has_effort() && shape[0] > 0.0 ? columns : MatrixXd(columns.leftCols(2));
+  if (is_driven()) {
+    const DrivenRows driven = drive_table(drive, rows);
+    return beside_shape(*this, rows, kind == "backlash" ? driven.gap : driven.pull, driven.all);
   }
   if (kind == "encoder_cyclic_error") return waves(rows, shape[0], 0.0, 1);
   if (kind == "thermal_growth") return growth(rows, shape[0]);
   MatrixXd columns(rows.size(), 1 + 2 * kPitchOrders);
   columns << 1e-3 * (rows.x.array() - shape[0]).matrix(), waves(rows, kPitchPeriod * shape[1], shape[0], kPitchOrders);
   return columns;
+}
+
+MatrixXd TableTerm::slopes(const TableRows& rows) const {
+  if (!is_driven()) return columns(rows);
+  constexpr double kStep = 0.02;  // relative
+  const VectorXd all = drive_table(drive, rows).all;
+  const DriveNumber own = kind == "backlash" ? DriveNumber::gap : DriveNumber::lag;
+  const double size = 1e3 * (kind == "backlash" ? drive.gap : drive.lag);
+  return beside_shape(*this, rows, slope_of(drive, own, kStep, rows, all) / size, all);
+}
+
+Index TableTerm::count(const TableRows& rows) const {
+  if (is_driven()) return 1 + (has_shape(*this) ? static_cast<Index>(shape_ranges(drive, 0.0).size()) : 0);
+  if (kind == "encoder_cyclic_error") return 2;
+  if (kind == "thermal_growth") return shape[0] > 0.0 ? static_cast<Index>(rows.records.size()) : 1;
+  return 1 + 2 * kPitchOrders;
 }
 
 MatrixXd TableTerm::quick_columns(const TableRows& rows) const {
@@ -153,36 +121,28 @@ MatrixXd TableTerm::quick_columns(const TableRows& rows) const {
 VectorXd TableTerm::deviations(const MatrixXd& columns, double usual) const {
   VectorXd deviations(columns.cols());
   for (Index c = 0; c < columns.cols(); ++c) deviations(c) = usual / std::max(size_of(columns.col(c)), 1e-12);
-  // Bearings and seals of the motor take a tenth of a drive's friction, give or take as much (textbook).
-  constexpr double kMotorsFriction = 0.1;
-  const bool is_measured = columns.cols() > 2 || !(shape[0] > 0.0);  // the force: see columns()
-  if (kind == "compliance" && is_measured) deviations(1) *= kMotorsFriction;
+  if (is_driven() && columns.cols() > 1) {
+    Index next = 1;
+    for (const DriveRange& range : shape_ranges(drive, deceleration)) deviations(next++) = range.deviation;
+  }
   // Curves are smooth: a wave's amplitude falls with its order.
   if (kind == "pitch_error")
     for (Index c = 1; c < columns.cols(); ++c) deviations(c) /= static_cast<double>((c + 1) / 2);
   return deviations;
 }
 
-std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows, double inertia, double deceleration) {
+std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows) {
   std::vector<TableTerm> forms;
   const std::string name(kind);
   const double low = rows.x.minCoeff(), high = rows.x.maxCoeff(), travel = high - low;
-  if (kind == "backlash") {
-    constexpr double kLeast_mm = 0.001, kMost_mm = 0.6;
-    for (double gap = kLeast_mm; gap < std::min(kMost_mm, 0.5 * travel); gap *= std::numbers::sqrt2)
-      for (const double part : {0.0, 0.25, 0.5, 1.0})  // of the inertia in front of the gap
-        if (part == 0.0 || deceleration > 0.0)
-          forms.push_back({name, {gap, part == 0.0 ? HUGE_VAL : deceleration / part}});
-  } else if (kind == "compliance") {
-    if (rows.has_effort() || inertia > 0.0) forms.push_back({name, {inertia}});
-  } else if (kind == "pitch_error") {
-    if (travel > 0.0) forms.push_back({name, {0.5 * (low + high), travel}});
+  if (kind == "pitch_error") {
+    if (travel > 0.0) forms.push_back({name, {0.5 * (low + high), travel}, {}});
   } else if (kind == "thermal_growth") {
     double longest_s = 0.0;
     for (const TableRecord& one : rows.records)
       longest_s = std::max(longest_s, rows.t_s(one.first_row + one.rows - 1) - rows.t_s(one.first_row));
-    for (const double part : {0.1, 0.3, 1.0, 10.0}) forms.push_back({name, {part * longest_s}});
-    if (rows.temp_C.size() > 0 && rows.temp_C.maxCoeff() > rows.temp_C.minCoeff()) forms.push_back({name, {0.0}});
+    for (const double part : {0.1, 0.3, 1.0, 10.0}) forms.push_back({name, {part * longest_s}, {}});
+    if (rows.temp_C.size() > 0 && rows.temp_C.maxCoeff() > rows.temp_C.minCoeff()) forms.push_back({name, {0.0}, {}});
   } else if (travel > 0.0) {
     // From where the pitch curve ends down to what the slower half of the rows resolves.
     constexpr double kRowsAPeriod = 3.0, kMostPeriods = 4000.0;
@@ -193,9 +153,28 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows,
     const double shortest = std::max(kRowsAPeriod * quantile(std::move(steps), 0.25), travel / kMostPeriods);
     const double longest = kPitchPeriod * travel / (kPitchOrders + 1);
     for (double waves = travel / longest; waves < travel / shortest; waves += 0.5)
-      forms.push_back({name, {travel / waves}});
+      forms.push_back({name, {travel / waves}, {}});
   }
   return forms;
+}
+
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration) {
+  // Gaps of good ball screws up to worn ones, within the travel; springs from 10 to 400 Hz with the motor held.
+  constexpr double kLeastGap_mm = 0.001, kMostGap_mm = 0.6, kLeastLag = 1.6e-7, kMostLag = 2.6e-4, kNoSlide = 1e5;
+  const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
+  std::vector<double> gaps = {0.0}, lags = {0.0}, slower;
+  if (gap) gaps.clear();
+  for (double one = kLeastGap_mm; gap && one < std::min(kMostGap_mm, 0.5 * travel); one *= spring ? 3.0 : 1.41)
+    gaps.push_back(one);
+  if (spring) lags.clear();
+  for (double one = kLeastLag; spring && one <= kMostLag; one *= gap ? 2.2 : 1.6) lags.push_back(one);
+  for (const double part : {1.2, 3.0}) slower.push_back(part * (deceleration > 0.0 ? deceleration : 500.0));
+  if (!spring) slower.push_back(kNoSlide);
+  std::vector<TableDrive> starts;
+  for (const double free : gaps)
+    for (const double lag : lags)
+      for (const double one : slower) starts.push_back({.gap = free, .lag = lag, .deceleration = one});
+  return starts;
 }
 
 MatrixXd table_base(const TableRows& rows) {

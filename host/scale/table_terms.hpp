@@ -6,31 +6,33 @@
 #include <string_view>
 #include <vector>
 
-#include "host/scale/table_rows.hpp"
+#include "host/scale/driven_table.hpp"
 
 namespace host {
-
-/// Entries of a gap's shape where no spring stands beside it.
-inline constexpr std::size_t kPlainGap = 2;
 
 /// One effect in one form. Its columns are linear in what is fitted; what is not linear stands in the shape.
 struct TableTerm {
   std::string kind;  ///< of the catalogue
-  /// backlash: gap mm, deceleration of a table that slides free in the gap, mm/s^2 (infinite: it stays where it is),
-  /// then, beside a spring, the shape and the factors of its compliance, in the order of its columns;
-  /// compliance: inertia that the second column is of, Nm or N per mm/s^2; pitch_error: middle and length of the
-  /// travel, mm; encoder_cyclic_error: period, mm; thermal_growth: time constant, s (0: by temp_C).
+  /// pitch_error: middle and length of the travel, mm; encoder_cyclic_error: period, mm; thermal_growth: time constant,
+  /// s (0: by temp_C).
   std::vector<double> shape;
+  TableDrive drive;           ///< of backlash and compliance; beside each other both have the same
+  double deceleration = 0.0;  ///< of the whole drive: see shape_ranges()
 
-  /// One row each; the first column's factor is the effect's size where it has one: gap um, um a Nm or N, um a metre,
-  /// um.
+  bool is_driven() const { return kind == "backlash" || kind == "compliance"; }
+
+  /// One row each; the first column's factor is the effect's size where it has one: gap um, um a mm/s^2, um a metre,
+  /// um. Further columns of what is driven are what its shape may still be off.
   Eigen::MatrixXd columns(const TableRows& rows) const;
+  /// The same for intervals: what a change of the size does, at this size.
+  Eigen::MatrixXd slopes(const TableRows& rows) const;
+  Eigen::Index count(const TableRows& rows) const;
   /// The same for a first look at many forms: as if each row's motion were even.
   Eigen::MatrixXd quick_columns(const TableRows& rows) const;
   /// What the factors compare to before the measurement, for a difference of `usual` um RMS.
   Eigen::VectorXd deviations(const Eigen::MatrixXd& columns, double usual) const;
   /// A factor of this sign alone makes sense for the first column; 0: either.
-  int sign() const { return kind == "backlash" || kind == "compliance" ? 1 : 0; }
+  int sign() const { return is_driven() ? 1 : 0; }
   /// Whether every record has factors of its own.
   bool is_of_the_record() const { return kind == "thermal_growth" && shape[0] > 0.0; }
 };
@@ -43,9 +45,11 @@ inline constexpr double kPitchPeriod = 1.25;
 inline constexpr std::string_view kTableKinds[] = {"compliance", "backlash", "encoder_cyclic_error", "pitch_error",
                                                    "thermal_growth"};
 
-/// Forms of one kind that these rows may show. `inertia`: of the drive, Nm or N per mm/s^2, 0 where it is not known;
-/// `deceleration`: of a drive left to its own friction, mm/s^2, 0 where it is not known.
-std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows, double inertia, double deceleration);
+/// Forms of one kind that these rows may show; none of what is driven.
+std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows);
+
+/// Where the fit of a driven table may begin: with a gap, a spring or both. `deceleration`: see shape_ranges().
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration);
 
 /// Always there: each record's offset, and the time by which one sensor is read after the other.
 Eigen::MatrixXd table_base(const TableRows& rows);
