@@ -139,7 +139,7 @@ TableDrive settled(TableDrive drive, const std::vector<DriveRange>& numbers, con
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = iterations;
-  options.function_tolerance = 1e-4;
+  options.function_tolerance = 1e-5;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   ceres::Solver::Summary summary;
@@ -168,7 +168,7 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     starts = std::move(ordered);
   };
   price(0);
-  // Less gap beside more spring loses as much at a reversal, and the other way round: the best of each gap goes on.
+  // Between sizes that lose as much at a reversal lie worse ones: the best of each gap, or of each spring, goes on.
   std::vector<TableDrive> best_of_each;
   for (const TableDrive& start : starts)
     if (std::ranges::none_of(best_of_each, [&](const TableDrive& kept) {
@@ -176,7 +176,7 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
         }))
       best_of_each.push_back(start);
   starts = std::move(best_of_each);
-  constexpr std::pair<std::size_t, int> kRounds[] = {{6, 4}, {3, 8}, {1, 12}};  // starts that go on, iterations
+  constexpr std::pair<std::size_t, int> kRounds[] = {{6, 6}, {4, 12}, {2, 20}};  // starts that go on, iterations
   for (const auto& [kept, iterations] : kRounds) {
     starts.resize(std::min(kept, starts.size()));
     price(iterations);
