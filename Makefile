@@ -3,14 +3,13 @@
 BUILD   ?= build
 CHECKED ?= $(BUILD)/checked
 JOBS    ?= $(shell nproc)
-UNITY   ?= $(if $(wildcard $(BUILD)/CMakeCache.txt),,ON)
 NEED     = @cmake/packages/install.sh
 SOURCES  = $(shell find firmware hal host sim tests -name '*.[ch]pp' 2>/dev/null)
 
 # Configures the build tree $1 with the options $2. A new tree for programs compiles a folder's sources together, which is
 # faster; UNITY=OFF, for work on single files, each by itself; a tree stays as it is unless UNITY is given.
 configure = cmake -S cmake -B $1 -G Ninja --log-level=WARNING -DAXIS_PACKAGES=$(abspath $(BUILD))/packages \
-  $(if $(filter $(BUILD),$1),$(if $(UNITY),-DAXIS_UNITY=$(UNITY))) $2
+  $(if $(filter $(BUILD) $(CHECKED),$1),$(addprefix -DAXIS_UNITY=,$(or $(UNITY),$(if $(wildcard $1/CMakeCache.txt),,ON)))) $2
 
 # Builds the microcontroller's images, then checks and reports their size, stack and symbols.
 define firmware
@@ -65,6 +64,19 @@ deb-check: deb ## Install the packages in a fresh Debian 12, use them, remove th
 	$(NEED) package
 	cmake/package/in_fresh_debian.sh $(BUILD)/*axistool_*.deb
 
+.PHONY: wheel
+wheel: ## Make a Python wheel that holds all libraries it needs (build/wheel), for pip on any Linux of this age
+	$(NEED) build python wheel
+	$(call configure,$(BUILD))
+	rm -rf $(BUILD)/wheel
+	AXIS_BUILD=$(abspath $(BUILD)) /usr/bin/python3 -m pip wheel --no-build-isolation --no-deps --no-index \
+	  --wheel-dir $(BUILD)/wheel/plain ./host/python
+	cmake/package/wheel.py $(BUILD)/wheel/plain/*.whl $(BUILD)/wheel
+
+.PHONY: wheel-check
+wheel-check: wheel ## Install the wheel in a fresh Debian 12 without a compiler, and use it (as root; downloads some 80 MB)
+	cmake/package/wheel_check.sh $(BUILD)/wheel/*.whl
+
 .PHONY: demo
 demo: ## Identify a real record, control both axes in simulation, show the result (EMPS=DIR adds the public benchmark)
 	$(NEED) build
@@ -73,7 +85,7 @@ demo: ## Identify a real record, control both axes in simulation, show the resul
 	$(BUILD)/bin/axistool demo --output $(BUILD)/demo $(if $(EMPS),--emps $(EMPS))
 
 .PHONY: test
-test: ## Build and run all tests, again with sanitizers, and a short fuzz run of everything that reads files
+test: ## Build and run all tests, those of what reads files or a bus with sanitizers too, and a short fuzz run
 	$(NEED) build python test firmware
 	$(NEED) guest || echo "packages: without these the tests in an emulated PC will skip" >&2
 	$(call firmware)
@@ -83,12 +95,26 @@ test: ## Build and run all tests, again with sanitizers, and a short fuzz run of
 	ninja -C $(CHECKED) -j $(JOBS)
 	ctest --test-dir $(BUILD) --no-tests=error --output-on-failure --parallel $(JOBS)
 
+.PHONY: test-sanitized
+test-sanitized: ## Every unit test of the host tools with sanitizers, those that only compute too (half an hour)
+	$(NEED) build test
+	CC=clang-14 CXX=clang++-14 $(call configure,$(CHECKED),-DAXIS_SANITIZE=ON -DAXIS_SANITIZE_ALL=ON -DAXIS_FUZZ=ON -DCMAKE_BUILD_TYPE=Debug)
+	ninja -C $(CHECKED) -j $(JOBS)
+	ctest --test-dir $(CHECKED) --no-tests=error --output-on-failure --parallel $(JOBS) --tests-regex '^host/[a-z_]+/[A-Z]'
+
 .PHONY: test-usb
 test-usb: firmware ## Boards on Linux' own USB and GPIO stack, in an emulated PC (part of `make test`)
 	$(NEED) build test guest
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) --tests-regex '^guest/'
+
+.PHONY: test-linuxcnc
+test-linuxcnc: ## LinuxCNC drives machines with a hidden effect, before and after the exported component (installs LinuxCNC)
+	$(NEED) build test linuxcnc
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	ctest --test-dir $(BUILD) --no-tests=error --verbose --tests-regex '^linuxcnc$$'
 
 .PHONY: firmware
 firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images), with size and stack report

@@ -8,7 +8,7 @@
 
 namespace hal {
 
-/// `send` queues and returns at once; what finds the queue full is lost and counted. `poll` hands on what the line
+/// `send` queues and returns at once; bytes that do not fit are dropped and counted. `poll` hands on what the line
 /// takes: call it once a character or as often as it comes. One caller of all.
 template <SerialLine Line, std::size_t size>
 class SerialQueue {

@@ -1,14 +1,63 @@
 #include "host/dense_solutions.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Dense>
+#include <unsupported/Eigen/MatrixFunctions>
 
 namespace host {
 
-Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix) { return matrix.eigenvalues(); }
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-Eigen::VectorXd least_squares_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values) {
+Eigen::VectorXcd eigenvalues(const MatrixXd& matrix) { return matrix.eigenvalues(); }
+
+SymmetricSpectrum symmetric_spectrum(const MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> found(matrix);
+  return {found.eigenvalues(), found.eigenvectors()};
+}
+
+RightSingular right_singular(const MatrixXd& matrix) {
+  const Eigen::JacobiSVD<MatrixXd> found(matrix, Eigen::ComputeThinV);
+  return {found.singularValues(), found.matrixV()};
+}
+
+VectorXd least_squares_solution(const MatrixXd& columns, const VectorXd& values) {
   return columns.colPivHouseholderQr().solve(values);
 }
+
+MatrixXd least_squares_solution(const MatrixXd& columns, const MatrixXd& values) {
+  return columns.colPivHouseholderQr().solve(values);
+}
+
+std::function<VectorXd(const VectorXd&)> least_norm_solver(const MatrixXd& columns) {
+  return [parts = columns.completeOrthogonalDecomposition()](const VectorXd& values) -> VectorXd {
+    return parts.solve(values);
+  };
+}
+
+VectorXd least_norm_solution(const MatrixXd& columns, const VectorXd& values) {
+  return least_norm_solver(columns)(values);
+}
+
+MatrixXd pseudo_inverse(const MatrixXd& matrix) { return matrix.completeOrthogonalDecomposition().pseudoInverse(); }
+
+VectorXd symmetric_solution(const MatrixXd& matrix, const VectorXd& values) { return matrix.ldlt().solve(values); }
+
+MatrixXd symmetric_solution(const MatrixXd& matrix, const MatrixXd& values) { return matrix.ldlt().solve(values); }
+
+MatrixXd symmetric_inverse(const MatrixXd& matrix) {
+  return symmetric_solution(matrix, MatrixXd(MatrixXd::Identity(matrix.rows(), matrix.cols())));
+}
+
+Eigen::Matrix3d symmetric_solution_of_3(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& values) {
+  return matrix.ldlt().solve(values);
+}
+
+MatrixXd square_solution(const MatrixXd& matrix, const MatrixXd& values) { return matrix.partialPivLu().solve(values); }
+
+MatrixXd square_inverse(const MatrixXd& matrix) { return matrix.inverse(); }
+
+MatrixXd exponential(const MatrixXd& matrix) { return matrix.exp(); }
+
+MatrixXd gram(const MatrixXd& columns) { return columns.transpose() * columns; }
 
 }  // namespace host

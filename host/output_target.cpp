@@ -54,8 +54,8 @@ void require_rights(const fs::path& path, int rights, const std::string& name, c
 void require_writable_folder(const fs::path& folder, const std::string& name) {
   struct stat found {};
   if (::stat(folder.c_str(), &found) != 0)
-    fail(ExitCode::bad_input, "{}: folder {} is not there ({}); make it first, or name another", name, folder.string(),
-         std::strerror(errno));
+    fail(ExitCode::bad_input, "{}: folder {} does not exist ({}); make it first, or name another", name,
+         folder.string(), std::strerror(errno));
   if (!S_ISDIR(found.st_mode))
     fail(ExitCode::bad_input, "{}: {} is no folder; name another place", name, folder.string());
   require_rights(folder, W_OK | X_OK, name, "its folder");

@@ -38,8 +38,8 @@ const toml::node* TomlFields::find(std::string_view key) {
 double TomlFields::number_of(const toml::node& node, std::string_view key) const {
   if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
   const auto* real = node.as_floating_point();
-  if (real == nullptr) fail(key, "a number belongs here, without quotes");
-  if (!std::isfinite(real->get())) fail(key, "a finite number belongs here");
+  if (real == nullptr) fail(key, "expected a number, without quotes");
+  if (!std::isfinite(real->get())) fail(key, "expected a finite number");
   return real->get();
 }
 
@@ -72,7 +72,7 @@ double TomlFields::not_negative(std::string_view key) {
 std::optional<std::string> TomlFields::optional_text(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
-  if (!node->is_string()) fail(key, "a text in quotes belongs here");
+  if (!node->is_string()) fail(key, "expected a text in quotes");
   return node->as_string()->get();
 }
 
@@ -84,7 +84,7 @@ std::string TomlFields::text(std::string_view key) {
 
 const toml::array* TomlFields::list_of(std::string_view key) {
   const toml::node* node = find(key);
-  if (node != nullptr && !node->is_array()) fail(key, "a list in brackets belongs here");
+  if (node != nullptr && !node->is_array()) fail(key, "expected a list in brackets");
   return node == nullptr ? nullptr : node->as_array();
 }
 
@@ -99,7 +99,7 @@ std::vector<std::string> TomlFields::texts(std::string_view key) {
   std::vector<std::string> values;
   const toml::array* list = list_of(key);
   for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
-    if (!(*list)[k].is_string()) fail(key, "texts in quotes belong here");
+    if (!(*list)[k].is_string()) fail(key, "expected texts in quotes");
     values.push_back((*list)[k].as_string()->get());
   }
   return values;
@@ -108,7 +108,7 @@ std::vector<std::string> TomlFields::texts(std::string_view key) {
 bool TomlFields::toggle(std::string_view key, bool otherwise) {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;
-  if (!node->is_boolean()) fail(key, "true or false belongs here");
+  if (!node->is_boolean()) fail(key, "expected true or false");
   return node->as_boolean()->get();
 }
 
@@ -144,7 +144,7 @@ std::vector<const toml::table*> TomlFields::tables(std::string_view key) {
 const toml::table* TomlFields::sub_table(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return nullptr;
-  if (!node->is_table()) fail(key, fmt::format("a table belongs here, headed by [{}]", key));
+  if (!node->is_table()) fail(key, fmt::format("expected a table, headed by [{}]", key));
   return node->as_table();
 }
 

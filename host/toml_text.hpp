@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <string>
 #include <string_view>
 
 namespace host {
@@ -11,5 +12,8 @@ namespace host {
 /// has so many parts (`a.b.c…`) that taking the tree apart again would exhaust the stack: no format here has more than
 /// four.
 toml::table parse_toml(std::string_view text, std::string_view name);
+
+/// A TOML string of any text: the basic one, with what it must escape.
+std::string toml_string(std::string_view text);
 
 }  // namespace host

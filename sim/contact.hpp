@@ -27,11 +27,6 @@ inline FrictionPoint operator+(const FrictionPoint& a, const FrictionPoint& b) {
   return {a.effort + b.effort, a.slope + b.slope};
 }
 
-/// Friction never drives, whatever a fit tries.
-inline FrictionPoint never_driving(const FrictionPoint& friction) {
-  return friction.effort < 0.0 ? FrictionPoint{0.0, 0.0} : friction;
-}
-
 inline FrictionPoint further_friction(const Drive& drive, int side, double speed) {
   FrictionPoint all{0.0, 0.0};
   for (const auto& further : drive.sliding_friction) all = all + further(side, speed);

@@ -10,6 +10,11 @@
 
 namespace sim {
 
+/// Friction never drives, whatever a fit tries.
+inline FrictionPoint never_driving(const FrictionPoint& friction) {
+  return friction.effort < 0.0 ? FrictionPoint{0.0, 0.0} : friction;
+}
+
 /// Eq. (19) without its viscous term, at speed >= 0, with static friction `breakaway`. Omega = 0 means exp(-w/0) = 0.
 inline FrictionPoint stribeck_curve(const FrictionSide& side, double breakaway, double speed) {
   const double fading = side.omega1 > 0.0 ? decay(speed / side.omega1) : 0.0;

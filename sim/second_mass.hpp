@@ -12,10 +12,13 @@ namespace sim {
 /// Whether an effect puts a second mass behind the motor.
 inline bool is_second_mass(std::string_view kind) { return kind == "compliance" || kind == "backlash"; }
 
-/// Of an entry of compliance or backlash; all friction acts on the load's side unless the entry says otherwise.
+/// Of an entry of compliance or backlash; all friction acts on the load's side unless the entry says otherwise, and
+/// viscous friction as dry friction does.
 inline SecondMass second_mass_of(const EffectEntry& entry) {
-  return {entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"),
-          entry.has("gap") ? entry.at("gap") : 0.0, entry.has("load_friction") ? entry.at("load_friction") : 1.0};
+  const auto given = [&](const char* id, double otherwise) { return entry.has(id) ? entry.at(id) : otherwise; };
+  const double dry = given("load_friction", 1.0);
+  return {entry.at("load_fraction"), entry.at("resonance"), entry.at("damping_ratio"), given("gap", 0.0), dry,
+          given("load_viscous", dry)};
 }
 
 inline ParameterInfo load_friction_parameter() {
@@ -26,6 +29,17 @@ inline ParameterInfo load_friction_parameter() {
           .lower = 0.0,
           .upper = 1.0,
           .starts = {0.5},
+          .optional = true};
+}
+
+inline ParameterInfo load_viscous_parameter() {
+  return {.id = "load_viscous",
+          .rotary_key = "load_viscous",
+          .linear_key = "load_viscous",
+          .doc = "q: part of the viscous friction that acts on the load's side; load_friction unless given",
+          .lower = 0.0,
+          .upper = 1.0,
+          .starts = {0.2},
           .optional = true};
 }
 

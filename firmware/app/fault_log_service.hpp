@@ -12,8 +12,8 @@
 
 namespace firmware {
 
-/// Background only. A fault is taken over when its axis is off, so that what followed it is known; it waits here while
-/// another axis keeps the flash from being written.
+/// Background only. A fault is stored when its axis is off, so that later faults are known; it waits here while another
+/// axis blocks flash writes.
 template <typename Axes, hal::Flash Flash, typename ControlShutOut>
 class FaultLogService {
  public:

@@ -33,7 +33,7 @@ inline constexpr std::size_t kImageHeaderOffset = 512;  // the vector table of t
 
 enum class ImageState : std::uint8_t { whole, no_header, wrong_size, wrong_crc };
 
-/// The checksum that belongs into the header of `image`, which begins with the vector table and holds a header.
+/// The checksum for the header of `image`, which begins with the vector table and contains a header.
 inline std::uint32_t image_crc(std::span<const std::byte> image) {
   constexpr std::size_t kField = kImageHeaderOffset + offsetof(ImageHeader, crc);
   constexpr std::array<std::byte, sizeof(std::uint32_t)> kZero{};

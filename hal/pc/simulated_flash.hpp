@@ -22,6 +22,8 @@ enum class TornState : std::uint8_t {
   partial,    ///< some of the bits that should have changed
   prefix,     ///< erase: the first half done, then some bits; program: the low half of the word
 };
+inline constexpr TornState kTornStates[] = {TornState::untouched, TornState::complete, TornState::partial,
+                                            TornState::prefix};
 
 class SimulatedFlash {
  public:

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "host/axes/circle_figures.hpp"
+#include "host/dense_solutions.hpp"
 #include "host/infer/evidence.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/statistics.hpp"
@@ -56,7 +57,7 @@ Memory memory_of(const CircleRows& rows, const MatrixXd& places) {
         hats(row, (left + 1) % kHats) = factor * part;
       }
     }
-    hats -= places * (places.transpose() * places).ldlt().solve(places.transpose() * hats);
+    hats -= places * symmetric_solution(gram(places), MatrixXd(places.transpose() * hats));
     memory.groups.push_back({name, memory.columns.cols(), kHats});
     MatrixXd all(hats.rows(), memory.columns.cols() + kHats);
     all << memory.columns, hats;

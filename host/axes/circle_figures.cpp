@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/dense_solutions.hpp"
+
 namespace host {
 
 namespace {
@@ -34,7 +36,7 @@ Curve curve_of(const CirclePass& pass) {
 /// About the best centre of them all, in least squares.
 void centre(std::vector<Curve*> curves) {
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(3);
   const auto row = [](std::size_t i) { return Eigen::Vector3d(1.0, std::cos(angle_of(i)), std::sin(angle_of(i))); };
   for (const Curve* curve : curves)
     for (std::size_t i = 0; i < kBins; ++i)
@@ -42,7 +44,7 @@ void centre(std::vector<Curve*> curves) {
         gram += row(i) * row(i).transpose();
         pull += row(i) * (*curve)[i];
       }
-  Eigen::Vector3d off = gram.ldlt().solve(pull);
+  Eigen::VectorXd off = symmetric_solution(gram, pull);
   off(0) = 0.0;
   for (Curve* curve : curves)
     for (std::size_t i = 0; i < kBins; ++i) (*curve)[i] -= off.dot(row(i));
@@ -56,7 +58,7 @@ std::array<double, 2> range(const std::vector<const Curve*>& curves) {
   return found;
 }
 
-/// A ballbar is not mounted at the nominal centre: its eccentricity is none of the machine's.
+/// A ballbar is not mounted at the nominal centre: its eccentricity is not an error of the machine.
 bool is_about_nominal(const CirclePass& pass) { return pass.outer_um.empty() && pass.has_reference; }
 
 }  // namespace

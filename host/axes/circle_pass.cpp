@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/statistics.hpp"
 
@@ -49,7 +50,7 @@ struct PlaneRecord {
 void require_finite(const Record& record, const std::vector<double>& values, const std::string& what) {
   for (std::size_t k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]))
-      fail(record, "row {} of {} is no number; correct it, or cut the record before this row", k + 1, what);
+      fail(record, "row {} of {} is not a number; correct it, or cut the record before this row", k + 1, what);
 }
 
 void take_ballbar(const Record& record, PlaneRecord& plane) {
@@ -99,7 +100,7 @@ std::vector<PlaneRecord> planes_of(const std::vector<Record>& records) {
   std::vector<PlaneRecord> planes;
   std::vector<const Record*> x, y;
   for (const Record& record : records) {
-    if (!record.has_position()) fail(record, "has no position: a circle is seen in x_mm and y_mm");
+    if (!record.has_position()) fail(record, "has no position: a circle needs x_mm and y_mm");
     if (column(record, "y_mm") != nullptr)
       planes.push_back(one_record(record));
     else if (record.drive == "x" || record.drive == "y")
@@ -126,14 +127,14 @@ struct Circle {
 Circle fit_circle(const std::vector<double>& x, const std::vector<double>& y, const std::vector<std::size_t>& keep) {
   const double x0 = x[keep.front()], y0 = y[keep.front()];
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(3);
   for (const std::size_t k : keep) {
     const double dx = x[k] - x0, dy = y[k] - y0;
     const Eigen::Vector3d row(dx, dy, 1.0);
     gram += row * row.transpose();
     pull += row * (dx * dx + dy * dy);
   }
-  const Eigen::Vector3d found = gram.ldlt().solve(pull);
+  const Eigen::VectorXd found = symmetric_solution(gram, pull);
   const double cx = found(0) / 2.0, cy = found(1) / 2.0;
   return {x0 + cx, y0 + cy, std::sqrt(std::max(0.0, found(2) + cx * cx + cy * cy))};
 }
@@ -254,10 +255,9 @@ std::vector<CirclePass> circle_passes(const std::vector<Record>& records) {
       passes.push_back(pass_of(plane, circle, angle, stretch));
   }
   if (passes.empty())
-    throw Failure(
-        ExitCode::refused,
-        "no turn of a circle at a steady feed in these records: command full circles (G2, G3), better two turns "
-        "than one, which speeds up and slows down");
+    throw Failure(ExitCode::refused,
+                  "no turn of a circle at a steady feed in these records: command full circles (G2, G3), preferably "
+                  "two turns, because a single one accelerates and decelerates");
   if (passes.size() > kMostPasses)
     throw Failure(ExitCode::usage,
                   fmt::format("{} stretches of circles: give at most {} at once; both directions at two "

@@ -32,8 +32,8 @@ Table causes_table(const CircleDiagnosis& diagnosis) {
   Table table;
   table.title = "Causes";
   table.caption =
-      "µm: what each cause alone adds to the circular deviation of both directions (largest less smallest "
-      "radial deviation), with its 95 % interval. Causes below a twentieth of the whole stand last.";
+      "µm: contribution of each cause alone to the circular deviation of both directions (largest minus smallest "
+      "radial deviation), with its 95 % interval. Causes below a twentieth of the total are last.";
   table.headings = {"cause", "axis", "µm", "95 %", "probability", "size", "or instead"};
   for (const auto* const list : {&diagnosis.causes, &diagnosis.minor})
     for (const CircleFinding& found : *list)
@@ -47,9 +47,9 @@ Table figures_table(const CircleDiagnosis& diagnosis) {
   Table table;
   table.title = "Terms of ISO 230-4, µm";
   table.caption =
-      "G: circular deviation, largest less smallest radius about the best centre. F: radial deviation from "
-      "the nominal circle, largest and smallest. G(b): circular deviation of both directions together. H: "
-      "hysteresis, largest difference of both directions at one angle. Means over one degree.";
+      "G: circular deviation, largest minus smallest radius about the best-fit centre. F: radial deviation from the "
+      "nominal circle, largest and smallest. G(b): circular deviation of both directions together. H: hysteresis, "
+      "largest difference of both directions at one angle. Means over one degree.";
   table.headings = {"", "G", "F max", "F min"};
   for (std::size_t i = 0; i < diagnosis.passes.size(); ++i) {
     const CircleFigures& one = diagnosis.figures[i];
@@ -69,8 +69,7 @@ PolarTrace trace_of(const CirclePass& pass, const std::vector<double>& deviation
 PolarPlot as_seen(const CircleDiagnosis& diagnosis) {
   PolarPlot plot;
   plot.title = "The circle";
-  plot.caption =
-      diagnosis.passes.front().outer_um.empty() ? "As the motors' encoders stand." : "As the outer sensor saw it.";
+  plot.caption = diagnosis.passes.front().outer_um.empty() ? "From the motors' encoders." : "From the outer sensor.";
   plot.radius_mm = diagnosis.passes.front().radius_mm;
   for (const CirclePass& pass : diagnosis.passes)
     plot.traces.push_back(trace_of(pass, pass.outer_um.empty() ? pass.encoder_um : pass.outer_um));
@@ -91,7 +90,7 @@ Verdict verdict_of(const CircleDiagnosis& diagnosis) {
   if (diagnosis.causes.empty()) {
     verdict.tone = Tone::neutral;
     verdict.label = "no cause";
-    verdict.headline = "No cause stands out of the noise in what these sensors see.";
+    verdict.headline = "These sensors show no cause above the noise.";
   } else {
     const CircleFinding& first = diagnosis.causes.front();
     verdict.tone = Tone::attention;
@@ -121,7 +120,7 @@ Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtit
   report.section("What was seen");
   report.add(as_seen(diagnosis));
   report.add(figures_table(diagnosis));
-  report.section("Why", fmt::format("What no cause takes: {:.2f} µm RMS beyond noise.", diagnosis.rest_um));
+  report.section("Why", fmt::format("Unexplained: {:.2f} µm RMS beyond noise.", diagnosis.rest_um));
   report.add(causes_table(diagnosis));
   for (const CircleFinding& found : diagnosis.causes) report.add(share_of(diagnosis, found));
   report.section("What stays unknown");
@@ -132,7 +131,10 @@ Report circle_report(const CircleDiagnosis& diagnosis, const std::string& subtit
 std::string circle_text(const CircleDiagnosis& diagnosis, const Terminal& terminal) {
   std::string text = terminal_verdict(verdict_of(diagnosis), terminal);
   if (!diagnosis.causes.empty()) text += terminal_table(causes_table(diagnosis), terminal);
-  text += fmt::format("What no cause takes: {:.2f} µm RMS beyond noise.\n\n", diagnosis.rest_um);
+  text += fmt::format(
+      "Unexplained: {:.2f} µm RMS beyond noise.\n"
+      "\n",
+      diagnosis.rest_um);
   text += terminal_table(figures_table(diagnosis), terminal);
   return text + terminal_table(unseen_table(diagnosis), terminal);
 }

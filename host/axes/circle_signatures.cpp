@@ -313,40 +313,41 @@ std::vector<Unseen> unseen_causes(const CircleRows& rows) {
     list.push_back({"lateral_play", "it differs by direction: record the circle clockwise and counter-clockwise"});
   }
   list.push_back(
-      {"screw_pitch", "along a circle it looks as straightness and scales do: measure positions along one axis"});
+      {"screw_pitch", "on a circle it looks like straightness and scale errors: measure positions along one axis"});
   if (!(most(rows.passes(), lag_angle_of) > kLeastLagAngle))
-    list.push_back(
-        {"delay_between_axes",
-         "where the axes follow without lag, a late axis draws the same circle as servo mismatch; lines with "
-         "stops show which"});
+    list.push_back({"delay_between_axes",
+                    "if the axes follow without lag, a delayed axis gives the same circle as servo mismatch; lines "
+                    "with stops separate them"});
   return list;
 }
 
 CauseText cause_text(const std::string& kind) {
   static const std::pair<const char*, CauseText> texts[] = {
       {"servo_mismatch",
-       {"The axes' loops differ: an ellipse at 45 degrees that turns over with the direction and grows with the feed",
+       {"The axes' loops differ: an ellipse at 45 degrees whose tilt changes with the direction and which grows with "
+        "the feed",
         "axistool design x.toml y.toml -o DIR gives both axes one loop"}},
       {"delay_between_axes",
-       {"One axis acts later by a fixed time: as servo mismatch, at an unchanged radius",
+       {"One axis is delayed by a fixed time: like servo mismatch, but with unchanged radius",
         "compare the axes' bus cycles and filters; give both the same notch and low-pass"}},
       {"reversal_spike",
-       {"Friction holds the axis after it has turned over: a spike outwards at the quadrants",
+       {"Friction holds the axis after a reversal: an outward spike at the quadrants",
         "axistool friction, then design: friction feed-forward; where it is on, axistool diagnose"}},
-      {"squareness", {"The axes are not square: an ellipse at 45 degrees that does not turn over", "align the axes"}},
+      {"squareness",
+       {"The axes are not square: an ellipse at 45 degrees, the same in both directions", "align the axes"}},
       {"scale_mismatch",
        {"The axes' scales differ: an ellipse along the axes at any feed", "correct lead or scale of one axis"}},
       {"backlash",
-       {"The table stands still after a reversal by this gap: steps at the quadrants",
+       {"The table does not move over this gap after a reversal: steps at the quadrants",
         "backlash compensation (backlash.* parameters), or preload, nut and bearings"}},
       {"lateral_play",
-       {"Moving to and fro shifts the axis sideways: its guide has play", "adjust the guide's gibs or preload"}},
-      {"straightness", {"The axis runs along a bow: three lobes", "level and align the guideway"}},
+       {"The axis shifts sideways with the direction: its guide has play", "adjust the guide's gibs or preload"}},
+      {"straightness", {"The axis follows a bow: three lobes", "level and align the guideway"}},
       {"cyclic_error",
-       {"The position is wrong periodically: screw, coupling or encoder",
-        "align screw and encoder; where the period is the encoder's line, its adjustment"}},
+       {"The position error is periodic: screw, coupling or encoder",
+        "align screw and encoder; if the period is the encoder's grating, adjust the encoder"}},
       {"torque_ripple",
-       {"A torque periodic in position moves the motor: cogging, or ripple of the drive",
+       {"A torque periodic in position disturbs the motor: cogging, or ripple of the drive",
         "axistool diagnose names it; cogging compensation (cogging.* parameters)"}},
       {"vibration", {"An oscillation at a fixed frequency", "axistool bode shows the resonance; design --notch auto"}}};
   for (const auto& [name, text] : texts)

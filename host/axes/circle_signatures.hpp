@@ -1,7 +1,7 @@
 // What each cause of a bad circle leaves in the radial deviation: columns of one linear model.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <functional>
 #include <optional>
 #include <string>

@@ -29,10 +29,11 @@ void check(const std::vector<AxisTask>& tasks) {
                     fmt::format("two axes are called \"{}\": give each model the name of its axis (name = \"x\")",
                                 task.model.name));
     if (task.model.data.sample_period_s != period_s)
-      throw Failure(ExitCode::usage,
-                    fmt::format("axis {} is sampled every {:g} s, axis {} every {:g} s: one board has one "
-                                "sample_period_s",
-                                tasks.front().model.name, period_s, task.model.name, task.model.data.sample_period_s));
+      throw Failure(
+          ExitCode::usage,
+          fmt::format(
+              "axis {} is sampled every {:g} s, axis {} every {:g} s: all axes of a board share one sample_period_s",
+              tasks.front().model.name, period_s, task.model.name, task.model.data.sample_period_s));
   }
 }
 
@@ -102,11 +103,10 @@ AxisLoop loop_of(const sim::DriveDescription& model, const sim::DriveDescription
   AxisLoop loop{model, design_axis(controlled, options), filters, {}};
   const LoopMargins margins = quick_margins(drive, AxisController(designed_parameters(model, loop.design, filters)));
   if (!margins.is_stable)
-    throw Failure(
-        ExitCode::refused,
-        fmt::format("axis {} would oscillate with poles at {:.4g} Hz; nothing was written. --margin 0.5 finds "
-                    "the bandwidth that all axes allow",
-                    model.name, bandwidth_Hz));
+    throw Failure(ExitCode::refused,
+                  fmt::format("axis {} would oscillate with poles at {:.4g} Hz; nothing was written. --margin 0.5 "
+                              "finds the highest bandwidth with this modulus margin on all axes",
+                              model.name, bandwidth_Hz));
   if (margins.modulus) loop.modulus = margins.modulus->value;
   return loop;
 }
@@ -140,7 +140,7 @@ Found best_loop(const std::vector<LoopTask>& drives, const std::vector<AxisTask>
   }
   if (best.loop.bandwidth_Hz == 0.0)
     throw Failure(ExitCode::refused,
-                  fmt::format("no bandwidth keeps this on {}: the largest modulus margin is {:.3g}",
+                  fmt::format("no bandwidth reaches this on {}: the largest modulus margin is {:.3g}",
                               drives.size() > 1 ? "all axes" : drives.front().model.name, best.loop.best_modulus));
   return best;
 }

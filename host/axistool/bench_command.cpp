@@ -1,4 +1,4 @@
-// axistool bench: how fast and how reliable the way to a board is.
+// axistool bench: speed and reliability of the connection to a board.
 #include <fmt/format.h>
 
 #include <memory>
@@ -57,15 +57,16 @@ void run(const BenchArguments& arguments) {
 
 void add_bench(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command =
-      app.add_subcommand("bench", "Time connecting, reading, setting and capturing; count what is lost");
+  CLI::App* command = app.add_subcommand("bench", "Time connecting, reading, setting and capturing; count lost rows");
   command->add_option("--for", arguments->seconds, "seconds of capture at loop rate, one report a control period")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 86400.0));
   add_device_options(*command, *arguments);
   command->footer(
-      "Example:\n  axistool bench --for 600\nChanges nothing. Drives must be disabled. Exit code 1: rows were lost.\n"
-      "Through hidraw Linux 6.1 waits 50 ms whenever it opens a HID device; AXISTOOL_HIDAPI=libusb avoids that.");
+      "Example:\n"
+      "  axistool bench --for 600\n"
+      "Changes nothing. Drives must be disabled. Exit code 1: rows were lost.\n"
+      "Linux 6.1 waits 50 ms each time it opens a HID device through hidraw; AXISTOOL_HIDAPI=libusb avoids that.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -94,7 +94,7 @@ std::vector<host::Record> measure(const BodeArguments& arguments, Controlled& fo
       for (const host::Excitation& run : runs) fmt::print("{}\n", run.summary);
   }
   if (arguments.dry_run) return {};
-  require_consent(arguments, fmt::format("Measure axis {}? It moves to and fro within this box: {}.", name,
+  require_consent(arguments, fmt::format("Measure axis {}? It moves back and forth within this box: {}.", name,
                                          box_text(plan.box, kind)));
   catch_interrupts();
   count_down(arguments.countdown_s);
@@ -142,9 +142,7 @@ void run(const BodeArguments& arguments) {
   std::vector<std::string> said;
   if (!arguments.model_output.empty()) {
     if (!found.model || !axis.fit)
-      throw host::Failure(host::ExitCode::usage,
-                          "--model-output writes what --model has and the response shows: give --model, and a response "
-                          "of more frequencies");
+      throw host::Failure(host::ExitCode::usage, "--model-output needs --model and a response with more frequencies");
     const host::ModelStarts starts = host::with_response(*found.model, *axis.fit, "axistool bode");
     host::write_model(starts.model, arguments.model_output);
     said = starts.said;
@@ -161,29 +159,32 @@ void add_bode(CLI::App& app) {
   auto arguments = std::make_shared<BodeArguments>();
   CLI::App* command = app.add_subcommand("bode", "Frequency response of an axis or of records: margins, resonances");
   add_input(*command, "AXIS|RECORD", arguments->what,
-            "x, y, … of a board, which is measured now; or records of one axis")
+            "axis of a board to measure now (x, y, …), or records of one axis")
       ->required();
-  add_input(*command, "--model", arguments->model, "model of the drive: for records, whose `design` is the controller");
+  add_input(*command, "--model", arguments->model,
+            "model of the drive; with records, the controller that `design` makes from it");
   add_input(*command, "--params", arguments->parameters,
-            "parameters of the axis: for records, the controller; on a board, set first (not saved)");
+            "parameters of the axis; with records, the controller; on a board, set before measuring (not saved)");
   command->add_option("--box", arguments->box,
-                      "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s of all runs");
+                      "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s for all runs");
   command->add_option("--from", arguments->plan.from_Hz, "lowest frequency, Hz")->capture_default_str();
   command->add_option("--to", arguments->plan.to_Hz,
-                      "highest, Hz (default: a quarter of the control rate, 250 at most)");
-  command->add_option("--realisations", arguments->plan.realisations, "runs of each band at least, with other phases")
+                      "highest frequency, Hz (default: a quarter of the control rate, at most 250)");
+  command
+      ->add_option("--realisations", arguments->plan.realisations,
+                   "least number of runs in each band, each with different phases")
       ->capture_default_str()
       ->check(CLI::Range(2, 100));
   command->add_option("--seed", arguments->plan.seed, "of the phases")->capture_default_str();
-  command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
+  command->add_flag("--linear", arguments->linear, "the drive is linear: use m and m/s");
   command->add_option("--countdown", arguments->countdown_s, "seconds before anything moves")
       ->capture_default_str()
       ->check(CLI::Range(0, 60));
   add_output(*command, "-o,--records", arguments->folder, "folder for the records of the runs",
              FileRole::output_folder);
-  add_output(
-      *command, "--model-output", arguments->model_output,
-      "with --model: the model with compliance, and delay or lag, as starts for a fit, where the response shows them");
+  add_output(*command, "--model-output", arguments->model_output,
+             "with --model: write the model with the compliance, delay or lag that the response shows, as starting "
+             "values for a fit");
   add_output(*command, "--report", arguments->report, "write an HTML page with plots to this file");
   add_accept_option(*command, arguments->accepted);
   add_device_options(*command, *arguments);
@@ -192,11 +193,11 @@ void add_bode(CLI::App& app) {
       "Examples:\n"
       "  axistool bode x --box travel=60,speed=100,volts=4,time=120 --report bode.html\n"
       "  axistool bode run-*.csv --model x.toml --json -        # records, with the controller that design makes\n"
-      "The axis rides to and fro on a slow jog, so that friction keeps its sign, and a sum of sines goes to the\n"
-      "controller's output; several runs with other phases tell noise from what is not linear. Records of `excite …\n"
-      "multisine` are analysed the same way, any others by Welch's method. With a controller: open loop, sensitivity,\n"
-      "gain, phase and modulus margin with 95 % intervals. The wider the travel, the faster the jog, and the less\n"
-      "friction disturbs.");
+      "The axis jogs slowly back and forth, so that friction keeps its sign, and a sum of sines is added to the\n"
+      "controller's output. Runs with different phases separate noise from nonlinearity. Records of `excite …\n"
+      "multisine` are analysed the same way, all others by Welch's method. With a controller: open loop, sensitivity,\n"
+      "gain, phase and modulus margin with 95 % intervals. A wider travel allows a\n"
+      "faster jog, which reduces the influence of friction.");
   command->callback([arguments] { run(*arguments); });
 }
 

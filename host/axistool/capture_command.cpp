@@ -107,8 +107,8 @@ void run(const CaptureArguments& arguments) {
   host::require_capturable(values, settings);
   if (!values.axis(settings.axis).get<"drive.fitted">() && talks(arguments))
     fmt::print(stderr,
-               "axistool: axis {} is not fitted: counts and volts have the board's initial scales, and nothing moves; "
-               "set-params what `design` wrote first\n",
+               "axistool: axis {} is not fitted: counts and volts use the board's initial scales, and nothing moves; "
+               "first set-params the file that `design` wrote\n",
                arguments.axis);
   const double rate_Hz = static_cast<double>(values.get<"control.rate">()) / settings.every;
   if (arguments.dry_run) {
@@ -157,7 +157,7 @@ void add_capture(CLI::App& app) {
   command->add_option("AXIS,--axis", arguments->axis, "x, y, …")->capture_default_str();
   command
       ->add_option("--for", arguments->duration_s,
-                   "seconds, from the trigger if there is one; default: 1, or the jogs'")
+                   "seconds, from the trigger if there is one; default: 1, or the duration of the jogs")
       ->check(CLI::Range(0.0, 86400.0));
   command
       ->add_option("--channels", arguments->channels,
@@ -168,16 +168,17 @@ void add_capture(CLI::App& app) {
       ->check(CLI::Range(1u, 65535u));
   command->add_option(
       "--trigger", arguments->trigger,
-      "begin when a channel crosses a level: 'w_rad_s>5', 'x_mm<0'; with an axis the board looks itself, "
-      "at every sample, and keeps them in its memory: 'x.position_error > 20um', 'x.fault', 'any.fault', "
-      "'x.motion', 'x.now'");
-  command->add_option("--pre", arguments->before, "time to keep from before the trigger: 0.1, 50ms");
-  command->add_flag("--wide", arguments->wide, "in the board's memory: all digits of speeds, errors and voltages");
-  command->add_flag("--last", arguments->last, "what the board's memory holds, also from before its last reset");
+      "start when a channel crosses a level: 'w_rad_s>5', 'x_mm<0'; with an axis name the board checks every sample "
+      "itself and records into its memory: 'x.position_error > 20um', 'x.fault', 'any.fault', 'x.motion', 'x.now'");
+  command->add_option("--pre", arguments->before, "time to keep before the trigger: 0.1, 50ms");
+  command->add_flag("--wide", arguments->wide,
+                    "in the board's memory: keep full precision of speeds, errors and voltages");
+  command->add_flag("--last", arguments->last, "read what the board's memory holds, even from before its last reset");
   command->add_option("--wait", arguments->wait_s, "seconds to wait for the trigger")->capture_default_str();
   command
       ->add_option("--jog", arguments->jogs,
-                   "SPEED:SECONDS, one after the other, meanwhile; an axis that is not enabled is so for that time")
+                   "SPEED:SECONDS, jogs to run one after the other during the capture; the axis is enabled for that "
+                   "time if it is not yet")
       ->delimiter(',');
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--drive", arguments->drive, "name of the drive in the record; default: the axis");
@@ -190,7 +191,7 @@ void add_capture(CLI::App& app) {
       "  axistool capture -o bump.csv --trigger 'd_hat_V>0.5' --pre 0.1 --for 0.4 --channels u_V,x_mm,d_hat_V\n"
       "  axistool capture -o error.csv --trigger 'x.position_error > 20um' --pre 50ms\n"
       "Channels beyond the default: x_err_mm, w_hat_rad_s, d_hat_V, u_friction_V, u_control_V, flags.\n"
-      "Rows that were lost are counted, and end with exit code 5; the file keeps the gap.");
+      "Lost rows are counted and give exit code 5; the file keeps the gap.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -31,7 +31,7 @@ void run(const CircleArguments& arguments) {
     const sim::DriveDescription model = host::read_model(path);
     if (model.name != "x" && model.name != "y")
       throw host::Failure(host::ExitCode::usage,
-                          fmt::format("{}: a model of axis x or y belongs here, not of \"{}\"", path, model.name));
+                          fmt::format("{}: expected a model of axis x or y, not of \"{}\"", path, model.name));
     host::tell_turns(diagnosis, model);
   }
   if (!arguments.report.empty()) host::circle_report(diagnosis, names).write(arguments.report);
@@ -43,28 +43,24 @@ void run(const CircleArguments& arguments) {
 
 void add_circle(CLI::App& app) {
   auto arguments = std::make_shared<CircleArguments>();
-  CLI::App* command = app.add_subcommand("circle", "why a circle is not round: causes, each in um and with its odds");
+  CLI::App* command = app.add_subcommand("circle", "why a circle is not round: each cause in um, with its odds");
   add_input(*command, "RECORD", arguments->records,
-            "records of circles: one with x_mm and y_mm, or one of each axis (# drive: x, # drive: y) in pairs")
+            "records of circles: one with x_mm and y_mm, or pairs with one of each axis (# drive: x, # drive: y)")
       ->required();
   add_input(*command, "--model", arguments->models,
-            "models of the axes, X.toml Y.toml: periods are told in turns, too");
+            "models of the axes, X.toml Y.toml: periods are also given in turns");
   add_output(*command, "--report", arguments->report, "HTML page: the circle magnified, each cause's share");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
       "  axistool circle circle-x.csv circle-y.csv\n"
       "  axistool circle both-ways-slow.csv both-ways-fast.csv --report circle.html --json -\n"
-      "Records: what `run --capture` writes (x_mm, x_ref_mm, y_mm, y_ref_mm in one), or what `hil circle -o` writes "
-      "(a\n"
-      "record of each axis, paired in their order). Every turn at a steady feed counts, in either direction, "
-      "also\n"
-      "several in one record: give both directions at two feeds. Sensors at the table: columns x2_mm and y2_mm "
-      "(scales,\n"
-      "grid encoder), or a ballbar's radius_mm (its length, or what it deviates by; radius_um likewise). Without one,\n"
-      "squareness, scales, backlash, play and straightness are named as what cannot be seen. Exit code 8: no whole "
-      "turn\n"
-      "at a steady feed.");
+      "Records: the file of `run --capture` (x_mm, x_ref_mm, y_mm, y_ref_mm in one), or those of `hil circle -o` (one\n"
+      "for each axis, paired in order). Every turn at a steady feed counts, in either direction; a record may hold\n"
+      "several. Give both directions at two feeds. Sensors at the table: columns x2_mm and y2_mm (scales, grid "
+      "encoder),\n"
+      "or a ballbar's radius_mm (its length or its deviation; radius_um likewise). Without one, squareness, scales,\n"
+      "backlash, play and straightness are listed as not observable. Exit code 8: no whole turn at a steady feed.");
   command->callback([arguments] { run(*arguments); });
 }
 

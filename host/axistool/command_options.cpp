@@ -24,7 +24,7 @@ void require_finite(const CLI::Option& option) {
   for (const std::string& text : option.results())
     if (!std::isfinite(std::strtod(text.c_str(), nullptr)))
       throw host::Failure(host::ExitCode::usage,
-                          fmt::format("{}: {}: a finite number belongs here", option.get_name(), text));
+                          fmt::format("{}: {}: expected a finite number", option.get_name(), text));
 }
 
 /// "jog.csv", or "x=model.toml" where an option assigns files.
@@ -57,8 +57,9 @@ void check_outputs(const CLI::App& command) {
       const auto [other, is_new] =
           taken.emplace(std::filesystem::weakly_canonical(host::output_target(name)).string(), option->get_name());
       if (!is_new)
-        throw host::Failure(host::ExitCode::usage, fmt::format("{}: {} and {} would both write this file; name two",
-                                                               name, other->second, option->get_name()));
+        throw host::Failure(host::ExitCode::usage,
+                            fmt::format("{}: {} and {} would both write this file; give two names", name, other->second,
+                                        option->get_name()));
     }
   }
 }

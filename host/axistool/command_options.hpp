@@ -1,4 +1,4 @@
-// Options that name files, and what holds for the options of all commands: checked after parsing, before anything runs.
+// Options that name files, and the checks of all commands' options after parsing, before anything runs.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// axistool commission: from an unknown axis to one that follows better, in one command.
+// axistool commission: commissions an unknown axis in one command.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ host::BoardClient board_of(const CommissionArguments& arguments, const sim::Driv
       std::make_unique<host::SimulatedLink>(host::SimulatedDeviceOptions{drives, "", arguments.seed}));
 }
 
-/// What finds home: as the user says, as the simulated board is wired, else as the board's parameters say.
+/// Homing mode: from the command line, else from the simulated board's wiring, else from the board's parameters.
 std::optional<host::CommissionHoming> homing_of(const CommissionArguments& arguments,
                                                 const host::CommissionOptions& options) {
   using firmware::HomingMode;
@@ -87,11 +87,12 @@ sim::DriveDescription sheet_of(const CommissionArguments& arguments, const std::
     return sheet;
   }
   if (std::filesystem::exists(kept, fault)) return host::read_drive(kept);
-  throw host::Failure(host::ExitCode::usage,
-                      "what is a count, a volt and a turn of this drive? Give its data sheet with --drive DRIVE.toml");
+  throw host::Failure(
+      host::ExitCode::usage,
+      "the scales of count, volt and turn are unknown: give this drive's data sheet with --drive DRIVE.toml");
 }
 
-/// What a simulated machine may do where nobody has said: it hurts nobody.
+/// Default box of a simulated machine.
 std::string usual_box(sim::DriveKind kind) {
   return kind == sim::DriveKind::rotary ? "travel=100,speed=200,volts=4,time=360"
                                         : "travel=0.2,speed=0.4,volts=4,time=360";
@@ -100,11 +101,11 @@ std::string usual_box(sim::DriveKind kind) {
 void begin_or_go_on(const CommissionArguments& arguments, const host::CommissionFolder& folder) {
   if (!arguments.from.empty() || folder.first_undone() == std::size_t{0}) return;
   const auto next = folder.first_undone();
-  throw host::Failure(host::ExitCode::usage,
-                      fmt::format("{} holds a commissioning{}: --from {} goes on there, --from look begins it anew, "
-                                  "another -o keeps both",
-                                  arguments.folder, next ? "" : " that is complete",
-                                  next ? host::kCommissionSteps[*next].name : "compensate"));
+  throw host::Failure(
+      host::ExitCode::usage,
+      fmt::format("{} holds a commissioning{}: --from {} continues it, --from look starts over, another -o keeps both",
+                  arguments.folder, next ? "" : " that is complete",
+                  next ? host::kCommissionSteps[*next].name : "compensate"));
 }
 
 void run(const CommissionArguments& arguments) {
@@ -161,40 +162,41 @@ std::string footer() {
       "  axistool commission x --drive x.toml --box travel=80,speed=200,volts=3,time=360 -o x\n"
       "  axistool commission x -o x --from diagnose\n"
       "  axistool commission x --plant 'python3 05-own-plant.py' --drive 05-own-plant.toml -o own --yes\n"
-      "Every step asks before the axis moves. Its results are files in the folder, from which --from goes on. Steps:\n";
+      "Every step asks before the axis moves. Its results are files in the folder; --from continues from them. "
+      "Steps:\n";
   for (const host::CommissionStepText& step : host::kCommissionSteps)
     text += fmt::format("  {:<11} {}\n", step.name, step.does);
-  return text + "Machines that come with it, for --sim: " + host::shipped_machines_text();
+  return text + "Shipped machines for --sim: " + host::shipped_machines_text();
 }
 
 }  // namespace
 
 void add_commission(CLI::App& app) {
   auto arguments = std::make_shared<CommissionArguments>();
-  CLI::App* command =
-      app.add_subcommand("commission", "From an unknown axis to one that follows better: record, model, cause, remedy");
+  CLI::App* command = app.add_subcommand(
+      "commission", "Commission an unknown axis: record, identify, find the missing effect, compensate");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
   add_output(*command, "-o,--output", arguments->folder, "folder for every result", FileRole::output_folder)
       ->required();
   add_input(*command, "--sim", arguments->model,
-            "simulate this machine instead of using a board: a model file, or one that comes with axistool");
-  command->add_option("--plant", arguments->plant, "program that is the machine, in lockstep (axis-plant/1)");
+            "simulate this machine instead of using a board: a model file or a shipped machine");
+  command->add_option("--plant", arguments->plant, "program that simulates the machine, in lockstep (axis-plant/1)");
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive (default: that of --sim)");
-  command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s in all");
+  command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, total s");
   command
       ->add_option("--home", arguments->home,
-                   "what finds home within the box: none, switch, index, both; -switch, -both where the switch lies to "
-                   "the negative side (default: homing.mode of the board)")
+                   "how to home within the box: none, switch, index, both; -switch, -both if the switch is on the "
+                   "negative side (default: homing.mode of the board)")
       ->check(CLI::IsMember({"none", "switch", "index", "both", "-switch", "-index", "-both"}));
-  command->add_option("--from", arguments->from, "go on at this step");
+  command->add_option("--from", arguments->from, "continue at this step");
   command->add_option("--to", arguments->to, "end after this step");
-  command->add_option("--bandwidth", arguments->bandwidth_Hz, "of the first closed loop, Hz")
+  command->add_option("--bandwidth", arguments->bandwidth_Hz, "bandwidth of the first closed loop, Hz")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
-  command->add_option("--margin", arguments->modulus, "modulus margin up to which the bandwidth is raised then")
+  command->add_option("--margin", arguments->modulus, "modulus margin to keep when the bandwidth is raised")
       ->capture_default_str()
       ->check(CLI::Range(0.2, 0.9));
-  command->add_option("--seed", arguments->seed, "of a simulated machine's noise")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of the simulated machine's noise")->capture_default_str();
   command->add_flag("--save", arguments->save, "save the better parameters in the board's flash");
   command
       ->add_option("--device", arguments->device, "board: usb:SERIAL, sim, socket:PATH; default: the only one on USB")

@@ -52,26 +52,24 @@ std::string predictions_path(const CompareArguments& arguments, std::size_t inde
 /// Records without any effort: what position and reference say.
 void run_tracking(const CompareArguments& arguments, const std::vector<host::Record>& records) {
   if (!arguments.predictions.empty() || !arguments.report.empty())
-    throw host::Failure(
-        host::ExitCode::bad_input,
-        "no effort was recorded (u_V or i_A), so that there is nothing to predict and no page to write: "
-        "leave out --predictions and --report");
+    throw host::Failure(host::ExitCode::bad_input,
+                        "the record has no command or current (u_V or i_A), so nothing can be predicted: leave out "
+                        "--predictions and --report");
   std::vector<host::TrackingError> errors;
   for (const host::Record& record : records) errors.push_back(host::tracking_error(record));
   if (!arguments.json.empty()) write_json(host::tracking_json(errors), arguments.json);
   if (arguments.json != "-") fmt::print("{}", host::tracking_text(errors));
 }
 
-/// What ends in .toml is a model, whatever stands around it.
+/// A file that ends in .toml is a model.
 void sort_files(CompareArguments& arguments) {
   arguments.models = {arguments.model};
   arguments.records.clear();
   for (const std::string& file : arguments.files)
     (file.ends_with(".toml") ? arguments.models : arguments.records).push_back(file);
-  if (arguments.records.empty())
-    throw host::Failure(host::ExitCode::usage, "compare needs a record to hold the models against: MODEL… RECORD…");
+  if (arguments.records.empty()) throw host::Failure(host::ExitCode::usage, "compare needs a record: MODEL… RECORD…");
   if (arguments.models.size() > 1 && !arguments.predictions.empty())
-    throw host::Failure(host::ExitCode::usage, "--predictions writes those of one model: name one");
+    throw host::Failure(host::ExitCode::usage, "--predictions takes one model: name one");
 }
 
 host::ComparedModel compared(const std::string& path, const CompareArguments& arguments) {
@@ -115,7 +113,7 @@ void run(CompareArguments& arguments) {
 
 void add_compare(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* command = app.add_subcommand("compare", "how well a model predicts records, and where it fails");
+  CLI::App* command = app.add_subcommand("compare", "show how well a model predicts records, and where it fails");
   add_input(*command, "MODEL", arguments->model, "model of the drive (axis-model/1)")->required();
   add_input(*command, "RECORD", arguments->files, "records of the drive (axis-record/1), and further models (.toml)")
       ->required();
@@ -129,16 +127,17 @@ void add_compare(CLI::App& app) {
                    "length of a prediction, s; it restarts from the smoothed measured state")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--traces", arguments->traces, "record whose traces the page draws; default: the largest error");
+  command->add_option("--traces", arguments->traces,
+                      "record whose traces the page draws; default: the one with the largest error");
   command
       ->add_option("--stretch", arguments->stretch,
-                   "from and to, s, of that record: highlighted in all plots of the page")
+                   "from and to, s, of that record: highlight this range in all plots of the page")
       ->expected(2);
-  command->add_option("--period", arguments->period_mm, "draw what is missing within a period of the travel, mm")
+  command->add_option("--period", arguments->period_mm, "plot the residual over one period of the travel, mm")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--fail-above", arguments->fail_above,
-                   "exit code 1 where the combined error exceeds this many times the floor")
+                   "exit code 1 if the combined error exceeds this multiple of the noise floor")
       ->check(CLI::PositiveNumber);
   command->footer(
       "Examples:\n"
@@ -146,9 +145,9 @@ void add_compare(CLI::App& app) {
       "  axistool compare x.toml steps.csv jog.csv --report compare.html --json compare.json\n"
       "  axistool compare x.toml better.toml validate.csv --report both.html   # several models, on top of each other\n"
       "  axistool compare x.toml validate.csv --fail-above 2      # for scripts\n"
-      "The model predicts from the recorded command alone. The floor is what sensor noise and the uncertainty of the\n"
-      "restart leave; error/floor is about 1 for a perfect model. Log faults (shifted, wrapped, mis-scaled channels)\n"
-      "are listed first: mend them before believing the rest.");
+      "The model predicts from the recorded command alone. The noise floor is the error that sensor noise and the\n"
+      "uncertainty of the restart leave; error/floor is about 1 for a perfect model. Log faults (shifted, wrapped,\n"
+      "mis-scaled channels) are listed first: correct them before you trust the rest.");
   command->callback(
       [arguments] { with_log_of_failure(arguments->json, "axis-comparison/1", [&] { run(*arguments); }); });
 }

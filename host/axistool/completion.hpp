@@ -1,4 +1,4 @@
-// What may stand at a place of a command line: for the tab key of every shell.
+// Candidates at a place of a command line, for shell completion.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -94,8 +94,8 @@ std::string completion_script(const std::string& shell) {
 
 void add_completion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("completion", "Script that teaches a shell commands, options, effects, parameters and boards");
+  CLI::App* command = app.add_subcommand(
+      "completion", "Print a shell completion script for commands, options, effects, parameters and boards");
   command->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
       "Examples:\n"
@@ -106,9 +106,9 @@ void add_completion(CLI::App& app) {
   command->callback([shell] { fmt::print("{}", completion_script(*shell)); });
 
   auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* asked = app.add_subcommand("complete", "what may stand at the end of a command line; the scripts ask it");
+  CLI::App* asked = app.add_subcommand("complete", "candidates for the end of a command line, for the scripts");
   asked->group("");  // for scripts: not in the list
-  asked->add_option("WORD", *words, "what was typed after the program's name; the last word is being typed");
+  asked->add_option("WORD", *words, "words after the program's name; the last one is incomplete");
   asked->callback([words, &app] { print_completions(app, *words); });
 }
 

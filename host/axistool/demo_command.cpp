@@ -21,7 +21,7 @@ struct DemoArguments {
 void run(const DemoArguments& arguments) {
   if (!std::filesystem::exists(arguments.data)) {
     throw host::Failure(host::ExitCode::bad_input,
-                        fmt::format("{}: the shipped record is not there; name a folder with model.toml, "
+                        fmt::format("{}: the shipped record is missing; name a folder with model.toml, "
                                     "train-steps.csv, validate.csv and truth.json with --data",
                                     arguments.data));
   }
@@ -43,7 +43,7 @@ void run(const DemoArguments& arguments) {
                          ? host::coloured("Every figure agrees with its reference.", host::Tone::good, terminal)
                          : host::coloured("Some figures differ.", host::Tone::bad, terminal));
   if (arguments.emps.empty())
-    fmt::print("The real EMPS drive was left out: name the folder of its public data set (--emps DIR).\n");
+    fmt::print("The real EMPS drive was left out: give the folder of its public data set with --emps DIR.\n");
   fmt::print("Plots: {}\n", path);
   if (!shown.agrees()) end_with(host::ExitCode::answer_is_no);
 }
@@ -58,7 +58,7 @@ void add_demo(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--emps", arguments->emps, "folder with DATA_EMPS.mat and DATA_EMPS_PULSES.mat")
       ->check(CLI::ExistingDirectory);
-  command->add_option("--data", arguments->data, "folder of the record, in place of the shipped one");
+  command->add_option("--data", arguments->data, "folder of the record, instead of the shipped one");
   command->footer(
       "Examples:\n"
       "  axistool demo\n"

@@ -43,14 +43,13 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
     char* end = nullptr;
     numbers.push_back(std::strtod(word.c_str(), &end));
     if (word.empty() || *end != '\0' || !(numbers.back() > 0.0) || numbers.size() > 3)
-      throw host::Failure(
-          host::ExitCode::usage,
-          fmt::format("{} {}: write its frequency in Hz, and behind commas damping and depth", option, text));
+      throw host::Failure(host::ExitCode::usage,
+                          fmt::format("{} {}: write HZ, or HZ,DAMPING or HZ,DAMPING,DEPTH", option, text));
   }
   return numbers;
 }
 
-/// What is asked of the loop beyond `options`.
+/// Requirements on the loop beyond `options`.
 host::LoopAim aim_of(const DesignArguments& arguments) {
   host::LoopAim aim;
   aim.modulus = arguments.margin;
@@ -70,8 +69,8 @@ host::LoopAim aim_of(const DesignArguments& arguments) {
   const bool is_machine = arguments.models.size() > 1;
   if (arguments.response.empty() && !is_machine && (aim.modulus || aim.crossover_Hz || aim.seek_notch))
     throw host::Failure(host::ExitCode::usage,
-                        "--margin, --bandwidth and --notch auto look at a measured response: give --response with what "
-                        "`axistool bode --json` wrote, or with records");
+                        "--margin, --bandwidth and --notch auto need a measured response: give --response with the "
+                        "JSON of `axistool bode`, or with records");
   return aim;
 }
 
@@ -136,7 +135,7 @@ std::string parameter_file(const std::string& folder, const std::string& axis) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_')
       throw host::Failure(
           host::ExitCode::usage,
-          fmt::format("a file cannot be named after the axis \"{}\": letters, digits, - and _ only", axis));
+          fmt::format("the axis name \"{}\" cannot be a file name: use letters, digits, - and _ only", axis));
   return (std::filesystem::path(folder) / (axis + "-params.toml")).string();
 }
 
@@ -169,8 +168,10 @@ void print_machine(const host::MachineDesign& machine, const DesignArguments& ar
   fmt::print("  limited by {}\n", machine.limited_by);
   print_loops("\nthe best of each axis", machine.own);
   fmt::print(
-      "\nError by the difference of the axes (a line at 45 degrees; half axes of a circle of {:g} mm)\n"
-      "{:>12}{:>16}{:>12}{:>16}{:>12}\n{:>12}{:>16}{:>12}{:>16}{:>12}\n",
+      "\n"
+      "Error from the mismatch of the axes (a line at 45 degrees; half axes of a circle of {:g} mm)\n"
+      "{:>12}{:>16}{:>12}{:>16}{:>12}\n"
+      "{:>12}{:>16}{:>12}{:>16}{:>12}\n",
       host::kForecastRadius_mm, "feed", "line, matched", "ellipse", "line, own", "ellipse", "mm/s", "um", "um", "um",
       "um");
   for (std::size_t i = 0; i < machine.matched.contour.size(); ++i) {
@@ -179,11 +180,11 @@ void print_machine(const host::MachineDesign& machine, const DesignArguments& ar
                own.line_45_um, own.ellipse_um);
   }
   if (!machine.matched.remaining.empty())
-    fmt::print("What is left of the matched loop's error comes from the drives' {}.\n", machine.matched.remaining);
+    fmt::print("The remaining error of the matched loop comes from the drives' {}.\n", machine.matched.remaining);
   if (arguments.response.empty())
     fmt::print(
-        "The margins are the models' own: resonances and dead time that they lack are not seen. `axistool bode` "
-        "measures them; give --response.\n");
+        "The margins follow from the models alone and ignore resonances and dead time that these lack. Measure them "
+        "with `axistool bode` and give --response.\n");
   if (!arguments.output.empty())
     fmt::print("\n{} parameters written to {}\n", arguments.own ? "each axis's own" : "matched", arguments.output);
 }
@@ -192,10 +193,11 @@ void run_machine(const DesignArguments& arguments) {
   if (!arguments.report.empty())
     throw host::Failure(host::ExitCode::usage, "--report shows one axis: give it one model");
   if (!arguments.response.empty() && arguments.response.size() != arguments.models.size())
-    throw host::Failure(host::ExitCode::usage,
-                        fmt::format("--response: {} files for {} axes; give what `bode --json` wrote of each, in the "
-                                    "order of the models",
-                                    arguments.response.size(), arguments.models.size()));
+    throw host::Failure(
+        host::ExitCode::usage,
+        fmt::format(
+            "--response: {} files for {} axes; give one `bode --json` file per axis, in the order of the models",
+            arguments.response.size(), arguments.models.size()));
   std::vector<host::AxisTask> tasks;
   for (std::size_t i = 0; i < arguments.models.size(); ++i) {
     tasks.push_back({model_of(arguments.models[i], arguments), {}});
@@ -203,7 +205,7 @@ void run_machine(const DesignArguments& arguments) {
     tasks.back().measured = measured_response({arguments.response[i]});
     if (!tasks.back().measured->fit)
       throw host::Failure(host::ExitCode::refused,
-                          arguments.response[i] + ": too few frequencies were measured to design on them");
+                          arguments.response[i] + ": too few measured frequencies for a design");
   }
   const host::LoopAim aim = aim_of(arguments);
   host::core_filters(aim.filters, tasks.front().model.data.sample_period_s);  // in their ranges
@@ -218,8 +220,7 @@ void run_machine(const DesignArguments& arguments) {
 }
 
 void run(const DesignArguments& arguments) {
-  if (arguments.own)
-    throw host::Failure(host::ExitCode::usage, "--own chooses between loops of several axes: give a model of each");
+  if (arguments.own) throw host::Failure(host::ExitCode::usage, "--own needs several axes: give a model of each");
   const sim::DriveDescription model = model_of(arguments.models.front(), arguments);
   const host::LoopAim aim = aim_of(arguments);
   std::optional<host::LoopDesign> loop;
@@ -231,7 +232,7 @@ void run(const DesignArguments& arguments) {
   if (loop && loop->after.margins && !loop->after.margins->is_stable)
     throw host::Failure(host::ExitCode::refused,
                         "the measured drive would oscillate with this controller; nothing was written. --margin 0.5 "
-                        "finds the bandwidth that it allows");
+                        "finds the highest bandwidth with this modulus margin");
   if (!arguments.output.empty()) {
     host::write_file_atomically(arguments.output, host::design_toml(model, design, filters));
   }
@@ -251,9 +252,11 @@ void run(const DesignArguments& arguments) {
   print_compensation(model);
   if (filters.notch || filters.low_pass) fmt::print("filters                   {}\n", filter_text(filters));
   if (loop)
-    fmt::print("\nOn the measured response, --fc {:g} without filters before, as designed after:\n{}",
-               arguments.options.bandwidth_Hz,
-               host::margins_text(loop->after, &loop->before, host::terminal_of(stdout)));
+    fmt::print(
+        "\n"
+        "On the measured response; before: --fc {:g} without filters, after: this design:\n"
+        "{}",
+        arguments.options.bandwidth_Hz, host::margins_text(loop->after, &loop->before, host::terminal_of(stdout)));
   if (!arguments.output.empty()) fmt::print("\nboard parameters written to {}\n", arguments.output);
 }
 
@@ -263,18 +266,19 @@ void add_design(CLI::App& app) {
   auto arguments = std::make_shared<DesignArguments>();
   CLI::App* command = app.add_subcommand("design", "Kalman gain and state feedback from a model -> board parameters");
   add_input(*command, "MODEL", arguments->models,
-            "model file (axis-model/1); several: the axes of one machine, which get one closed loop")
+            "model file (axis-model/1); several: the axes of one machine, all with the same closed loop")
       ->required();
   const CLI::Option* const output =
       add_output(*command, "-o,--output", arguments->output,
-                 "file for the board parameters (axis-params/1); of several models the folder for AXIS-params.toml");
+                 "file for the board parameters (axis-params/1); with several models the folder for AXIS-params.toml");
   command->parse_complete_callback([arguments, output] {
     if (arguments->models.size() > 1) note_role(*output, FileRole::output_folder);
   });
-  command->add_flag("--own", arguments->own, "of several models: write the best loop of each axis, not the common one");
+  command->add_flag("--own", arguments->own,
+                    "with several models: write the best loop of each axis, not the common one");
   command
       ->add_option("--feedforward", arguments->feedforward,
-                   "zero-phase (ZPETC), or velocity: of the reference velocity alone")
+                   "zero-phase (ZPETC), or velocity: from the reference velocity alone")
       ->check(CLI::IsMember({"zero-phase", "velocity"}))
       ->capture_default_str();
   command->add_option("--rw", arguments->options.tach_variance,
@@ -290,16 +294,17 @@ void add_design(CLI::App& app) {
                       "design although this effect's values (inertia, viscous, coulomb, …) are physically impossible "
                       "or not determined by the records");
   add_input(*command, "--response", arguments->response,
-            "what `bode --json` wrote of this axis, or records of it: the design is shown on it, and --margin, "
-            "--bandwidth and --notch auto are sought on it; of several models one such file each, in their order");
-  command->add_option("--margin", arguments->margin, "raise --fc as far as this modulus margin allows (0.5 is usual)")
+            "JSON of `bode` for this axis, or its records: the design is evaluated on it, and --margin, --bandwidth "
+            "and --notch auto use it; with several models one file each, in the same order");
+  command->add_option("--margin", arguments->margin, "raise --fc as far as this modulus margin allows (usually 0.5)")
       ->check(CLI::Range(0.05, 0.95));
-  command->add_option("--bandwidth", arguments->crossover_Hz, "but the open loop's crossover no higher than this, Hz")
+  command->add_option("--bandwidth", arguments->crossover_Hz, "highest crossover frequency of the open loop, Hz")
       ->check(CLI::PositiveNumber);
-  command->add_option("--notch", arguments->notch,
-                      "HZ[,DAMPING[,DEPTH]] (0.5, 0.1), or auto: on the measured resonance where it gains most");
+  command->add_option(
+      "--notch", arguments->notch,
+      "HZ[,DAMPING[,DEPTH]] (defaults 0.5, 0.1), or auto: at the measured resonance where it helps most");
   command->add_option("--low-pass", arguments->low_pass, "HZ[,DAMPING] (0.7)");
-  add_output(*command, "--report", arguments->report, "with --response: page of the loop before and after");
+  add_output(*command, "--report", arguments->report, "with --response: HTML page of the loop before and after");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"
@@ -307,15 +312,17 @@ void add_design(CLI::App& app) {
       "  axistool design x.toml --fc 40 --zeta 0.8 --json -\n"
       "  axistool design x.toml --response bode.json --margin 0.5 --notch auto -o x-params.toml\n"
       "  axistool design x.toml y.toml --response bode-x.json bode-y.json --margin 0.5 -o machine\n"
-      "Larger --rwd: the disturbance estimate follows faster and is noisier. Larger --fc: stiffer, until noise or a\n"
-      "resonance limits it; keep it well below the observer's fn. The file also switches on what the board can\n"
-      "compensate of the model's effects (cogging, presliding, friction along the travel, backlash, tachometer): "
-      "after\n"
-      "`improve`, design again and set-params once.\n"
-      "Several models are the axes of one machine: they get one closed loop (poles of loop and estimator, filters,\n"
-      "feed-forward), as fast as the slowest axis allows at --margin, because axes that lag differently turn straight\n"
-      "lines and make circles ellipses. Prints the remaining error by feed in um, and that with each axis's own best\n"
-      "loop (--own). Exit code 8: the model's values are physically impossible.");
+      "A larger --rwd makes the disturbance estimate faster and noisier. A larger --fc makes the loop stiffer, until "
+      "noise\n"
+      "or a resonance limits it; keep it well below the observer's fn. The file also switches on the compensation of\n"
+      "those effects of the model that the board supports (cogging, presliding, friction along the travel, backlash,\n"
+      "tachometer): after `improve`, design again and set-params once.\n"
+      "Several models are the axes of one machine. They get the same closed loop (poles of loop and estimator, "
+      "filters,\n"
+      "feed-forward), as fast as the slowest axis allows at --margin, because axes with different lags rotate "
+      "straight\n"
+      "lines and turn circles into ellipses. Prints the remaining error for each feed in um, and the error with each\n"
+      "axis's own best loop (--own). Exit code 8: the model's values are physically impossible.");
   command->callback([arguments] {
     arguments->options.zero_phase = arguments->feedforward == "zero-phase";
     arguments->models.size() > 1 ? run_machine(*arguments) : run(*arguments);

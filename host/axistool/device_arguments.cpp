@@ -13,20 +13,18 @@
 namespace axistool {
 
 void add_device_options(CLI::App& command, DeviceArguments& arguments) {
-  CLI::Option* const device =
-      command
-          .add_option(
-              "--device", arguments.device,
-              "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH, model:FILE (simulated within this "
-              "command), plant:DRIVE.toml:COMMAND (the same around a program); "
-              "default: the only one on USB")
-          ->envname("AXIS_DEVICE");
+  CLI::Option* const device = command
+                                  .add_option("--device", arguments.device,
+                                              "board: usb:SERIAL, sim (started by `axistool sim`), socket:PATH, "
+                                              "model:FILE (simulated within this command), plant:DRIVE.toml:COMMAND "
+                                              "(the same with an external plant program); default: the only one on USB")
+                                  ->envname("AXIS_DEVICE");
   note_role(*device, FileRole::device);
   command.add_flag_callback(
       "--sim", [&arguments] { arguments.device = "sim"; }, "the same as --device sim");
   command
       .add_option("--patience", arguments.patience_s,
-                  "seconds that the board may take to answer, more where it is emulated")
+                  "time-out for the board's answers, s; give more if it is emulated")
       ->envname("AXIS_PATIENCE")
       ->check(CLI::Range(0.01, 600.0))
       ->capture_default_str();
@@ -34,7 +32,7 @@ void add_device_options(CLI::App& command, DeviceArguments& arguments) {
 }
 
 void add_change_options(CLI::App& command, DeviceArguments& arguments) {
-  command.add_flag("--dry-run", arguments.dry_run, "say what would be done, and do nothing");
+  command.add_flag("--dry-run", arguments.dry_run, "print what would be done, and do nothing");
   command.add_flag("-y,--yes", arguments.yes, "do not ask");
 }
 

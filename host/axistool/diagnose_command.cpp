@@ -39,7 +39,7 @@ void print_errors(const host::Diagnosis& diagnosis) {
       fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g} {} ({} -> {} of the signal), noise floor {:.4g}\n",
                  after.name, same->rms, after.rms, after.unit, percent(same->share), percent(after.share), after.floor);
   if (const auto& effort = diagnosis.effort)
-    fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g}, noise floor {:.4g}: by this the candidates are judged\n",
+    fmt::print("  {:<10} RMS on validation {:.4g} -> {:.4g}, noise floor {:.4g}: the candidates are ranked by this\n",
                effort->name, effort->before_validate, effort->after_validate, effort->floor_validate);
 }
 
@@ -49,11 +49,10 @@ void print(const host::Diagnosis& diagnosis) {
   fmt::print("Verdict: {}{}{}\n  {}\n", host::status_name(verdict.status), verdict.effects.empty() ? "" : ": ",
              fmt::join(verdict.effects, verdict.status == host::Status::ambiguous ? " or " : " + "),
              verdict.explanation);
-  if (!verdict.parameters.empty())
-    fmt::print("  Base parameters that were off: {}\n", fmt::join(verdict.parameters, ", "));
+  if (!verdict.parameters.empty()) fmt::print("  Wrong base parameters: {}\n", fmt::join(verdict.parameters, ", "));
   fmt::print("  Next: {}\n\n", verdict.next_experiment);
   if (diagnosis.held_back)
-    fmt::print("No --validate: one of {} blocks of {:.2g} s of motion was kept back to judge.\n",
+    fmt::print("No --validate: one of {} blocks of {:.2g} s of motion was held back for validation.\n",
                diagnosis.blocks.every, diagnosis.blocks.block_s);
   if (!diagnosis.not_searched.empty())
     fmt::print("Search incomplete (simulation budget exhausted) for: {}\n", fmt::join(diagnosis.not_searched, ", "));
@@ -106,16 +105,17 @@ void run(const DiagnoseArguments& arguments) {
 void add_diagnose(CLI::App& app) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   CLI::App* command =
-      app.add_subcommand("diagnose", "which physical effect is missing from a model, and how certain that is");
+      app.add_subcommand("diagnose", "find which physical effect is missing from a model, and how certain that is");
   arguments->add_to(*command);
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   add_input(*command, "--believed", arguments->beliefs,
             "prior odds: the JSON that plan or diagnose wrote before a planned run that is among --train");
   command->footer(
-      "Example:\n  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
-      "After a planned run (`axistool plan`, `excite x run.toml -o run.csv`), whose odds then decide:\n"
+      "Example:\n"
+      "  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"
+      "After a planned run (`axistool plan`, `excite x run.toml -o run.csv`), whose odds decide:\n"
       "  axistool diagnose x.toml --train steps.csv jog.csv run.csv --believed plan.json\n"
-      "Exit code 0 whatever the verdict; 9 for a bad file.");
+      "Exit code 0 for any verdict; 9 for a bad file.");
   command->callback(
       [arguments] { with_log_of_failure(arguments->json, "axis-diagnosis/1", [&] { run(*arguments); }); });
 }

@@ -1,4 +1,4 @@
-// axistool doctor: what is wrong with a board or the way to it, and what to do.
+// axistool doctor: checks a board and its connection, with remedies.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ void print(const std::vector<host::DeviceCheck>& checks, std::FILE* where) {
   }
 }
 
-/// Without a board there is the way to it: what is in order, and what to look at, in turn.
+/// Without a board: checks the connection step by step.
 void tell_the_way(const DeviceArguments& arguments) {
   if (!arguments.device.empty() && !arguments.device.starts_with("usb")) return;
   std::vector<host::DeviceCheck> checks;
@@ -50,8 +50,8 @@ void tell_the_way(const DeviceArguments& arguments) {
   };
   const std::size_t boards = host::find_usb_boards().size();
   add(boards > 0, "boards on USB", fmt::format("{}", boards),
-      "power: the board's own supply on, its light on? cable: one that carries data, straight to the computer; "
-      "bootloader: BOOT0 low, then reset; `lsusb` shows whether the computer sees anything new");
+      "power: is the board's own supply on, and its light? cable: use a data cable, directly to the computer; "
+      "bootloader: pull BOOT0 low, then reset; `lsusb` shows whether the computer sees a new device");
   const bool has_rule = std::filesystem::exists(host::kUdevRuleFile);
   add(has_rule, "udev rule", has_rule ? host::kUdevRuleFile : "not installed",
       "sudo axistool udev-rule --install lets users open a board");
@@ -89,12 +89,13 @@ void run(const DeviceArguments& arguments) {
 
 void add_doctor(CLI::App& app) {
   auto arguments = std::make_shared<DeviceArguments>();
-  CLI::App* command = app.add_subcommand("doctor", "What is wrong with a board or the way to it, and what to do");
+  CLI::App* command =
+      app.add_subcommand("doctor", "Check the board and its connection; give the remedy for each fault");
   add_device_options(*command, *arguments);
   command->footer(
-      "Example:\n  axistool doctor\n"
-      "Looks at USB rights, opening, firmware, saved parameters, reset cause, faults, exchange times, lost samples, "
-      "loop "
+      "Example:\n"
+      "  axistool doctor\n"
+      "Checks USB rights, opening, firmware, saved parameters, reset cause, faults, exchange times, lost samples, loop "
       "timing.\n"
       "Exit codes: 1 a check failed; 3 no board; 4 no permission (with the rule that gives it).");
   command->callback([arguments] { run(*arguments); });

@@ -89,7 +89,7 @@ struct Programme {
   Programme(const ExciteArguments& arguments, sim::DriveKind kind) : is_plan(arguments.kind.ends_with(".toml")) {
     if (is_plan) run = host::read_run_plan(arguments.kind);
     if (is_plan && !(arguments.numbers.empty() && arguments.closed_loop.empty()))
-      throw host::Failure(host::ExitCode::usage, "a planned run holds its own numbers and loops; write them there");
+      throw host::Failure(host::ExitCode::usage, "a planned run holds its own values; edit its file");
     if (arguments.box.empty() && !is_plan)
       throw host::Failure(
           host::ExitCode::refused,
@@ -141,7 +141,7 @@ void run(const ExciteArguments& arguments) {
   if (talks(arguments))
     fmt::print("{}: {} rows in {}, {} lost\n", host::end_name(outcome.state), record.size(), arguments.output,
                outcome.capture.lost);
-  host::require_completed(board, axis, outcome, arguments.output + " holds what there is");
+  host::require_completed(board, axis, outcome, arguments.output + " holds the rows so far");
 }
 
 std::string kinds_footer() {
@@ -151,12 +151,13 @@ std::string kinds_footer() {
       "  axistool excite x multisine amplitude=0.5 from=5 to=200 --closed-loop output --box … -o lines.csv\n"
       "  axistool excite x ladder 5 20 80 --box travel=100,speed=120,volts=5,time=20 -o ladder.csv\n"
       "  axistool excite x run.toml -o run.csv       # what `axistool plan` wrote, piece by piece in one record\n"
-      "KIND and its numbers, all of which may be left out:\n";
+      "KIND and its values, all optional:\n";
   for (const host::ExcitationKindText& kind : host::kExcitationKindTexts)
     text += fmt::format("  {:<10} {}: {}\n", kind.name, kind.does, kind.numbers);
   return text +
-         "Steps and ramps need no controller: they make the first record of a drive. travel is the width of a window "
-         "around where the axis stands. Leaving the box stops the axis, ends with code 8 and keeps the record.";
+         "Steps and ramps need no controller, so they give the first record of a drive. travel is the width of a "
+         "window centred on the present position. If the axis leaves the box, it stops; the exit code is 8 and the "
+         "record is kept.";
 }
 
 }  // namespace
@@ -166,19 +167,19 @@ void add_excite(CLI::App& app) {
   CLI::App* command = app.add_subcommand("excite", "Move an axis by an experiment, within a box -> record");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
   add_input(*command, "KIND", arguments->kind,
-            "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell; or a RUN.toml of plan")
+            "steps, ramp, sine, chirp, multisine, reversals, ladder, dwell; or a RUN.toml that plan wrote")
       ->required();
-  command->add_option("NUMBERS", arguments->numbers, "of the kind: values, or name=value");
+  command->add_option("NUMBERS", arguments->numbers, "values of the kind, in order or as name=value");
   command->add_option("--box", arguments->box,
                       "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s; a planned run has its own");
   add_output(*command, "-o,--output", arguments->output, "record to write (axis-record/1)")->required();
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive: units of counts, volts and travel");
   add_input(*command, "--params", arguments->parameters, "parameters to set before (axis-params/1), not saved");
-  command->add_flag("--as-set", arguments->as_set, "an axis without a design: the units on the board are right");
+  command->add_flag("--as-set", arguments->as_set, "for an axis without a design: trust the units on the board");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--closed-loop", arguments->closed_loop,
-                      "add it to the 'reference', or to the controller's 'output'");
-  command->add_option("--seed", arguments->seed, "of a multisine's phases")->capture_default_str();
+                      "where to add it: 'reference', or the controller's 'output'");
+  command->add_option("--seed", arguments->seed, "seed of a multisine's phases")->capture_default_str();
   command->add_option("--countdown", arguments->countdown_s, "seconds before anything moves")
       ->capture_default_str()
       ->check(CLI::Range(0, 60));

@@ -1,4 +1,4 @@
-// axistool export: a model as other programs take it.
+// axistool export: a model in other programs' formats.
 #include <fmt/format.h>
 
 #include <memory>
@@ -33,21 +33,22 @@ void run(const ExportArguments& arguments) {
   for (const host::ExportedFile& file : exported.files) fmt::print("written: {}\n", file.path);
   for (const host::NotExpressed& one : exported.not_expressed)
     fmt::print("not expressed: {}{}\n", one.kind,
-               one.share ? fmt::format(", {:.3g} % of the record's squared effort", 100.0 * *one.share) : "");
+               one.share ? fmt::format(", {:.3g} % of the record's squared torque or force", 100.0 * *one.share) : "");
 }
 
 }  // namespace
 
 void add_export(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "A model for MuJoCo, URDF, LinuxCNC, C, Modelica or Python");
+  CLI::App* command = app.add_subcommand("export", "Export a model to MuJoCo, URDF, LinuxCNC, C, Modelica or Python");
   add_input(*command, "model", arguments->model, "model file (axis-model/1)")->required();
   command->add_option("--to", arguments->to, "mjcf, urdf, linuxcnc, c, modelica or python")
       ->required()
       ->check(CLI::IsMember({"mjcf", "urdf", "linuxcnc", "c", "modelica", "python"}));
-  add_output(*command, "-o,--output", arguments->path, "file to write; LinuxCNC's .hal lines go beside it")->required();
+  add_output(*command, "-o,--output", arguments->path, "file to write; LinuxCNC's .hal file is written beside it")
+      ->required();
   add_input(*command, "--record", arguments->record,
-            "record on which to measure the error of what the format cannot express");
+            "record that gives the error of leaving out what the format cannot express");
   add_json_option(*command, arguments->json);
   command->footer(
       "Each file says what it cannot express.\n"

@@ -1,4 +1,4 @@
-// axistool faults, clear-faults: why a board stands still, and letting it go on.
+// axistool faults, clear-faults: shows a board's faults and clears them.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -112,21 +112,24 @@ void clear_faults(const FaultArguments& arguments) {
 void add_faults(CLI::App& app) {
   auto arguments = std::make_shared<FaultArguments>();
   CLI::App* command =
-      app.add_subcommand("faults", "Faults of a board: the last 64, and of those that hold it now cause and remedy");
+      app.add_subcommand("faults", "Show a board's last 64 faults, with cause and remedy of those active now");
   add_output(*command, "--record", arguments->record,
-             "write what the axis kept of the time before its fault to this file");
+             "write the record that the axis kept from before its fault to this file");
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   add_device_options(*command, *arguments);
   command->footer(
-      "Examples:\n  axistool faults\n  axistool faults --record last.csv\nThe log outlasts power-off: its "
-      "lines tell how long the board had run, what the axis did, and where. --json has all of it.\n"
-      "Exit code 6: there is a fault now.");
+      "Examples:\n"
+      "  axistool faults\n"
+      "  axistool faults --record last.csv\n"
+      "The log survives power-off. Each line gives the board's running time and the axis's state and position; --json "
+      "gives everything.\n"
+      "Exit code 6: a fault is active.");
   command->callback([arguments] { faults(*arguments); });
 }
 
 void add_clear_faults(CLI::App& app) {
   auto arguments = std::make_shared<FaultArguments>();
-  CLI::App* command = app.add_subcommand("clear-faults", "Forget the faults of a board and let it test itself again");
+  CLI::App* command = app.add_subcommand("clear-faults", "Clear a board's faults and repeat its self-test");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer("Example:\n  axistool clear-faults\nExit code 6: a fault has come back.");

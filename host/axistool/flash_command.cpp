@@ -67,10 +67,10 @@ host::FlashRequest request_of(const FlashArguments& arguments, const host::Image
 host::Failure gpio_failure(const std::system_error& error) {
   const bool denied = error.code() == std::errc::permission_denied;
   return {denied ? host::ExitCode::permission : host::ExitCode::no_such_device,
-          fmt::format("{}{}", error.what(),
-                      denied ? ": run as root, or join the group that owns the GPIO chip (often gpio)"
-                             : ": --gpiochip names the chip (gpiodetect lists them), and no other program may hold "
-                               "its lines")};
+          fmt::format(
+              "{}{}", error.what(),
+              denied ? ": run as root, or join the group that owns the GPIO chip (often gpio)"
+                     : ": check --gpiochip (gpiodetect lists the chips), and that no other program holds its lines")};
 }
 
 void run_on_hardware(const host::FlashRequest& request, const host::ImageFile& image) {
@@ -133,9 +133,9 @@ void add_flash(CLI::App& app) {
   add_input(*command, "IMAGE", arguments->image, "image file (.bin)")->capture_default_str();
   command->add_option("--board", arguments->board, "the board that is connected")->capture_default_str();
   CLI::Option* chip = command->add_option("--gpiochip", arguments->gpiochip, "GPIO chip wired to BOOT0 and NRST");
-  CLI::Option* boot0 = command->add_option("--boot0", arguments->boot0, "its line at BOOT0")->needs(chip);
+  CLI::Option* boot0 = command->add_option("--boot0", arguments->boot0, "line of that chip at BOOT0")->needs(chip);
   CLI::Option* reset =
-      command->add_option("--reset", arguments->reset, "its line at NRST (driven open-drain)")->needs(chip);
+      command->add_option("--reset", arguments->reset, "line of that chip at NRST (driven open-drain)")->needs(chip);
   chip->needs(boot0)->needs(reset);
   CLI::Option* serial = command->add_option("--serial", arguments->serial_port,
                                             "the bootloader's serial port (stm32flash) instead of USB (dfu-util)");
@@ -143,16 +143,16 @@ void add_flash(CLI::App& app) {
   command->add_option("--probe", arguments->probe, "the ST-Link with this serial number")
       ->excludes(chip)
       ->excludes(serial);
-  command->add_flag("--dry-run", arguments->dry_run, "say what would be done, touch nothing");
+  command->add_flag("--dry-run", arguments->dry_run, "print what would be done, and do nothing");
   command->footer(
       "Examples:\n"
       "  axistool flash --gpiochip /dev/gpiochip0 --boot0 17 --reset 27      # from a board computer, no probe\n"
       "  axistool flash --serial /dev/ttyAMA0 --gpiochip /dev/gpiochip0 --boot0 17 --reset 27\n"
       "  axistool flash                                                      # board already in its USB bootloader\n"
       "  axistool flash --stlink --dry-run\n"
-      "Also sets the chip's brown-out reset to 2.7 V where it is not (not over --serial): without it the board "
-      "enables\n"
-      "no drive. Exit codes: 3 no device or program; 4 permission; 5 verification failed; 8 wrong chip, or its read\n"
+      "Also sets the chip's brown-out reset to 2.7 V if needed (not over --serial); without it the board does not "
+      "enable\n"
+      "any drive. Exit codes: 3 no device or program; 4 permission; 5 verification failed; 8 wrong chip, or its read\n"
       "protection is on; 9 image damaged or for another board.");
   command->callback([arguments] { run(*arguments); });
 }

@@ -37,8 +37,7 @@ void print_points(const host::FrictionIdentification& found, const char* speed, 
     jitters = jitters || !point.is_steady();
   }
   if (jitters && found.method == host::FrictionMethod::joint) {
-    fmt::print(
-        "  * not used: noise in the loop drives the speed through zero, so that the mean friction is too small\n");
+    fmt::print("  * not used: noise in the loop makes the speed cross zero, so the mean friction is too small\n");
   }
 }
 
@@ -67,7 +66,7 @@ void print_table(const host::FrictionIdentification& found, const std::string& o
                found.viscous_by_disturbance->value, found.fit.viscous.value);
   }
   if (found.fit.has_stribeck) {
-    fmt::print("  The curve is what the points determine; omega1, omega2 and the static level trade off in it.\n");
+    fmt::print("  The points determine the curve; omega1, omega2 and the static level are correlated in it.\n");
   }
   for (const std::string& warning : found.warnings) fmt::print("\nwarning: {}\n", warning);
   if (!output.empty()) {
@@ -96,10 +95,12 @@ void run(const FrictionArguments& arguments) {
 void add_friction(CLI::App& app) {
   auto arguments = std::make_shared<FrictionArguments>();
   CLI::App* command = app.add_subcommand("friction", "friction curve from jogs at constant speeds -> model");
-  add_input(*command, "RECORD", arguments->records, "records with jogs both ways; constant speeds are found in them")
+  add_input(*command, "RECORD", arguments->records,
+            "records with jogs in both directions; constant speeds are found automatically")
       ->required();
   // Not an input in the sense of add_input(): the model may be written again under its own name.
-  command->add_option("--model", arguments->model, "model with inertia (and a first viscous friction)")->required();
+  command->add_option("--model", arguments->model, "model with inertia (and a first estimate of viscous friction)")
+      ->required();
   add_output(*command, "-o,--output", arguments->output, "model to write, with the friction curve");
   command
       ->add_option("--method", arguments->method,
@@ -107,10 +108,10 @@ void add_friction(CLI::App& app) {
                    "published, from the Kalman disturbance step by step")
       ->check(CLI::IsMember({"joint", "paper"}))
       ->capture_default_str();
-  command->add_option("--settle", arguments->options.settle_s, "dropped at the start of each constant speed, s")
+  command->add_option("--settle", arguments->options.settle_s, "time to skip at the start of each constant speed, s")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--shortest", arguments->options.shortest_s, "a speed must be held for this long, s")
+  command->add_option("--shortest", arguments->options.shortest_s, "shortest time that a speed must be held, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   add_accept_option(*command, arguments->accepted);
@@ -119,7 +120,8 @@ void add_friction(CLI::App& app) {
       "Examples:\n"
       "  axistool friction jog.csv --model x.toml -o x-friction.toml\n"
       "  axistool friction slow.csv fast.csv --model x.toml -o x.toml --method paper\n"
-      "Jog in closed loop at about ten speeds both ways, for example 0.1 to 100 mm/s, each for 0.6 s or more.\n"
+      "Jog in closed loop at about ten speeds in both directions, for example 0.1 to 100 mm/s, each for 0.6 s or "
+      "more.\n"
       "Exit code 8: too few constant speeds.");
   command->callback([arguments] { with_log_of_failure(arguments->json, "axis-friction/1", [&] { run(*arguments); }); });
 }

@@ -1,4 +1,4 @@
-// What every command that reads records has in common: they pass the gate, and what it finds is said first.
+// Common to all commands that read records: the gate checks them, and its findings are printed first.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,14 +15,13 @@ namespace axistool {
 /// The option --accept.
 inline void add_accept_option(CLI::App& command, std::vector<std::string>& accepted) {
   command
-      .add_option(
-          "--accept", accepted,
-          "go on in spite of a fault of the log, by its name (sign, unit, swapped, clipped, jump, …); repeatable")
+      .add_option("--accept", accepted,
+                  "continue despite this log fault (sign, unit, swapped, clipped, jump, …); repeatable")
       ->expected(1)
       ->take_all();
 }
 
-/// Runs `work`; where a fault of the log ends it, the JSON document still says which.
+/// Runs `work`; if a fault of the log ends it, the JSON document still names the fault.
 template <typename Work>
 void with_log_of_failure(const std::string& json, const std::string& format, Work work) {
   try {
@@ -33,7 +32,7 @@ void with_log_of_failure(const std::string& json, const std::string& format, Wor
   }
 }
 
-/// On top of what a command prints: what is doubtful about the records, and what was accepted.
+/// Printed first: doubts about the records, and accepted faults.
 inline void print_log(const std::vector<host::LogFault>& log) {
   for (const host::LogFault& fault : log)
     fmt::print("{} of the log ({}): {}\n", fault.accepted ? "Accepted fault" : "Doubt",

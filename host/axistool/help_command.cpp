@@ -33,7 +33,7 @@ std::string no_command(const CLI::App& app, const std::string& name) {
 void add_help(CLI::App& app) {
   app.set_version_flag("--version", std::string("axistool " AXIS_VERSION ", commit " AXIS_GIT_HASH));
   auto name = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("help", "what a command does, its options and examples");
+  CLI::App* command = app.add_subcommand("help", "show what a command does, its options and examples");
   command->add_option("COMMAND", *name, "the command; without it, the list of all");
   command->footer("Example:\n  axistool help identify");
   command->callback(

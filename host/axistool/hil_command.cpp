@@ -53,7 +53,7 @@ void check_names(const HilArguments& arguments) {
     const auto [other, is_new] = taken.emplace(stem_of(path, arguments.output), path);
     if (!is_new)
       throw host::Failure(host::ExitCode::usage,
-                          fmt::format("{} and {} would write files of one name into {}: run them one at a time",
+                          fmt::format("{} and {} would write files of the same name into {}: run them one at a time",
                                       other->second, path, arguments.output));
   }
 }
@@ -73,7 +73,7 @@ void write_files(const host::Scenario& scenario, const host::ScenarioRun& run, c
   host::scenario_report(scenario, run).write(stem + ".html");
 }
 
-/// "x=FILE": what the controller of this axis is told in place of what the scenario says.
+/// "x=FILE": model for this axis's controller instead of the scenario's.
 host::ReplacedModel parse_model(const std::string& assignment) {
   const auto* const axis = std::ranges::find(host::kAxisNames, assignment.substr(0, assignment.find('=')));
   if (axis == host::kAxisNames.end() || assignment.find('=') == std::string::npos)
@@ -104,7 +104,7 @@ void list_shipped() {
 /// The scenario as it is, and again with the models of the command line: one page of both.
 void run_before_and_after(const HilArguments& arguments, const std::vector<host::ReplacedModel>& models) {
   if (arguments.scenarios.size() != 1 || models.empty())
-    throw host::Failure(host::ExitCode::usage, "--before-after takes one scenario, and --model for what is new");
+    throw host::Failure(host::ExitCode::usage, "--before-after needs one scenario, and --model for the new model");
   const host::Scenario scenario = agreed_scenario(arguments.scenarios.front(), arguments);
   const host::Scenario changed = with_models(scenario, models);
   const host::ScenarioRun before = host::run_scenario(scenario), after = host::run_scenario(changed);
@@ -163,7 +163,7 @@ void run(HilArguments& arguments) {
     return;
   }
   if (arguments.scenarios.empty())
-    throw host::Failure(host::ExitCode::usage, "no scenario is named; axistool hil --list names the shipped ones");
+    throw host::Failure(host::ExitCode::usage, "no scenario given; axistool hil --list lists the shipped ones");
   for (std::string& name : arguments.scenarios) name = host::scenario_file(name);
   std::vector<host::ReplacedModel> models;
   for (const std::string& assignment : arguments.models) models.push_back(parse_model(assignment));
@@ -181,7 +181,7 @@ void add_hil(CLI::App& app) {
   CLI::App* command = app.add_subcommand("hil", "run scenarios: the board's firmware around simulated drives");
   add_input(*command, "SCENARIO", arguments->scenarios, "scenario files (axis-scenario/1), or names of shipped ones");
   add_output(*command, "-o,--output", arguments->output,
-             "folder for records (x, y), the controllers' models, an HTML page of each scenario and one of all",
+             "folder for records (x, y), the controllers' models, an HTML page for each scenario and one for all",
              FileRole::output_folder);
   add_input(*command, "--model", arguments->models,
             "x=FILE or y=FILE: design this axis's controller from this model instead")
@@ -189,9 +189,9 @@ void add_hil(CLI::App& app) {
   add_json_option(*command, arguments->json);
   command->add_flag("--list", arguments->list, "the shipped scenarios");
   command->add_flag("--before-after", arguments->before_after,
-                    "run it as it is too, and write one page of both: before, and after --model");
+                    "also run it unchanged, and write one page of both: before, and after --model");
   command->add_flag("--allow-program", arguments->allow_program,
-                    "run the programs that scenarios name in place of drives, without asking");
+                    "run the external plant programs that scenarios name, without asking");
   command->add_flag("--fault-page", arguments->fault_page,
                     "inject every fault and print the page of faults and reactions (Markdown)");
   command->footer(
@@ -200,7 +200,8 @@ void add_hil(CLI::App& app) {
       "  axistool hil circle -o circle\n"
       "  axistool hil mine.toml square --json -\n"
       "  axistool hil hidden-effect --model x=better-x.toml --model y=better-y.toml --before-after -o after\n"
-      "Exit code 1: something that a scenario expects does not hold. Equal scenarios give equal records, bit for bit.");
+      "Exit code 1: an expectation of a scenario failed. The same scenario always gives the same records, bit for "
+      "bit.");
   command->callback([arguments] { run(*arguments); });
 }
 

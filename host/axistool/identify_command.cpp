@@ -94,8 +94,8 @@ void add_identify(CLI::App& app) {
   command
       ->add_option(
           "--method", arguments->method,
-          "ls: friction left out; unbiased-ls: the paper's, with Coulomb friction; sliding-ls: inverse model on "
-          "samples where the axis certainly slides. Default sliding-ls with a tachometer, unbiased-ls without")
+          "ls: least squares without friction; unbiased-ls: the paper's, with Coulomb friction; sliding-ls: inverse "
+          "model on samples where the axis certainly slides. Default: sliding-ls with a tachometer, else unbiased-ls")
       ->check(CLI::IsMember({"unbiased-ls", "ls", "sliding-ls"}));
   command
       ->add_option(
@@ -104,8 +104,8 @@ void add_identify(CLI::App& app) {
           "less) or m/s (default 0: every sample counts)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--cutoff", arguments->options.cutoff_Hz,
-                      "of the zero-phase filter, Hz. Default: a tenth of the sampling rate, at most 100 Hz, lowered "
-                      "until sensor noise is below 1 % of the acceleration");
+                      "cut-off of the zero-phase filter, Hz. Default: a tenth of the sampling rate, at most 100 Hz, "
+                      "lowered until sensor noise is below 1 % of the acceleration");
   command
       ->add_option("--decimation", arguments->options.decimation,
                    "use every n-th filtered sample. Default: sampling rate / cut-off where every sample counts, else 1")

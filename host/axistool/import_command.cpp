@@ -24,12 +24,11 @@ struct Options {
 
 constexpr const char* kFooter =
     "Columns of a record, with their units: t_s; u_V or i_A; x_mm or x_m; w_rad_s (rotary) or v_m_s, v_mm_s (linear);\n"
-    "x2_mm, x2_m (the table by a scale of its own); x_ref_mm, x_ref_m, w_ref_rad_s, v_ref_m_s, temp_C. Other names "
-    "are\n"
-    "kept and ignored.\n"
-    "A mapping may scale and shift (t_s=t_ms*0.001, x_mm=counts*0.00122-5, x_m=-pos), name a column by its number\n"
-    "(x_mm=#3 or x_mm=3*0.5), one column of a matrix (x_m=log(2)), a field (x_m=run.pos), stamps of its own\n"
-    "(x_m=pos@t_pos, with --resample) or the row number (t_s=row*0.001). Quote names with blanks: u_V=\"Command "
+    "x2_mm, x2_m (the table, by a scale); x_ref_mm, x_ref_m, w_ref_rad_s, v_ref_m_s, temp_C. Other columns are kept\n"
+    "and ignored.\n"
+    "A mapping may scale and shift (t_s=t_ms*0.001, x_mm=counts*0.00122-5, x_m=-pos) and name a column by its number\n"
+    "(x_mm=#3 or x_mm=3*0.5), one column of a matrix (x_m=log(2)), a field (x_m=run.pos), separate time stamps\n"
+    "(x_m=pos@t_pos, with --resample) or the row number (t_s=row*0.001). Quote names with spaces: u_V=\"Command "
     "(V)\".\n"
     "Examples:\n"
     "  axistool import data.mat --list\n"
@@ -99,15 +98,15 @@ void run(const Options& options) {
 }  // namespace
 
 void add_import(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("import", "Make a record of a MATLAB file or of any table");
+  CLI::App* command = app.add_subcommand("import", "Make a record from a MATLAB file or any table");
   const auto options = std::make_shared<Options>();
   add_input(*command, "file", options->file,
-            "the log: .mat (v4, v5, v7.3) or a table with commas, semicolons, tabs or blanks")
+            "the log: .mat (v4, v5, v7.3) or a table with commas, semicolons, tabs or spaces")
       ->required();
   command->add_option("--map", options->map, "column=variable[*factor][+shift], … (see below)");
   command
       ->add_option("--resample", options->resample_s,
-                   "make even samples of this period (s); jitter, gaps and method are stated in the record")
+                   "resample evenly with this period, s; the record states jitter, gaps and method")
       ->check(CLI::PositiveNumber);
   command
       ->add_option(
@@ -115,7 +114,7 @@ void add_import(CLI::App& app) {
           "COLUMN=RANGE: the column wraps at RANGE (a counter that overflows, an angle within a turn); unwrap it")
       ->expected(1);
   command->add_option("--drive", options->drive, "name of the drive, for the record's header");
-  CLI::Option* list = command->add_flag("--list", options->list, "show what the log holds, and write nothing");
+  CLI::Option* list = command->add_flag("--list", options->list, "list what the log holds, and write nothing");
   CLI::Option* output = add_output(*command, "-o,--output", options->output, "the record to write");
   output->excludes(list);
   add_json_option(*command, options->json);

@@ -1,4 +1,4 @@
-// axistool improve: diagnose and add until no further effect is significant; axistool add: one effect at a word.
+// axistool improve: diagnose and add until no further effect is significant; axistool add: adds one named effect.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -62,10 +62,10 @@ void print(const host::Addition& addition, const std::string& kind, const std::s
                host::kNormal95 * estimate.deviation, estimate.determined ? "" : "  not determined by these data",
                estimate.correlated_with.empty()
                    ? ""
-                   : fmt::format("  moves with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
+                   : fmt::format("  correlated with {} ({:+.2f})", estimate.correlated_with, estimate.correlation));
   }
   if (addition.kept_given) {
-    fmt::print("Held-back records are predicted worse with it: {} holds the model as given.\n", output);
+    fmt::print("The addition predicts the held-back records worse: {} holds the model as given.\n", output);
     return;
   }
   print_doubts(addition.judged.model);
@@ -102,7 +102,7 @@ void add_add(CLI::App& app) {
   auto kind = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("add", "add one effect to a model and fit all parameters again");
   add_input(*command, "model", arguments->model, "model file (axis-model/1)")->required();
-  command->add_option("kind", *kind, "the effect; axistool effects lists them")->required();
+  command->add_option("kind", *kind, "effect to add; axistool effects lists them")->required();
   add_input(*command, "--train", arguments->train, "training records")->required();
   add_input(*command, "--validate", arguments->validate, "validation records");
   add_output(*command, "-o,--output", arguments->output, "the new model")->required();
@@ -110,7 +110,8 @@ void add_add(CLI::App& app) {
   add_json_option(*command, arguments->json);
   command->footer("Example:\n  axistool add x.toml cogging --train jog.csv --validate other.csv -o x-cogging.toml");
   auto over = std::make_shared<std::string>();
-  command->add_option("--over", *over, "coordinate of a free_curve; default: the one with the least validation error");
+  command->add_option("--over", *over,
+                      "coordinate of a free_curve; default: the one with the smallest validation error");
   command->callback([arguments, kind, over] {
     with_log_of_failure(arguments->json, "axis-addition/1", [&] { run_add(*arguments, *kind, *over); });
   });

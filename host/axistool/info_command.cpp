@@ -1,4 +1,4 @@
-// axistool info: what a board, or a firmware image, says about itself.
+// axistool info: version and state of a board or a firmware image.
 #include <fmt/format.h>
 
 #include <memory>
@@ -71,7 +71,7 @@ void describe_board(const InfoArguments& arguments) {
 
 void add_info(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* command = app.add_subcommand("info", "What a board, or a firmware image, says about itself");
+  CLI::App* command = app.add_subcommand("info", "Show version and state of a board or of a firmware image");
   command->alias("status");
   add_input(*command, "IMAGE", arguments->image, "image file (.bin); without it, the board");
   add_device_options(*command, *arguments);

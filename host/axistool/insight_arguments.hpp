@@ -22,12 +22,11 @@ struct InsightArguments {
     add_input(command, "model", model, "model file (axis-model/1)")->required();
     add_input(command, "--train", train, "training records")->required();
     add_input(command, "--validate", validate,
-              "validation records; without them blocks of the training data are held back");
-    command.add_option("--hold", held, "parameters that stay as they stand in the model, e.g. J_kg_m2")
+              "validation records; default: blocks of the training data are held back");
+    command.add_option("--hold", held, "parameters to keep at the model's values, e.g. J_kg_m2")->expected(1, -1);
+    command.add_option("--prior", believed, "standard deviations of the model's values, e.g. J_kg_m2=1e-4")
         ->expected(1, -1);
-    command.add_option("--prior", believed, "standard deviations of what the model says, e.g. J_kg_m2=1e-4")
-        ->expected(1, -1);
-    command.add_option("--absent", absent, "effects that this machine is known not to have, e.g. backlash")
+    command.add_option("--absent", absent, "effects that this machine certainly does not have, e.g. backlash")
         ->expected(1, -1);
     add_accept_option(command, accepted);
     add_json_option(command, json);

@@ -1,9 +1,9 @@
-// Ctrl-C while something moves: it asks for an orderly end instead of leaving the axis to the board's time-out.
+// Ctrl-C during a motion requests an orderly stop instead of leaving the axis to the board's time-out.
 #pragma once
 
 namespace axistool {
 
-/// From now on Ctrl-C, SIGTERM and SIGHUP are for interrupted() to tell.
+/// From now on interrupted() reports Ctrl-C, SIGTERM and SIGHUP.
 void catch_interrupts();
 
 /// They end the program again, at once.

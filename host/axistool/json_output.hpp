@@ -11,7 +11,7 @@
 namespace axistool {
 
 inline void add_json_option(CLI::App& command, std::string& destination) {
-  add_output(command, "--json", destination, "write the result as JSON to this file; - is standard output, alone");
+  add_output(command, "--json", destination, "write the result as JSON to this file; - prints only JSON");
 }
 
 /// "-" prints the one document on standard output; anything else is a file, replaced as a whole.

@@ -1,4 +1,4 @@
-// axistool list: the boards there are.
+// axistool list: the connected boards.
 #include <fmt/format.h>
 
 #include <memory>
@@ -38,18 +38,22 @@ void list_boards(const DeviceArguments& arguments) {
     fmt::print("{:<32} {:<20} {}\n", board["device"].get<std::string>(), board["product"].get<std::string>(),
                board["path"].get<std::string>());
   if (boards.empty())
-    fmt::print("{}: plug one in, or start `axistool sim`\n",
-               arguments.device.empty() ? "no board on USB, and no simulated one" : arguments.device + " is not there");
+    fmt::print("{}: plug one in, or start `axistool sim`\n", arguments.device.empty()
+                                                                 ? "no board on USB, and no simulated one"
+                                                                 : arguments.device + " was not found");
 }
 
 }  // namespace
 
 void add_list(CLI::App& app) {
   auto arguments = std::make_shared<DeviceArguments>();
-  CLI::App* command = app.add_subcommand("list", "Boards that are plugged in, and the simulated one");
+  CLI::App* command = app.add_subcommand("list", "List the boards that are plugged in, and the simulated one");
   command->add_option("--device", arguments->device, "only this one: usb:SERIAL or sim");
   add_json_option(*command, arguments->json);
-  command->footer("Example:\n  axistool list --json -\nExit code 3: there is none.");
+  command->footer(
+      "Example:\n"
+      "  axistool list --json -\n"
+      "Exit code 3: no board found.");
   command->callback([arguments] { list_boards(*arguments); });
 }
 

@@ -1,5 +1,4 @@
-// axistool: finds out how a drive really behaves. One file a command; this one lists them and maps failures to exit
-// codes.
+// axistool: one file per command; this one lists the commands and maps failures to exit codes.
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
@@ -12,7 +11,7 @@
 
 namespace {
 
-/// Parses and runs; failures of the user's making come back as exit codes.
+/// Parses and runs; returns failures as exit codes.
 int run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -42,7 +41,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done; 1 the answer is no; 2 usage; 3 no such device; 4 permission; 5 protocol or CRC;\n"
-      "6 the device reports a fault; 7 time-out; 8 refused for safety or for want of excitation; 9 bad input file.");
+      "6 the device reports a fault; 7 time-out; 8 refused (safety, or too little excitation); 9 bad input file.");
   axistool::add_all_commands(app);
   app.parse_complete_callback([&app] { axistool::check_options(app); });
   const int status = run(app, argc, argv);

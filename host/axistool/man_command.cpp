@@ -13,7 +13,7 @@ namespace axistool {
 
 void add_man(CLI::App& app) {
   auto folder = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("man", "write the manual's pages, one a command, in troff");
+  CLI::App* command = app.add_subcommand("man", "write the manual pages, one per command, in troff");
   add_output(*command, "FOLDER", *folder, "where they go", FileRole::output_folder)->required();
   command->footer("Example:\n  axistool man man1 && man man1/axistool-identify.1");
   command->callback([folder, &app] {

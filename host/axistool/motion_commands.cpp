@@ -81,11 +81,11 @@ void jog(const MotionArguments& arguments) {
     fmt::print("would jog {} at {:g} {}/s for {:g} s\n", arguments.axis, arguments.value,
                host::travel_unit(axis, values), arguments.duration_s);
   else
-    fmt::print("{} went from {:.4f} to {:.4f} {}{}\n", arguments.axis, before, after, host::travel_unit(axis, values),
+    fmt::print("{} moved from {:.4f} to {:.4f} {}{}\n", arguments.axis, before, after, host::travel_unit(axis, values),
                interrupted() ? " (interrupted)" : "");
 }
 
-/// The limits of travel as a board has them at first are no limits: nobody has said how far this axis goes.
+/// The initial travel limits of a board are not real limits, because the travel of this axis is not known.
 void ask_without_travel(const MotionArguments& arguments, const firmware::AxisValues& values, double way) {
   const auto is_initial = [&](std::string_view name, float value) {
     return value == std::ranges::find(firmware::kParameters, name, &firmware::ParameterInfo::name)->initial;
@@ -94,10 +94,9 @@ void ask_without_travel(const MotionArguments& arguments, const firmware::AxisVa
       !is_initial("monitor.travel_max", values.get<"monitor.travel_max">()) ||
       std::abs(way) <= static_cast<double>(values.get<"homing.travel">()))
     return;
-  require_consent(arguments,
-                  fmt::format("Move {} by {:g}, which is more than homing.travel = {:g}, although nobody has set "
-                              "monitor.travel_min and monitor.travel_max?",
-                              arguments.axis, way, values.get<"homing.travel">()));
+  require_consent(arguments, fmt::format("Move {} by {:g}? That is more than homing.travel = {:g}, and "
+                                         "monitor.travel_min and monitor.travel_max are not set.",
+                                         arguments.axis, way, values.get<"homing.travel">()));
 }
 
 void move(const MotionArguments& arguments) {
@@ -125,14 +124,13 @@ void move(const MotionArguments& arguments) {
 }
 
 void add_take_over(CLI::App& command, MotionArguments& arguments) {
-  command.add_flag("--take-over", arguments.take_over, "take the axes from another program that moves them");
+  command.add_flag("--take-over", arguments.take_over, "take control of the axes from another program");
 }
 
-/// What finds home, from now on: set where the loop is open, and closed again. Consent as for `enable`.
+/// Sets the homing mode with the loop open, then closes it again. Consent as for `enable`.
 void set_homing(const MotionArguments& arguments, host::BoardClient& board, std::uint8_t axis) {
   const auto mask = static_cast<std::uint8_t>(1u << axis);
-  require_consent(arguments,
-                  fmt::format("Close the control loop of axis {} and look for home? It moves.", arguments.axis));
+  require_consent(arguments, fmt::format("Close the control loop of axis {} and home it? It moves.", arguments.axis));
   if (host::are_enabled(board, mask)) host::disable_and_wait(board, mask);
   firmware::ParameterValues values = board.read_values();
   const auto set = [&](const char* name, double value) {
@@ -155,8 +153,8 @@ void home(const MotionArguments& arguments) {
   const auto mode = static_cast<std::size_t>(values.axis(axis).get<"homing.mode">());
   if (mode == 0 && !arguments.here && arguments.mode.empty())
     throw host::Failure(host::ExitCode::refused,
-                        fmt::format("nothing tells axis {} where home is (homing.mode is 0): axistool home {} --mode "
-                                    "switch, index or both; or --here, where it stands there",
+                        fmt::format("axis {} has no way to find home (homing.mode is 0): axistool home {} --mode "
+                                    "switch, index or both; or --here if it stands at home",
                                     arguments.axis, arguments.axis));
   catch_interrupts();
   if (!arguments.dry_run) {
@@ -171,7 +169,7 @@ void home(const MotionArguments& arguments) {
   report(arguments, "home", {{"axis", arguments.axis}, {"homed", homed}, {"at", at}, {"mode", kHomingModes.at(mode)}});
   if (!talks(arguments)) return;
   if (arguments.dry_run)
-    fmt::print("would {}\n", arguments.here ? "take the place where the axis stands for home" : "look for home");
+    fmt::print("would {}\n", arguments.here ? "use the present place as home" : "look for home");
   else
     fmt::print("{} {}{}, at {:.4f} {}{}\n", arguments.axis, homed ? "is homed" : "is not homed (interrupted)",
                arguments.here ? std::string(" where it stands") : fmt::format(" by {}", kHomingModes.at(mode)), at,
@@ -183,7 +181,7 @@ void home(const MotionArguments& arguments) {
 void add_enable(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("enable", "Close the control loop of axes");
-  command->add_option("AXIS", arguments->axes, "x, y, …; default: all that the board has");
+  command->add_option("AXIS", arguments->axes, "x, y, …; default: all axes of the board");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);
@@ -194,7 +192,7 @@ void add_enable(CLI::App& app) {
 void add_disable(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("disable", "Slow axes down and open their control loop");
-  command->add_option("AXIS", arguments->axes, "x, y, …; default: all that the board has");
+  command->add_option("AXIS", arguments->axes, "x, y, …; default: all axes of the board");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer("Example:\n  axistool disable");
@@ -205,8 +203,9 @@ void add_jog(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command = app.add_subcommand("jog", "Move an enabled axis at a speed, for a time");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
-  command->add_option("SPEED", arguments->value, "mm/s (linear drive: m/s), negative the other way")->required();
-  command->add_option("--for", arguments->duration_s, "seconds, then it slows down")
+  command->add_option("SPEED", arguments->value, "mm/s (linear drive: m/s), negative for the other direction")
+      ->required();
+  command->add_option("--for", arguments->duration_s, "seconds until it slows down")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0));
   add_device_options(*command, *arguments);
@@ -218,26 +217,29 @@ void add_jog(CLI::App& app) {
 
 void add_home(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
-  CLI::App* command = app.add_subcommand("home", "Let an enabled axis find the place that positions are counted from");
+  CLI::App* command = app.add_subcommand("home", "Home an enabled axis: find the origin of its positions");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
-  command->add_flag("--here", arguments->here, "take the present place as homing.position, where homing.mode is 0");
+  command->add_flag("--here", arguments->here, "if homing.mode is 0: the present place is homing.position");
   command
-      ->add_option(
-          "--mode", arguments->mode,
-          "what finds home: switch, index, or both (switch and then index); sets homing.mode and closes the loop")
+      ->add_option("--mode", arguments->mode,
+                   "how to home: switch, index, or both (switch, then index); sets homing.mode and closes the loop")
       ->check(CLI::IsMember({"switch", "index", "both"}));
   command->add_option("--speed", arguments->speed,
-                      "towards the switch or index, mm/s (linear drive: m/s), negative the other way; sets "
-                      "homing.velocity");
+                      "speed towards the switch or index, mm/s (linear drive: m/s), negative for the other direction; "
+                      "sets homing.velocity");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);
   command->footer(
-      "Examples:\n  axistool home x --mode both --speed 20 --yes\n  axistool home x\n"
+      "Examples:\n"
+      "  axistool home x --mode both --speed 20 --yes\n"
+      "  axistool home x\n"
       "  axistool home y --here\n"
-      "By homing.mode: switch (1), index (2), or switch and then index (3). Until an axis is homed it takes no moves "
-      "to "
-      "a\nposition, and travel limits, cogging and friction along the travel do not act. A reset forgets home.");
+      "homing.mode selects: switch (1), index (2), or switch and then index (3). Until an axis is homed it refuses "
+      "moves to\n"
+      "a position, and travel limits and compensation of cogging and of friction along the travel are inactive. A "
+      "reset\n"
+      "clears home.");
   command->callback([arguments] { home(*arguments); });
 }
 
@@ -246,7 +248,7 @@ void add_move(CLI::App& app) {
   CLI::App* command = app.add_subcommand("move", "Move an enabled axis to a position and wait for it");
   command->add_option("AXIS", arguments->axis, "x, y, …")->required();
   command->add_option("POSITION", arguments->value, "mm (linear drive: m)")->required();
-  command->add_flag("--relative", arguments->relative, "from where the axis is");
+  command->add_flag("--relative", arguments->relative, "from the present position");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   add_take_over(*command, *arguments);

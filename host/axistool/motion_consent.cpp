@@ -13,8 +13,8 @@ namespace axistool {
 
 std::string box_text(const host::ExcitationLimits& box, sim::DriveKind kind) {
   const char* unit = kind == sim::DriveKind::rotary ? "mm" : "m";
-  return fmt::format("{:g} {} of travel ({:g} to either side of where it stands), {:g} {}/s, {:g} V, {:g} s",
-                     box.travel, unit, box.travel / 2.0, box.speed, unit, box.volts, box.time_s);
+  return fmt::format("{:g} {} of travel ({:g} to either side of its position), {:g} {}/s, {:g} V, {:g} s", box.travel,
+                     unit, box.travel / 2.0, box.speed, unit, box.volts, box.time_s);
 }
 
 void count_down(int seconds) {

@@ -1,4 +1,4 @@
-// Before a command moves an axis by itself: what it says, and the seconds to step back.
+// Warning and waiting time before a command moves an axis by itself.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// axistool open: any controller's logs in, records out, and what can be known.
+// axistool open: makes records from any controller's logs and diagnoses them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -139,7 +139,7 @@ void run(const OpenArguments& arguments) {
     written = host::write_opening(opening, arguments.folder);
   if (arguments.json != "-") {
     for (const std::string& ask : opening.asks()) fmt::print("not sure: {}\n", ask);
-    if (!accepted) fmt::print("No record was written: --yes accepts what is not sure, --map says it otherwise.\n");
+    if (!accepted) fmt::print("No record was written: --yes accepts uncertain channels, --map corrects them.\n");
     for (const std::string& path : written) fmt::print("written: {}\n", path);
   }
   nlohmann::json document = host::to_json(opening, written);
@@ -163,27 +163,27 @@ void add_open(CLI::App& app) {
       ->required();
   CLI::Option* sheet =
       add_input(*command, "--sheet", arguments->sheet, "data sheet of the drive (axistool sheet makes one)");
-  command->add_option("--kt", arguments->torque_constant, "the motor's constant alone: Nm/A, or N/A of a linear motor")
+  command->add_option("--kt", arguments->torque_constant, "only the motor constant: Nm/A, or N/A for a linear motor")
       ->check(CLI::PositiveNumber)
       ->excludes(sheet);
-  command->add_option(
-      "--map", arguments->map,
-      "column=channel[*factor][+shift], … in place of what was recognised (axistool help import); or the "
-      "mapping.toml of an earlier log");
+  command->add_option("--map", arguments->map,
+                      "column=channel[*factor][+shift], … to override what was recognised (axistool help import); or "
+                      "the mapping.toml of an earlier log");
   add_input(*command, "--hal", arguments->hal, "the .hal file that names halsampler's columns");
-  command->add_option("--period", arguments->period_s, "sampling period (s) of a log that does not tell it")
+  command->add_option("--period", arguments->period_s, "sampling period (s) of a log that does not state it")
       ->check(CLI::PositiveNumber);
   command->add_option("--drive", arguments->drive, "name of the drive, for the records' headers");
-  command->add_flag("--yes", arguments->yes, "accept what is not sure");
+  command->add_flag("--yes", arguments->yes, "accept uncertain channels");
   add_output(*command, "-o,--output", arguments->folder, "folder for the records and the accepted mapping.toml",
              FileRole::output_folder);
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
   command->footer(
-      "Lists each channel: the quantity that it is taken as, the factor, the reason, and how sure that is. Below 90 %\n"
-      "it asks on a terminal; elsewhere it needs --yes. With --sheet or --kt it continues: identify, diagnose, one "
-      "page;\n"
-      "a log named valid…, test… or check… is for validation. With --kt alone 1 mm stands for 1 rad.\n"
+      "Lists for each channel the assumed quantity, the factor, the reason, and the confidence. Below 90 % it asks on "
+      "a\n"
+      "terminal; elsewhere it needs --yes. With --sheet or --kt it continues: identify, diagnose, one page; a log "
+      "named\n"
+      "valid…, test… or check… is for validation. With --kt alone 1 mm stands for 1 rad.\n"
       "Examples:\n"
       "  axistool open scope.csv                                  (only look)\n"
       "  axistool open steps.csv jog.csv --kt 0.6 -o x            (records, mapping)\n"

@@ -58,7 +58,7 @@ void get_params(const ParameterArguments& arguments) {
   }
 }
 
-/// Downloads, unless it is only to be said what would be done.
+/// Downloads, or only prints the changes in a dry run.
 void change(host::BoardClient& board, const DeviceArguments& arguments, const ParameterValues& before,
             const ParameterValues& after, bool save) {
   host::require_fitting_set(after);
@@ -79,7 +79,7 @@ void change(host::BoardClient& board, const DeviceArguments& arguments, const Pa
     fmt::print("{} parameters would change; nothing was done\n", changes.size());
   else
     fmt::print("{} parameters changed, read back and verified; {}\n", changes.size(),
-               save ? "saved" : "not saved: `axistool save` makes them last");
+               save ? "saved" : "not saved: `axistool save` keeps them after power-off");
 }
 
 void set_params(const ParameterArguments& arguments) {
@@ -94,13 +94,13 @@ void reset_params(const ParameterArguments& arguments) {
   board.require_same_table();
   const ParameterValues before = board.read_values();
   if (!arguments.dry_run)
-    require_consent(arguments, "Set all parameters of the board to their initial values? No axis is fitted then.");
+    require_consent(arguments, "Set all parameters of the board to their initial values? Then no axis is fitted.");
   change(board, arguments, before, ParameterValues(before.axes()), arguments.save);
 }
 
 void diff_params(const ParameterArguments& arguments) {
   if (arguments.defaults == !arguments.sources.empty())
-    throw host::Failure(host::ExitCode::usage, "diff-params compares with a FILE or with --defaults, one of the two");
+    throw host::Failure(host::ExitCode::usage, "diff-params needs either a FILE or --defaults");
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
   const ParameterValues values = board.read_values();
@@ -155,7 +155,7 @@ nlohmann::json differences_json(const std::vector<Difference>& list) {
 
 void add_get_params(CLI::App& app) {
   auto arguments = std::make_shared<ParameterArguments>();
-  CLI::App* command = app.add_subcommand("get-params", "Values of a board's parameters");
+  CLI::App* command = app.add_subcommand("get-params", "Print the values of a board's parameters");
   command->add_option("NAME", arguments->names, "parameters or groups: x.kalman.k11, x.kalman, x; default: all");
   add_device_options(*command, *arguments);
   command->footer("Examples:\n  axistool get-params x.kalman\n  axistool get-params --sim --json -");
@@ -164,11 +164,12 @@ void add_get_params(CLI::App& app) {
 
 void add_set_params(CLI::App& app) {
   auto arguments = std::make_shared<ParameterArguments>();
-  CLI::App* command = app.add_subcommand("set-params", "Give a board parameters: all of them, or none if one is wrong");
+  CLI::App* command =
+      app.add_subcommand("set-params", "Set parameters of a board: all of them, or none if one is wrong");
   add_input(*command, "FILE|NAME=VALUE", arguments->sources, "files (axis-params/1) and single values, in this order")
       ->required();
-  command->add_option("--axis", arguments->axis, "axis of the board that a file's one axis is meant for: x, y …");
-  command->add_flag("--save", arguments->save, "save them too, as `axistool save` does");
+  command->add_option("--axis", arguments->axis, "board axis that gets a file's single axis: x, y …");
+  command->add_flag("--save", arguments->save, "also save them, as `axistool save` does");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
@@ -182,10 +183,11 @@ void add_set_params(CLI::App& app) {
 
 void add_diff_params(CLI::App& app) {
   auto arguments = std::make_shared<ParameterArguments>();
-  CLI::App* command = app.add_subcommand("diff-params", "Where a board's parameters differ from a file, bit by bit");
-  add_input(*command, "FILE", arguments->sources, "file of parameters; what it does not name is not compared");
+  CLI::App* command =
+      app.add_subcommand("diff-params", "List where a board's parameters differ from a file, bit by bit");
+  add_input(*command, "FILE", arguments->sources, "file of parameters; only the parameters in it are compared");
   command->add_flag("--defaults", arguments->defaults, "compare with the initial values");
-  command->add_option("--axis", arguments->axis, "axis of the board that the file's one axis is meant for: x, y …");
+  command->add_option("--axis", arguments->axis, "board axis to compare with the file's single axis: x, y …");
   add_device_options(*command, *arguments);
   command->footer("Example:\n  axistool diff-params x-params.toml\nExit code 1: there are differences.");
   command->callback([arguments] { diff_params(*arguments); });

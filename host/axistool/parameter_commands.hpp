@@ -1,4 +1,4 @@
-// What the commands on parameters have in common: sets, differences, printing.
+// Common to the commands on parameters: sets, differences, printing.
 #pragma once
 
 #include <nlohmann/json.hpp>

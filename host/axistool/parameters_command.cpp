@@ -44,9 +44,10 @@ void run(const ParametersArguments& arguments) {
 
 void add_parameters(CLI::App& app) {
   auto arguments = std::make_shared<ParametersArguments>();
-  CLI::App* command = app.add_subcommand("parameters", "the board's parameters: range, unit, initial value, meaning");
+  CLI::App* command =
+      app.add_subcommand("parameters", "list the board's parameters: range, unit, initial value, meaning");
   command->add_option("PART", arguments->filter, "only parameters whose name contains this");
-  command->add_flag("--markdown", arguments->markdown, "as the documentation page");
+  command->add_flag("--markdown", arguments->markdown, "print the documentation page");
   add_json_option(*command, arguments->json);
   command->footer(
       "Examples:\n"

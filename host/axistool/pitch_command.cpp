@@ -1,4 +1,4 @@
-// axistool pitch: what was measured of an axis's screw, for the board to take off its reference.
+// axistool pitch: measured pitch errors of an axis's screw, which the board subtracts from its reference.
 #include <fmt/format.h>
 
 #include <memory>
@@ -29,7 +29,7 @@ void pitch(const PitchArguments& arguments) {
   const auto axis = static_cast<std::uint8_t>(axis_index(arguments.axis, values.axes()));
   if (!values.axis(axis).get<"drive.fitted">())
     throw host::Failure(host::ExitCode::refused,
-                        fmt::format("axis {} is not fitted: give it the parameters of a design first", arguments.axis));
+                        fmt::format("axis {} is not fitted: set the parameters of a design first", arguments.axis));
   const double count_mm = host::count_mm_of(values, axis);
   const bool changes = arguments.remove || !arguments.file.empty();
   host::PitchPoints points;
@@ -71,22 +71,23 @@ void pitch(const PitchArguments& arguments) {
 
 void add_pitch(CLI::App& app) {
   auto arguments = std::make_shared<PitchArguments>();
-  CLI::App* command = app.add_subcommand("pitch", "Give a board what was measured of an axis's screw; or show it");
-  add_input(
-      *command, "FILE", arguments->file,
-      "CSV, a row a place, up to 256: x_mm,forward_um,backward_um (or x_mm,error_um), the actual position less the "
-      "one that was wanted, by the direction of approach; without it, shows the board's");
+  CLI::App* command = app.add_subcommand("pitch", "Load or show an axis's measured pitch errors");
+  add_input(*command, "FILE", arguments->file,
+            "CSV, one row per position, up to 256: x_mm,forward_um,backward_um (or x_mm,error_um), actual minus "
+            "commanded position for each direction of approach; without it, show the board's table");
   command->add_option("--axis", arguments->axis, "x, y, z or a")->required();
   command->add_flag("--off", arguments->off, "load it, but leave pitch.on off");
-  command->add_flag("--remove", arguments->remove, "take the axis's table off the board");
-  add_output(*command, "-o,--output", arguments->output, "write the table to this file, as FILE has it");
+  command->add_flag("--remove", arguments->remove, "remove the axis's table from the board");
+  add_output(*command, "-o,--output", arguments->output, "write the table to this file, in the format of FILE");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
-      "Examples:\n  axistool pitch screw.csv --axis x\n  axistool pitch --axis x -o now.csv\n"
-      "Measure with the axis homed and its pitch.on off; other compensation as it will be used. Between rows the error "
-      "is a straight line, beyond them it stays. Saves the table with all parameters that the board has now. Refused "
-      "(exit code 8) while a drive is enabled. Exit code 9: the file is bad.");
+      "Examples:\n"
+      "  axistool pitch screw.csv --axis x\n"
+      "  axistool pitch --axis x -o now.csv\n"
+      "Measure with the axis homed, its pitch.on off and all other compensation as in use. The error is interpolated "
+      "linearly between rows and constant beyond them. Saves the table together with all present parameters of the "
+      "board. Refused (exit code 8) while a drive is enabled. Exit code 9: the file is bad.");
   command->callback([arguments] { pitch(*arguments); });
 }
 

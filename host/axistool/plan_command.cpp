@@ -44,15 +44,15 @@ std::vector<host::Rival> rivals_of(const PlanArguments& arguments, const Insight
   if (rivals.empty())
     throw host::Failure(
         host::ExitCode::answer_is_no,
-        fmt::format("nothing is left to separate: the verdict on these records is {}{}{}. --rivals A,B "
-                    "plans a run for two explanations all the same",
+        fmt::format("nothing is left to separate: the verdict on these records is {}{}{}. --rivals A,B plans a run for "
+                    "two explanations anyway",
                     host::status_name(diagnosis.verdict.status), diagnosis.verdict.effects.empty() ? "" : ": ",
                     fmt::join(diagnosis.verdict.effects, " + ")));
   return rivals;
 }
 
 void print(const host::Plan& plan, const std::string& file) {
-  fmt::print("Rivals, as probable before the run:\n");
+  fmt::print("Probabilities of the rivals before the run:\n");
   for (const host::Rival& rival : plan.rivals)
     fmt::print("  {:<40} {:5.1f}%\n", host::rival_name(rival.kinds), 100.0 * rival.probability);
   if (plan.separable) {
@@ -72,7 +72,7 @@ void print(const host::Plan& plan, const std::string& file) {
   }
   if (!plan.by_hand.empty()) fmt::print("\nNo motion in this box separates:\n  {}\n", plan.by_hand);
   fmt::print("\n{} pieces were simulated{}.\n", plan.considered.size(),
-             plan.cut_short ? "; the budget ended before all had their turn (--most-samples)" : "");
+             plan.cut_short ? "; the budget ended before all were tried (--most-samples)" : "");
 }
 
 void run(const PlanArguments& arguments) {
@@ -100,14 +100,14 @@ void add_plan(CLI::App& app) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "plan the run that tells the remaining explanations apart");
   arguments->add_to(*command);
-  command->add_option("--rivals", arguments->rivals, "explanations to separate; default: what diagnose leaves")
+  command->add_option("--rivals", arguments->rivals, "explanations to separate; default: those that diagnose leaves")
       ->delimiter(',')
       ->expected(1, -1);
   command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, s")
       ->required();
-  add_output(*command, "-o,--output", arguments->output, "run to write, for excite")->required();
+  add_output(*command, "-o,--output", arguments->output, "file of the run, for excite")->required();
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
-  command->add_option("--most-samples", arguments->most_steps, "samples that may be simulated")
+  command->add_option("--most-samples", arguments->most_steps, "limit of simulated samples")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->footer(
@@ -118,9 +118,10 @@ void add_plan(CLI::App& app) {
       "  axistool diagnose x.toml --train steps.csv run.csv --believed plan.json\n"
       "Simulates candidate motions with each explanation as the truth, under the controller of `axistool design "
       "MODEL`,\n"
-      "and keeps those that the other explanations fit worst, refitted as they may be. States the odds beforehand.\n"
-      "Where no motion in the box tells them apart, it says what would. Exit code 0 in both cases; 1 where diagnose\n"
-      "leaves nothing to tell apart.");
+      "and keeps those that the other explanations fit worst after refitting. States the expected odds.\n"
+      "If no motion in the box separates them, it says which test would. Exit code 0 in both cases; 1 if diagnose "
+      "leaves\n"
+      "only one explanation.");
   command->callback([arguments] { with_log_of_failure(arguments->json, "axis-plan/1", [&] { run(*arguments); }); });
 }
 

@@ -1,4 +1,4 @@
-// Measured machines with the answers that their records allow: what diagnose makes of them.
+// Results of diagnose on measured machines with known answers.
 #pragma once
 
 #include <string>

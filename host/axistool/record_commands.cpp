@@ -43,12 +43,13 @@ CLI::App* add_edit(CLI::App& app, const char* name, const char* what, EditArgume
 
 void add_cut(CLI::App& app) {
   auto arguments = std::make_shared<EditArguments>();
-  CLI::App* command = add_edit(app, "cut", "a part of a record", *arguments);
-  command->add_option("--from", arguments->from_s, "first time to keep, s, as t_s counts; default: the beginning");
-  command->add_option("--to", arguments->to_s, "last time to keep, s; default: the end");
+  CLI::App* command = add_edit(app, "cut", "cut a part out of a record", *arguments);
+  command->add_option("--from", arguments->from_s, "first t_s to keep, s; default: the beginning");
+  command->add_option("--to", arguments->to_s, "last t_s to keep, s; default: the end");
   command->footer(
-      "Example:\n  axistool cut log.csv --from 2.5 --to 9 -o moving.csv\n"
-      "Time stamps stay as they are; the header says what was cut.");
+      "Example:\n"
+      "  axistool cut log.csv --from 2.5 --to 9 -o moving.csv\n"
+      "Time stamps stay unchanged; the header says what was cut.");
   command->callback([arguments] {
     tell(*arguments, host::cut_record(host::read_file(arguments->record, host::kRecordSize), arguments->record,
                                       arguments->from_s, arguments->to_s));
@@ -57,13 +58,14 @@ void add_cut(CLI::App& app) {
 
 void add_shift(CLI::App& app) {
   auto arguments = std::make_shared<EditArguments>();
-  CLI::App* command = add_edit(app, "shift", "a record with one channel moved in time", *arguments);
-  command->add_option("--channel", arguments->channel, "its name in the record: w_rad_s, u_V, …")->required();
-  command->add_option("--by", arguments->by_s, "seconds; above 0: later, below: earlier")->required();
+  CLI::App* command = add_edit(app, "shift", "shift one channel of a record in time", *arguments);
+  command->add_option("--channel", arguments->channel, "channel's name in the record: w_rad_s, u_V, …")->required();
+  command->add_option("--by", arguments->by_s, "seconds; positive: later, negative: earlier")->required();
   command->footer(
-      "Example:\n  axistool shift log.csv --channel w_rad_s --by -0.014 -o aligned.csv\n"
-      "A channel that runs 14 ms behind the others is moved by -0.014. Rows at the ends for which it holds nothing are "
-      "cut off.");
+      "Example:\n"
+      "  axistool shift log.csv --channel w_rad_s --by -0.014 -o aligned.csv\n"
+      "Shift a channel that lags the others by 14 ms by -0.014. Rows at the ends without a value of this channel are "
+      "cut.");
   command->callback([arguments] {
     tell(*arguments, host::shift_channel(host::read_record(arguments->record), arguments->channel, arguments->by_s));
   });

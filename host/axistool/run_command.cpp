@@ -67,7 +67,7 @@ std::string_view end_name(PathEnd end) {
   return "unknown";
 }
 
-/// Where the program begins: where the references stand.
+/// Start of the program: the present references.
 host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale) {
   host::PathPoint point = host::PathPoint::Zero();
   for (std::size_t i = 0; i < at.size(); ++i)
@@ -131,7 +131,7 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
   return document;
 }
 
-/// While one lives, signals wait until they are asked for: in the middle of a report they would look like a lost board.
+/// Blocks signals until they are polled: in the middle of a report they would look like a lost board.
 class SignalsWait {
  public:
   SignalsWait() {
@@ -143,7 +143,7 @@ class SignalsWait {
   SignalsWait(const SignalsWait&) = delete;
   SignalsWait& operator=(const SignalsWait&) = delete;
 
-  /// Those that have come act now.
+  /// Pending signals act now.
   void let_in() {
     pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
     pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
@@ -172,8 +172,8 @@ class RunLine {
                100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
                progress.state.permille / 10.0,
                progress.waits != nullptr
-                   ? fmt::format(", WAITS at the stop in line {}: Enter goes on", progress.waits->line)
-               : is_held ? ", HELD: Ctrl-Z goes on"
+                   ? fmt::format(", WAITS at the stop in line {}: Enter continues", progress.waits->line)
+               : is_held ? ", HELD: Ctrl-Z continues"
                          : "");
     std::fflush(stderr);
   }
@@ -186,7 +186,7 @@ class RunLine {
 
 bool has_terminal() { return ::isatty(STDIN_FILENO) != 0; }
 
-/// Whether the operator has pressed Enter since this was asked last. Never waits.
+/// Whether the operator has pressed Enter since the last call. Never waits.
 bool enter_was_pressed() {
   bool pressed = false;
   pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -202,26 +202,25 @@ bool enter_was_pressed() {
 /// A program that waits for an operator needs one.
 void require_operator(const RunArguments& arguments, const host::PlannedPath& path) {
   if (path.stops.empty() || arguments.passes_stops || has_terminal()) return;
-  throw Failure(
-      ExitCode::refused,
-      fmt::format("{} stops for its operator in line {} (M0, M1), and there is no terminal to go on from: run it "
-                  "on a terminal, or with --pass-stops, which goes on at once",
-                  arguments.file, path.stops.front().line));
+  throw Failure(ExitCode::refused,
+                fmt::format("{} waits for the operator in line {} (M0, M1), but this is no terminal: run it on a "
+                            "terminal, or with --pass-stops, which skips the stops",
+                            arguments.file, path.stops.front().line));
 }
 
-/// Before a program begins, and before it goes on after a stop: axes without faults that know where they are.
+/// Before a program starts or continues after a stop: the axes must be homed and without faults.
 void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative) {
   const host::BoardState state = board.status();
   for (const std::size_t axis : scale.axes) {
     host::require_no_fault(state, static_cast<std::uint8_t>(axis));
     if (!relative && (state.axis.at(axis).flags & firmware::kAxisHomed) == 0)
-      throw Failure(ExitCode::refused, fmt::format("axis {} does not know where it is: `axistool home {}` first, or "
-                                                   "--here, which takes its present count for its position",
+      throw Failure(ExitCode::refused, fmt::format("axis {} is not homed: `axistool home {}` first, or --here, which "
+                                                   "takes its present count as its position",
                                                    firmware::kAxisNames.at(axis), firmware::kAxisNames.at(axis)));
   }
 }
 
-/// Whether a program that waits goes on.
+/// Whether a waiting program continues.
 class Operator {
  public:
   Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
@@ -231,7 +230,7 @@ class Operator {
     const bool pressed = enter_was_pressed();  // also drops what was typed before the stop
     if (progress.waits != announced_ && progress.waits != nullptr)
       fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
-                 arguments_.passes_stops ? ", and goes on at once" : "; Enter goes on, Ctrl-C ends it");
+                 arguments_.passes_stops ? ", and continues at once" : "; Enter continues, Ctrl-C ends it");
     const bool is_new = progress.waits != announced_;
     announced_ = progress.waits;
     if (progress.waits == nullptr || !(arguments_.passes_stops || (pressed && !is_new))) return false;
@@ -253,12 +252,12 @@ void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end)
       host::require_no_fault(board.status(), static_cast<std::uint8_t>(axis));
   if (end == PathEnd::starved)
     throw Failure(ExitCode::time_out,
-                  "the program came too slowly for the board, which has stopped on the path: is this computer busy?");
+                  "the program arrived too slowly, so the board stopped on the path: is this computer busy?");
   if (end != PathEnd::completed)
     throw Failure(ExitCode::answer_is_no, fmt::format("{} before its end; the axes stand on the path", end_name(end)));
 }
 
-/// A program that cannot be right is said so before anybody asks for a machine.
+/// Checks the program before it needs a machine.
 void require_program(const std::string& text, const RunArguments& arguments) {
   host::GcodeMachine any;
   any.axes = 3;
@@ -266,7 +265,7 @@ void require_program(const std::string& text, const RunArguments& arguments) {
   host::read_gcode(text, arguments.file, host::PathPoint::Zero(), any);
 }
 
-/// Nothing where a dry run does without: limits come from files then, or are a new board's.
+/// Empty for a dry run without a board: limits then come from files or are a new board's.
 std::optional<host::BoardClient> board_of(const RunArguments& arguments) {
   if (arguments.dry_run && !arguments.params.empty()) return {};
   try {
@@ -281,9 +280,9 @@ firmware::ParameterValues values_without_board(const RunArguments& arguments) {
   firmware::ParameterValues values{hal::kAxisCount};
   for (const std::string& file : arguments.params) host::put_file(values, file);
   if (talks(arguments))
-    fmt::print("no board asked: {}\n", arguments.params.empty()
-                                           ? "against the limits that a new board has; --params FILE gives others"
-                                           : "against the limits of the files");
+    fmt::print("no board contacted: {}\n", arguments.params.empty()
+                                               ? "checked against a new board's limits; --params FILE gives others"
+                                               : "checked against the limits of the files");
   return values;
 }
 
@@ -362,11 +361,10 @@ void add_run(CLI::App& app) {
   command->add_option("--feed", arguments->feed_percent, "feed override, %")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 100.0));
-  command->add_option("--linear", arguments->linear, "axes whose parameters stand in metres")->delimiter(',');
-  command->add_flag("--here", arguments->here, "axes that are not homed: their counts are their positions");
-  command->add_flag("--pass-stops", arguments->passes_stops,
-                    "M0 and M1 wait for nobody: for programs that are watched");
-  add_input(*command, "--params", arguments->params, "with --dry-run: limits from these files, and no board");
+  command->add_option("--linear", arguments->linear, "axes whose parameters are in metres")->delimiter(',');
+  command->add_flag("--here", arguments->here, "for axes that are not homed: take their counts as positions");
+  command->add_flag("--pass-stops", arguments->passes_stops, "skip the stops M0 and M1; watch the program");
+  add_input(*command, "--params", arguments->params, "with --dry-run: take limits from these files, without a board");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
@@ -375,11 +373,10 @@ void add_run(CLI::App& app) {
       "  axistool run part.ngc --capture part.csv\n"
       "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30, X Y Z, N, "
       "comments;\n"
-      "anything else is an error that names its line. Paths are exact, G61, unless the program says G64; G64 without "
-      "P\n"
-      "keeps within 0.05 mm. On a terminal Ctrl-Z holds the feed and lets it go again, Ctrl-C stops on the path; M0 "
-      "and M1 "
-      "wait\nthere for Enter.");
+      "anything else is an error that names the line. The path is exact (G61) unless the program says G64; G64\n"
+      "without P has a tolerance of 0.05 mm. On a terminal Ctrl-Z holds and resumes the feed, Ctrl-C stops on the "
+      "path, and\n"
+      "M0 and M1 wait for Enter.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -23,7 +23,7 @@ using host::Status;
 
 /// Part of the explainable squared error that an answer should remove.
 constexpr double kMostOfIt = 0.8;
-/// A whole case whose error exceeds this many floors has something to find, whatever a piece of it shows.
+/// A whole case with an error above this many noise floors has an effect to find, whatever a part of it shows.
 constexpr double kSomethingToFind = 2.0;
 
 struct Arguments {
@@ -127,7 +127,9 @@ void print(const Answer& answer, std::size_t width) {
 
 void print(const Summaries& summaries) {
   const auto& [none, single, pairs, alien] = summaries;
-  fmt::print("\nWhole cases. Errors are on validation data over the floor: 1 is perfect.\n");
+  fmt::print(
+      "\n"
+      "Whole cases. Errors are on validation data in multiples of the noise floor: 1 is perfect.\n");
   if (none.cases > 0) fmt::print("nothing hidden: {} cases, {} false claims\n", none.cases, none.count(Outcome::wrong));
   if (single.cases > 0)
     fmt::print(
@@ -174,7 +176,7 @@ void print_pieces(const std::vector<Answer>& answers, const std::map<std::string
   for (const auto& [group, line] : lines)
     fmt::print("{:<28} {:>7} {:>7} {:>7} {:>12} {:>13} {:>10} {:>9}\n", group, line.pieces, line.right, line.wrong,
                line.unexplained, line.insufficient, line.all_clear, line.false_all_clear);
-  fmt::print("{} of {} names given are wrong.\n", wrong, claims);
+  fmt::print("{} of {} named effects are wrong.\n", wrong, claims);
 }
 
 void print_nulls(const std::vector<Answer>& answers) {
@@ -202,7 +204,7 @@ void print(const char* title, const host::Reliability& reliability) {
   }
 }
 
-/// What is to be asked, in an order of its own where only a sample of it is.
+/// The cases to run, in random order if only a sample is used.
 std::vector<host::Trial> trials_of(const Arguments& arguments, std::map<std::string, bool>& worth) {
   std::vector<host::Trial> wholes, pieces;
   std::map<std::string, double> error;
@@ -261,7 +263,7 @@ void run_left_out(const std::vector<host::Trial>& trials, std::size_t width, boo
     if (result.over.empty())
       fmt::print("{:<{}}  no curve\n", "", width);
     else
-      fmt::print("{:<{}}  a curve over {} takes {:.0f} % of what there is to explain\n", "", width, result.over,
+      fmt::print("{:<{}}  a curve over {} explains {:.0f} % of the explainable error\n", "", width, result.over,
                  100.0 * result.curve);
     std::fflush(stdout);
   }
@@ -335,15 +337,16 @@ void run(const Arguments& arguments) {
   print(Summaries(whole));
   print_pieces(answers, worth);
   print_nulls(answers);
-  print("The most probable of each answer", host::reliability_of(host::top_forecasts(answers)));
-  print("All that was said", host::reliability_of(host::all_forecasts(answers)));
+  print("Most probable effect of each answer", host::reliability_of(host::top_forecasts(answers)));
+  print("All stated probabilities", host::reliability_of(host::all_forecasts(answers)));
 }
 
 }  // namespace
 
 void add_scoreboard(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("scoreboard", "how often diagnose is right on cases whose truth is known");
+  CLI::App* command =
+      app.add_subcommand("scoreboard", "show how often diagnose is right on cases whose truth is known");
   command->add_option(
       "FOLDER", arguments->folder,
       "folder with cases at any depth: each a folder with model.toml, train-*.csv, validate.csv, truth.json");
@@ -354,18 +357,20 @@ void add_scoreboard(CLI::App& app) {
                     "also each training record alone, each pair, and their first 2, 4 and 8 s (1 to 10 s where nothing "
                     "is hidden)");
   command->add_flag("--rewritten", arguments->rewritten,
-                    "instead: each whole case written in other ways that leave the physics alone (another volt, linear "
-                    "for rotary, mirrored, cut in two ...), and how far the answers differ");
-  command->add_flag("--left-out", arguments->left_out,
-                    "instead: each whole case with its own effect taken out of the catalogue, and what a free curve "
-                    "takes of it");
-  command->add_option("--nulls", arguments->nulls, "also so many simulated drives in which nothing is hidden");
-  command->add_option("--sample", arguments->sample, "only so many of the cases and of the cuts, drawn at random");
-  command->add_option("--seed", arguments->seed, "of the sample and of the simulated drives")->capture_default_str();
+                    "instead: rewrite each whole case without changing its physics (other volt scale, linear for "
+                    "rotary, mirrored, cut in two ...), and show how far the answers differ");
+  command->add_flag(
+      "--left-out", arguments->left_out,
+      "instead: remove each whole case's effect from the catalogue, and show how much a free curve explains");
+  command->add_option("--nulls", arguments->nulls, "also this many simulated drives without a hidden effect");
+  command->add_option("--sample", arguments->sample, "only this many cases and cuts, drawn at random");
+  command->add_option("--seed", arguments->seed, "seed of the sample and of the simulated drives")
+      ->capture_default_str();
   add_json_option(*command, arguments->json);
   command->footer(
-      "Example:\n  axistool scoreboard tests/data/drive-cases --cuts --sample 5\n"
-      "Exit code 0 whatever the answers are; 9 for a bad file or a folder without cases.");
+      "Example:\n"
+      "  axistool scoreboard tests/data/drive-cases --cuts --sample 5\n"
+      "Exit code 0 for any result; 9 for a bad file or a folder without cases.");
   command->callback([arguments] {
     if (arguments->folder.empty() == arguments->real.empty())
       throw host::Failure(host::ExitCode::usage, "give either a folder of cases or --real DIR");

@@ -28,8 +28,8 @@ struct ServeArguments {
   bool no_browser = false;
 };
 
-/// Opens the page by a file of the user's own that leads to it: words of a command line are there for all users to see,
-/// and the address holds the token. The file is gone when this object is.
+/// Opens the page through a private file that redirects to it: all users can see command lines, and the address holds
+/// the token. The destructor removes the file.
 class BrowserStart {
  public:
   explicit BrowserStart(const std::string& url) {
@@ -80,7 +80,7 @@ void add_serve(CLI::App& app) {
       app.add_subcommand("serve", "the workbench: compare, diagnose and add effects in the browser, on a folder");
   command->add_option("DIR", arguments->folder, "folder of models and records")->capture_default_str();
   constexpr int kLastPort = 65535;
-  command->add_option("--port", arguments->port, "of 127.0.0.1; 0 takes a free one")
+  command->add_option("--port", arguments->port, "port on 127.0.0.1; 0 picks a free one")
       ->capture_default_str()
       ->check(CLI::Range(0, kLastPort));
   command->add_flag("--no-browser", arguments->no_browser, "print the address only");
@@ -88,13 +88,11 @@ void add_serve(CLI::App& app) {
       "Examples:\n"
       "  axistool serve\n"
       "  axistool serve measurements --port 8080 --no-browser\n"
-      "Prints one line, the address, when it answers; Ctrl-C ends it. It answers this computer alone, and only "
-      "whoever\n"
-      "has the address: the token in it is a key. Nothing outside the folder is read or written. Results of jobs lie "
-      "in\n"
-      "its folder \"workbench\"; models that were added to lie beside the model that they came from. Every figure is "
+      "Prints its address when it is ready; Ctrl-C ends it. It answers only this computer, and only requests with the\n"
+      "token in the address. It reads and writes nothing outside the folder. Results of jobs are in its subfolder\n"
+      "\"workbench\"; extended models are beside their original. Every figure is the one that the command prints, and "
       "the\n"
-      "one that the command prints, and the page shows the command.");
+      "page shows the command.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -37,7 +37,7 @@ void run(const SheetArguments& arguments) {
 
 void add_sheet(CLI::App& app) {
   const auto arguments = std::make_shared<SheetArguments>();
-  CLI::App* command = app.add_subcommand("sheet", "A commented data sheet of a drive, to be filled in");
+  CLI::App* command = app.add_subcommand("sheet", "Write a commented data sheet of a drive to fill in");
   command->add_option("name", arguments->name, "name of the drive")
       ->required()
       ->check([](const std::string& name) -> std::string {
@@ -46,11 +46,11 @@ void add_sheet(CLI::App& app) {
   command->add_option("--kind", arguments->kind, "rotary or linear")
       ->required()
       ->check(CLI::IsMember({"rotary", "linear"}));
-  command->add_option("--effort", arguments->effort, "what the logs hold: current (default) or voltage")
+  command->add_option("--effort", arguments->effort, "quantity in the logs: current (default) or voltage")
       ->check(CLI::IsMember({"current", "voltage"}));
   command->add_option("--kt", arguments->constant, "motor constant, Nm/A or N/A")->check(CLI::PositiveNumber);
-  command->add_option("--lead", arguments->lead, "travel of a motor turn, mm")->check(CLI::PositiveNumber);
-  command->add_option("--step", arguments->step, "travel of an encoder count, mm")->check(CLI::PositiveNumber);
+  command->add_option("--lead", arguments->lead, "travel per motor turn, mm")->check(CLI::PositiveNumber);
+  command->add_option("--step", arguments->step, "travel per encoder count, mm")->check(CLI::PositiveNumber);
   command->add_option("--period", arguments->period_s, "sampling period of the logs, s")->check(CLI::PositiveNumber);
   add_output(*command, "-o,--output", arguments->path, "the sheet to write (axis-model/1)")->required();
   const auto print_page = [] {

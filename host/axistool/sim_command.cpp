@@ -5,12 +5,14 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 
 #include "firmware/app/parameters/parameter_values.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/external_plant/external_plant.hpp"
+#include "host/external_plant/plant_server.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
 #include "host/open_board.hpp"
@@ -31,7 +33,7 @@ struct SimArguments {
   std::string serial_number = "SIMULATED";
   std::uint64_t seed = 1;
   double patience_s = 10.0;
-  bool forget = false, usb = false;
+  bool forget = false, usb = false, as_plant = false;
   std::string printed;
 };
 
@@ -47,18 +49,18 @@ void make_folder_of(const std::string& flash_file) {
   if (!folder.empty()) std::filesystem::create_directories(folder, fault);
   if (fault)
     throw host::Failure(host::ExitCode::permission,
-                        fmt::format("{}: cannot make the folder of the board's parameters: {}; --flash FILE keeps them "
-                                    "elsewhere, --forget nowhere",
+                        fmt::format("{}: cannot make the folder for the board's parameters: {}; --flash FILE keeps "
+                                    "them elsewhere, --forget discards them",
                                     folder.string(), fault.message()));
 }
 
-/// Where no model is given the paper's two axes take turns.
+/// Without a model, the paper's two axes alternate.
 host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
   return host::usual_axis(file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value()
                                        : host::read_drive(file));
 }
 
-/// The program moves in the drives' place; of them the data sheets stay.
+/// The external program replaces the drives; only their data sheets are used.
 void hand_over(std::vector<host::SimulatedDrive>& drives, const SimArguments& arguments) {
   const auto patience =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(arguments.patience_s));
@@ -72,11 +74,11 @@ void hand_over(std::vector<host::SimulatedDrive>& drives, const SimArguments& ar
 
 void tell(const std::string& place, const std::string& flash_file, const std::string& device) {
   fmt::print("simulated board {}\nparameters {}\nuse it with --device {}; Ctrl-C ends it\n", place,
-             flash_file.empty() ? "are forgotten at the end" : "in " + flash_file, device);
+             flash_file.empty() ? "are discarded at the end" : "in " + flash_file, device);
   std::fflush(stdout);
 }
 
-/// What an engineer would know of the machine: its data sheet, as --drive of excite and commission take it.
+/// The machine's data sheet, for --drive of excite and commission.
 void print_drive(const SimArguments& arguments) {
   const std::uint8_t axis = host::axis_index(arguments.printed, arguments.axes);
   sim::DriveDescription sheet = drive(arguments.models.at(axis), axis).drive;
@@ -88,6 +90,13 @@ void print_drive(const SimArguments& arguments) {
 void run(SimArguments arguments) {
   if (!arguments.printed.empty()) {
     print_drive(arguments);
+    return;
+  }
+  if (arguments.as_plant) {
+    std::vector<sim::DriveDescription> drives;
+    for (std::size_t axis = 0; axis < arguments.axes; ++axis)
+      drives.push_back(drive(arguments.models[axis], axis).drive);
+    host::serve_plant(drives, arguments.seed, std::cin, std::cout);
     return;
   }
   if (arguments.socket.empty()) arguments.socket = host::default_socket_path();
@@ -126,42 +135,50 @@ void run(SimArguments arguments) {
 
 void add_sim(CLI::App& app) {
   auto arguments = std::make_shared<SimArguments>();
-  CLI::App* command = app.add_subcommand("sim", "Run a simulated board: the firmware's program with drives behind it");
-  CLI::Option* socket =
-      command->add_option("--socket", arguments->socket, "where it listens; default: where --device sim looks");
+  CLI::App* command = app.add_subcommand("sim", "Run a simulated board: the firmware with simulated drives");
+  CLI::Option* socket = command->add_option("--socket", arguments->socket,
+                                            "socket to listen on; default: the one that --device sim uses");
   CLI::Option* usb = command->add_flag(
       "--usb", arguments->usb, "make it a USB device of this computer instead (as root, after modprobe vhci-hcd)");
   usb->excludes(socket);
   command->add_option("--serial", arguments->serial_number, "its serial number on USB")
       ->capture_default_str()
       ->needs(usb);
-  command->add_option("--axes", arguments->axes, "how many axes it has")
+  command->add_option("--axes", arguments->axes, "number of axes")
       ->check(CLI::Range(std::size_t{1}, hal::kMostAxes))
       ->capture_default_str();
   for (std::size_t axis = 0; axis < hal::kMostAxes; ++axis)
     add_input(*command, fmt::format("--{}", firmware::kAxisNames[axis]), arguments->models[axis],
               axis == 0 ? "model of the drive on axis x (axis-model/1); default: the paper's x axis"
-                        : "likewise of the next axis, if there is one");
+                        : "the same for the next axis");
   CLI::Option* plant = command->add_option(
       "--plant", arguments->plant,
-      "program that moves in the drives' place, in lockstep (axis-plant/1); --x, --y … are then data sheets");
-  command->add_option("--patience", arguments->patience_s, "seconds that its answer may take")
+      "external plant program instead of the drives, in lockstep (axis-plant/1); --x, --y … are then data sheets");
+  command->add_option("--patience", arguments->patience_s, "time-out for its answer, s")
       ->check(CLI::Range(0.01, 600.0))
       ->capture_default_str()
       ->needs(plant);
+  command
+      ->add_flag(
+          "--as-plant", arguments->as_plant,
+          "no board: only the drives, as the plant of another controller (axis-plant/1 on standard input and output)")
+      ->excludes(plant)
+      ->excludes(usb)
+      ->excludes(socket);
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
-  command->add_option("--seed", arguments->seed, "of the sensors' noise")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of the sensors' noise")->capture_default_str();
   command->add_option("--print-drive", arguments->printed,
                       "print the data sheet of this axis (x, y, …), for --drive of other commands, and end");
   command->footer(
-      "Each axis has a home switch 25 mm from where it is at power-up and, if rotary, an index pulse each turn.\n"
+      "Each axis has a home switch 25 mm from its power-up position and, if rotary, one index pulse per turn.\n"
       "Examples:\n"
       "  axistool sim &\n"
       "  axistool info --device sim\n"
       "  axistool sim --print-drive x > x-drive.toml\n"
       "  sudo axistool sim --usb --serial BENCH-1 &\n"
       "  axistool sim --x my-model.toml --forget --socket /tmp/board.socket\n"
+      "  axistool sim --axes 1 --x my-model.toml --as-plant\n"
       "  axistool sim --axes 1 --x data-sheet.toml --plant 'python3 05-own-plant.py' --forget");
   command->callback([arguments] { run(*arguments); });
 }

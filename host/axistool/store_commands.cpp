@@ -59,7 +59,7 @@ void backup(const StoreArguments& arguments) {
   if (!talks(arguments)) return;
   fmt::print("{} parameters written to {}\n", values.size(), arguments.file);
   if (!foreign.empty())
-    fmt::print("{} stored values fit this firmware's table no more; the file keeps them as comments\n", foreign.size());
+    fmt::print("{} stored values do not fit this firmware's table; the file keeps them as comments\n", foreign.size());
 }
 
 void restore(const StoreArguments& arguments) {
@@ -84,7 +84,7 @@ void restore(const StoreArguments& arguments) {
                arguments.json);
   if (!talks(arguments)) return;
   print_differences(changes, "was", "is");
-  fmt::print("{} parameters {}; what the file does not name has its initial value\n", changes.size(),
+  fmt::print("{} parameters {}; all others have their initial values\n", changes.size(),
              arguments.dry_run ? "would change" : "changed and saved");
 }
 
@@ -92,7 +92,7 @@ void restore(const StoreArguments& arguments) {
 
 void add_save(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
-  CLI::App* command = app.add_subcommand("save", "Keep a board's parameters over power-off");
+  CLI::App* command = app.add_subcommand("save", "Save a board's parameters to its flash");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
@@ -111,8 +111,8 @@ void add_backup(CLI::App& app) {
 
 void add_restore(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
-  CLI::App* command = app.add_subcommand("restore", "Give a board exactly the parameters of a backup, and save them");
-  add_input(*command, "FILE", arguments->file, "file that backup wrote")->required();
+  CLI::App* command = app.add_subcommand("restore", "Set a board to exactly the parameters of a backup, and save them");
+  add_input(*command, "FILE", arguments->file, "file written by backup")->required();
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer("Example:\n  axistool restore machine-7.toml --yes");

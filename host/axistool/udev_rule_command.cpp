@@ -14,8 +14,8 @@ void add_udev_rule(CLI::App& app) {
   CLI::App* command = app.add_subcommand("udev-rule", "print or install the rule that lets users open a board");
   command->add_flag("--install", *install, fmt::format("write it to {} and apply it (as root)", host::kUdevRuleFile));
   command->add_flag("--poll-always", *poll_always,
-                    fmt::format("instead of the rule: the line of {} by which a board opens at once over hidraw, where "
-                                "Linux otherwise waits 50 ms; it holds once usbhid is loaded again (restart)",
+                    fmt::format("instead of the rule: the line of {} that avoids the 50 ms wait when Linux opens a "
+                                "board over hidraw; effective once usbhid is reloaded (restart)",
                                 host::kUsbPollingFile));
   command->footer(
       "Examples:\n"
@@ -30,7 +30,8 @@ void add_udev_rule(CLI::App& app) {
     }
     if (*poll_always) {
       host::install_usb_polling();
-      fmt::print("{} is written; it holds once usbhid is loaded again: restart the computer\n", host::kUsbPollingFile);
+      fmt::print("{} is written; it takes effect once usbhid is reloaded: restart the computer\n",
+                 host::kUsbPollingFile);
       return;
     }
     host::install_udev_rule();

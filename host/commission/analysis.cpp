@@ -1,4 +1,4 @@
-// Compare, diagnose, improve: the axis stands disabled meanwhile.
+// Compare, diagnose, improve: meanwhile the axis is disabled.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,9 +31,8 @@ std::vector<std::string> paths(CommissionSession& session, const std::vector<std
   return all;
 }
 
-/// A record from where its axis has been in motion for a moment. How a spring, a gap or bristles stood before is
-/// nowhere recorded: of a machine of two masses, the first tenth of a second makes nine tenths of what its own values
-/// leave.
+/// A record without the first moments of motion. The initial state of a spring, a gap or bristles is not recorded: on a
+/// machine with two masses the first 0.1 s causes nine tenths of the true model's error.
 Record settled_record(const std::string& path, double resolution) {
   constexpr double kMoved = 5.0;         // counts: more than an encoder shivers
   constexpr double kForgotten_s = 0.15;  // a tenth of a second (sim::Drive::memory_s), and what smoothing reaches
@@ -60,8 +59,8 @@ std::string named(const DiagnosisVerdict& verdict) {
                      verdict.explanation);
 }
 
-/// What a second mass or bristles leave depends on how they stood when a window began: the machine's own values leave
-/// two or three floors. The diagnosis has tried every further effect on top, and once more would take minutes.
+/// The error with a second mass or bristles depends on their state at the start of a window: even the true model leaves
+/// two or three noise floors. The diagnosis has already tried every further effect; a repetition would take minutes.
 int rungs_for(const sim::DriveDescription& model) {
   const sim::Drive drive(model);
   return drive.has_second_mass() || drive.bristles.has_value() ? 1 : kMostRungs;
@@ -88,7 +87,7 @@ CommissionStepResult compare_first(CommissionSession& session) {
       compare_model(with_measured_sensors(given, measured), measured, figure_set(given, counted, kWindow_s));
   session.folder().write_json("comparison.json", comparison_json(comparison));
   return {{"comparison.json"},
-          fmt::format("On motions that it has not seen the model errs by {:.3g} times the noise floor.",
+          fmt::format("The prediction error on the validation motions is {:.3g} times the noise floor.",
                       comparison.error.combined)};
 }
 
@@ -107,7 +106,7 @@ CommissionStepResult diagnose_machine(CommissionSession& session) {
 
 CommissionStepResult improve_model(CommissionSession& session) {
   const Computing computing(session);
-  // Where a run has decided, its answer is part of what there is to improve.
+  // If a run has decided, start from its answer.
   const bool is_decided = session.folder().document().value("decided", nlohmann::json()).is_array();
   const std::string path = is_decided ? session.folder().require("decided.toml", "separate")
                                       : session.folder().require("model.toml", "friction");

@@ -17,7 +17,7 @@ constexpr std::array<CommissionStepResult (*)(CommissionSession&), kCommissionSt
     find_friction, measure_response, record_validation, compare_first, diagnose_machine,
     separate,      improve_model,    compensate,        write_page};
 
-/// Gives a board that was fitted before its own parameters back; quietly, since something has failed already.
+/// Restores the former parameters of a board; ignores errors, because a step has already failed.
 void give_back(CommissionSession& session) noexcept {
   session.leave_standing();
   try {
@@ -30,10 +30,10 @@ void give_back(CommissionSession& session) noexcept {
 constexpr std::size_t kControl = 2, kLastInLoop = 7;  // places of control, validate
 static_assert(kCommissionSteps[kControl].name == "control" && kCommissionSteps[kLastInLoop].name == "validate");
 
-/// A step whose motions the first controller makes.
+/// A step that moves with the first controller.
 bool is_in_loop(std::size_t step) { return step > kControl && step <= kLastInLoop; }
 
-/// The axis has stopped with a fault that too lively a controller may have made.
+/// The axis has stopped with a fault that too high a bandwidth may have caused.
 bool is_swinging(CommissionSession& session) {
   const auto fault = static_cast<firmware::AxisFault>(session.board().status().axis.at(session.options().axis).fault);
   return fault == firmware::AxisFault::limit_cycle || fault == firmware::AxisFault::following_error ||
@@ -58,14 +58,14 @@ void commission_axis(BoardClient& board, const CommissionOptions& options, const
       talk.tell("  " + result.said);
     } catch (const Failure& failure) {
       if (failure.code == ExitCode::device_fault && is_swinging(session) && is_in_loop(step) && session.calm_down()) {
-        talk.tell(fmt::format("  The loop swings: {}. Again with half the bandwidth.", failure.what()));
+        talk.tell(fmt::format("  The loop oscillates: {}. Trying again with half the bandwidth.", failure.what()));
         step = kControl - 1;
         continue;
       }
       give_back(session);
       const std::string how = fmt::format(
-          "{}. The axis stands, disabled; {} steps are in the folder. When that is mended, "
-          "go on with --from {}",
+          "{}. The axis is at rest and disabled; {} steps are in the folder. After correcting this, continue with "
+          "--from {}",
           failure.what(), step, kCommissionSteps[step].name);
       try {
         folder.put("stopped_because", failure.what());

@@ -1,4 +1,4 @@
-// From an axis of which nothing but the data sheet is known to one that follows better, step by step.
+// Commissions an axis step by step, from its data sheet alone.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace host {
 
-/// Makes the steps from `from` to `to` (places in kCommissionSteps). However it ends, the axis stands disabled and the
-/// folder holds what was found; a failure's message then says how to go on. Where the board had parameters of its own
-/// before, a failure gives them back.
+/// Makes the steps from `from` to `to` (places in kCommissionSteps). At the end the axis is always disabled and the
+/// folder holds the results; the message of a failure says how to continue. A failure restores the board's former
+/// parameters, if it had any.
 void commission_axis(BoardClient& board, const CommissionOptions& options, const CommissionTalk& talk,
                      CommissionFolder& folder, std::size_t from, std::size_t to);
 

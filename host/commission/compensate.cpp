@@ -15,7 +15,7 @@ namespace host {
 
 namespace {
 
-/// A set of parameters and what the machine does with it, twice.
+/// A set of parameters and the machine's two runs with it.
 struct Trial {
   std::string name, params, record, again;  ///< files of the folder but for the name
   firmware::ParameterValues values;
@@ -29,7 +29,7 @@ struct Trial {
   double worst() const { return std::max(error->rms_um, repeated->rms_um); }
 };
 
-/// Every run of one is better than every run of the other, by more than either repeats to.
+/// Whether every run of one is better than every run of the other, by more than the repeatability.
 bool is_better(const Trial& one, const Trial& other) {
   if (!one.is_whole() || !other.is_whole()) return one.is_whole();
   return other.best() - one.worst() > std::max(one.spread(), other.spread());
@@ -52,7 +52,7 @@ class Comparison {
       add("bandwidth", "bandwidth-params.toml",
           session_.design(before, raised_loop(session_, before), "bandwidth-params.toml"));
     add("after", "new-params.toml", session_.design(after, raised_loop(session_, after), "new-params.toml"));
-    // A livelier loop also lets more of the sensors' noise through: where that costs more than it gains, not this one.
+    // A higher bandwidth also amplifies sensor noise; reject the set if that outweighs the gain.
     if (is_raised && !is_better(trials_.back(), trials_.front()))
       add("after", "new-params.toml", session_.design(after, session_.first_loop(after), "new-params.toml"));
     decide(was_fitted);
@@ -69,7 +69,7 @@ class Comparison {
     if (trial.error) trial.repeated = tried(trial, trial.again);
   }
 
-  /// Nothing where the axis stopped with a fault; the old parameters have to do.
+  /// Empty if the axis stopped with a fault; then the old parameters are kept.
   std::optional<FollowingError> tried(Trial& trial, const std::string& file) {
     try {
       return following_error(session_.record(judging_jogs(session_, file)), session_.options().sheet.data);
@@ -136,10 +136,10 @@ class Comparison {
       said += trial.is_whole() ? fmt::format(", {:.3g} {}", trial.mean(), what)
                                : fmt::format(", and {} the axis stopped: {}", what, trial.stopped_because);
     }
-    said += is_new_ ? "." : ": no gain beyond what repeats.";
-    return said +
-           fmt::format(" The {} set is on the board{}.", is_new_ ? "new" : "old",
-                       session_.options().save ? ", and saved" : " and not saved: `axistool save` makes it last");
+    said += is_new_ ? "." : ": no gain beyond the difference between equal runs.";
+    return said + fmt::format(" The {} set is on the board{}.", is_new_ ? "new" : "old",
+                              session_.options().save ? ", and saved"
+                                                      : " and not saved: `axistool save` keeps it after power-off");
   }
 
   CommissionSession& session_;

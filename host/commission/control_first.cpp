@@ -11,7 +11,7 @@ CommissionStepResult control_first(CommissionSession& session) {
   session.plan_limits(model);
   session.download(session.design(model, session.first_loop(model), "first-params.toml"));
   return {{"first-params.toml"},
-          fmt::format("Poles at {:.3g} Hz; the parameters are on the board and not saved.",
+          fmt::format("Poles at {:.3g} Hz; the parameters are on the board but not saved.",
                       session.first_options().bandwidth_Hz)};
 }
 

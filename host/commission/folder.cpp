@@ -18,8 +18,7 @@ constexpr const char* kState = "commission.json";
 
 nlohmann::json parse(const std::string& path) {
   nlohmann::json content = nlohmann::json::parse(read_file(path), nullptr, false);
-  if (content.is_discarded())
-    throw Failure(ExitCode::bad_input, path + ": no JSON, though commission writes it whole: was it edited?");
+  if (content.is_discarded()) throw Failure(ExitCode::bad_input, path + ": not valid JSON; was it edited?");
   return content;
 }
 
@@ -33,8 +32,8 @@ std::size_t commission_step(std::string_view name) {
     names.push_back(kCommissionSteps[step].name);
     known += (step == 0 ? "" : ", ") + std::string(kCommissionSteps[step].name);
   }
-  throw Failure(ExitCode::usage, fmt::format("no step is called {}{}; in their order they are {}", name,
-                                             did_you_mean(name, names), known));
+  throw Failure(ExitCode::usage,
+                fmt::format("there is no step {}{}; the steps are {}", name, did_you_mean(name, names), known));
 }
 
 CommissionFolder::CommissionFolder(std::string folder) : folder_(std::move(folder)) {
@@ -47,7 +46,7 @@ CommissionFolder::CommissionFolder(std::string folder) : folder_(std::move(folde
     document_ = parse(path(kState));
     if (!document_.is_object() || document_.value("format", "") != "axis-commission/1" ||
         !document_.contains("steps") || document_["steps"].size() != kCommissionSteps.size())
-      throw Failure(ExitCode::bad_input, path(kState) + ": not of a commissioning by this axistool; take another -o");
+      throw Failure(ExitCode::bad_input, path(kState) + ": not a commissioning of this axistool; give another -o");
     return;
   }
   document_ = {{"format", "axis-commission/1"},
@@ -71,7 +70,8 @@ bool CommissionFolder::has(std::string_view file) const {
 
 std::string CommissionFolder::require(std::string_view file, std::string_view step) const {
   if (!has(file))
-    throw Failure(ExitCode::usage, fmt::format("{} is missing: go on --from {}, which makes it", path(file), step));
+    throw Failure(ExitCode::usage,
+                  fmt::format("{} is missing: continue with --from {}, which makes it", path(file), step));
   return path(file);
 }
 

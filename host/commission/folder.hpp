@@ -1,4 +1,4 @@
-// The folder of a commissioning: every step's result is a file in it, and commission.json tells which are there.
+// The folder of a commissioning: every step's result is a file in it, and commission.json lists them.
 #pragma once
 
 #include <array>
@@ -19,17 +19,17 @@ struct CommissionStepText {
 
 /// In their order.
 inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
-    {"look", "rights and faults, standstill noise, direction and breakaway by a slow ramp of voltage"},
-    {"identify", "steps of voltage in open loop: inertia, viscous and Coulomb friction"},
+    {"look", "rights and faults, noise at standstill, direction and breakaway by a slow voltage ramp"},
+    {"identify", "voltage steps in open loop: inertia, viscous and Coulomb friction"},
     {"control", "a first controller of modest bandwidth, downloaded but not saved"},
-    {"home", "the switch or index that positions are counted from, where the axis has one"},
-    {"ladder", "jogs at a ladder of speeds, both ways"},
+    {"home", "homing by switch or index, if the axis has one"},
+    {"ladder", "jogs at a series of speeds, in both directions"},
     {"friction", "the friction curve"},
     {"response", "the frequency response, and as much bandwidth as its margins allow"},
     {"validate", "more training motions, and validation motions, one of them twice"},
     {"compare", "prediction error on the validation motions"},
     {"diagnose", "which effect is missing"},
-    {"separate", "while several explanations are left: the run that separates them, planned and made"},
+    {"separate", "if several explanations remain: plan and make the run that separates them"},
     {"improve", "significant effects added, all parameters fitted again"},
     {"compensate", "the same motion with the old and the new parameters; the better set stays"},
     {"page", "one page"},
@@ -38,10 +38,10 @@ inline constexpr std::array<CommissionStepText, 14> kCommissionSteps{{
 /// The place of a step in kCommissionSteps. Throws Failure(usage) naming them.
 std::size_t commission_step(std::string_view name);
 
-/// What is kept between steps and between commands. Every change is on disk when its function returns.
+/// State kept between steps and between commands. Every change is on disk when its function returns.
 class CommissionFolder {
  public:
-  /// Opens a folder, or makes it. Throws Failure: permission, bad_input (commission.json is none).
+  /// Opens a folder, or makes it. Throws Failure: permission, bad_input (invalid commission.json).
   explicit CommissionFolder(std::string folder);
 
   std::string path(std::string_view file) const;

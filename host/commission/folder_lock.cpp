@@ -23,7 +23,7 @@ FolderLock::FolderLock(const std::string& folder) {
   if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(descriptor_);
   throw Failure(ExitCode::refused,
-                folder + ": another commissioning works in this folder; wait for its end, or take another -o");
+                folder + ": another commissioning uses this folder; wait for its end, or give another -o");
 }
 
 FolderLock::~FolderLock() {

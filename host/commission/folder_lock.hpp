@@ -5,11 +5,10 @@
 
 namespace host {
 
-/// Held until it dies; the system lets it go when the process ends, however it ends. Where the folder's file system
-/// knows no locks there is none.
+/// Held for its lifetime; the system releases it when the process ends. Without effect if the file system has no locks.
 class FolderLock {
  public:
-  /// Makes the folder where it is not there. Throws Failure: permission, refused (another process holds it).
+  /// Makes the folder if it is missing. Throws Failure: permission, refused (another process holds it).
   explicit FolderLock(const std::string& folder);
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

@@ -23,7 +23,7 @@ MovingRows moving_rows(const Record& record) {
     rows.end = k + 1;
   }
   if (rows.end <= rows.begin)
-    throw Failure(ExitCode::bad_input, record.path + ": no reference that moves: nothing was followed");
+    throw Failure(ExitCode::bad_input, record.path + ": the reference does not move, so there is no following error");
   return rows;
 }
 

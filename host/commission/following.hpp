@@ -1,4 +1,4 @@
-// How far a controlled axis is from its reference, as its own encoder sees it.
+// Following error of a controlled axis, by its own encoder.
 #pragma once
 
 #include <vector>
@@ -17,12 +17,12 @@ struct MovingRows {
 };
 MovingRows moving_rows(const Record& record);
 
-/// Reference less encoder, µm, of the moving rows; an encoder's step is taken at its middle. Throws Failure(bad_input)
+/// Reference minus encoder, µm, of the moving rows; an encoder's step is taken at its middle. Throws Failure(bad_input)
 /// for a record without a reference or without motion.
 std::vector<double> following_um(const Record& record, const sim::DataSheet& data);
 FollowingError following_error(const Record& record, const sim::DataSheet& data);
 
-/// What the same motion made twice does not repeat, µm RMS of one of them: no parameter can mend that.
+/// The non-repeatable part of a motion made twice, µm RMS of one of them, which no parameter can reduce.
 double following_floor_um(const Record& once, const Record& again);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// Homing: what a drive does at a place of its travel can be taken back only where that place is found again.
+// Homing: effects that depend on position can be compensated only on a homed axis.
 #include <fmt/format.h>
 
 #include <numbers>
@@ -59,20 +59,19 @@ CommissionStepResult home_axis(CommissionSession& session) {
   session.folder().put("homed", false);
   if (!session.can_home())
     return {{},
-            "Nothing finds home on this axis (homing.mode is 0, and no --home was given): what the drive does at a "
-            "place of its travel can be found, and not compensated."};
+            "This axis cannot home (homing.mode is 0, and no --home was given): effects that depend on position can be "
+            "found but not compensated."};
   const CommissionOptions& options = session.options();
   const double way = kSearchOfBox * options.box.travel;
-  session.ask(
-      fmt::format("Home: the axis looks for its switch or index, {:g} {} at most, and makes the steps of "
-                  "voltage again, counted from there.",
-                  way, units_of(options.sheet.data.kind).travel));
+  session.ask(fmt::format(
+      "Home: the axis searches for its switch or index within {:g} {} and repeats the voltage steps from there.", way,
+      units_of(options.sheet.data.kind).travel));
   session.download(session.with_file(session.folder().require("first-params.toml", "control")));
   session.find_home();
   session.folder().put("homed", true);
   record_steps(session);
   session.disable();
-  return {{"steps.csv"}, "Home is found: positions count from there, also in what is recorded from here on."};
+  return {{"steps.csv"}, "The axis is homed: positions count from there, also in all further records."};
 }
 
 }  // namespace host

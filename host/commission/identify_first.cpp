@@ -1,4 +1,4 @@
-// Steps of voltage in open loop, and what they say of inertia and friction.
+// Voltage steps in open loop, and inertia and friction from them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace host {
 
 namespace {
 
-/// Where the fit gives friction a level that no drive has, an effect that it does not know of has bent it: the voltage
-/// at which the axis broke away then gives the level, until the ladder does. Whether that was needed.
+/// If the fitted friction level is impossible, an unknown effect has biased it. Then the breakaway voltage gives the
+/// level, until the ladder does. Returns whether that was needed.
 bool level_friction(CommissionSession& session, sim::DriveDescription& model) {
   const std::vector<Doubt> doubts = doubts_of(model);
   if (std::ranges::none_of(doubts, [](const Doubt& doubt) { return doubt.effect == "coulomb" && doubt.refuses; }))
@@ -41,7 +41,7 @@ Record record_steps(CommissionSession& session) {
 }
 
 CommissionStepResult identify_first(CommissionSession& session) {
-  session.ask("Identify: steps of voltage to and fro.");
+  session.ask("Identify: voltage steps in both directions.");
   const Record steps = record_steps(session);
   const Measurements measured = MeasurementGate(session.options().sheet).admit({steps});
   Identification found = identify_drive(measured, session.options().sheet, default_method(measured.training()));
@@ -50,12 +50,12 @@ CommissionStepResult identify_first(CommissionSession& session) {
   write_model(found.model, session.folder().path("identified.toml"));
   session.folder().write_json("identification.json", identification_json(found));
   const bool rotary = found.model.data.kind == sim::DriveKind::rotary;
-  std::string said = fmt::format("{} {:.3g} {}, viscous friction {:.3g} {}; what is left of the {} is {:.1f} %.",
-                                 rotary ? "Inertia" : "Mass", found.estimate.inertia.value, rotary ? "kg m²" : "kg",
-                                 found.estimate.viscous.value, rotary ? "Nm s/rad" : "N s/m",
-                                 rotary ? "torque" : "force", 100.0 * found.relative_error);
+  std::string said =
+      fmt::format("{} {:.3g} {}, viscous friction {:.3g} {}; residual {} {:.1f} %.", rotary ? "Inertia" : "Mass",
+                  found.estimate.inertia.value, rotary ? "kg m²" : "kg", found.estimate.viscous.value,
+                  rotary ? "Nm s/rad" : "N s/m", rotary ? "torque" : "force", 100.0 * found.relative_error);
   if (is_levelled)
-    said += " No drive has the Coulomb friction that this fit gives: where it broke away decides for now.";
+    said += " The fitted Coulomb friction is physically impossible, so the breakaway level is used for now.";
   for (const std::string& warning : found.warnings) said += " Note: " + warning + ".";
   return {{"steps.csv", "identified.toml", "identification.json"}, said};
 }

@@ -1,4 +1,4 @@
-// Jogs at a ladder of speeds, both ways, and the friction curve from them.
+// Jogs at a series of speeds in both directions, and the friction curve from them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,10 +31,10 @@ std::vector<double> ladder_speeds(double lowest, double highest, std::size_t cou
 }  // namespace
 
 CommissionStepResult climb_ladder(CommissionSession& session) {
-  session.ask("Ladder: jogs at twelve speeds, both ways.");
+  session.ask("Ladder: jogs at twelve speeds in both directions.");
   session.download(session.with_file(session.folder().require("first-params.toml", "control")));
   const double highest = std::min(session.steady_speed(), session.top_speed());
-  // Slower than 50 counts a second an encoder tells little; a wide ladder has a few decades.
+  // Below 50 counts per second an encoder shows little; a wide ladder covers a few decades.
   const double lowest = std::max(highest / 300.0, 50.0 * session.options().sheet.data.encoder_resolution);
   const std::vector<double> all = ladder_speeds(lowest, highest, 2 * kSpeeds);
   const auto middle = all.begin() + kSpeeds;
@@ -62,14 +62,14 @@ CommissionStepResult find_friction(CommissionSession& session) {
     require_plausible(found.model, {});
     write_model(found.model, session.folder().path("model.toml"));
     session.folder().write_json("friction.json", friction_json(found));
-    return {{"model.toml", "friction.json"},
-            fmt::format("{} constant speeds decide the curve, to {:.2g} {}{}.", found.points.size(), found.fit.rms,
-                        units_of(found.model.data.kind).effort,
-                        is_levelled ? "; static friction is what it took to break away" : "")};
+    return {
+        {"model.toml", "friction.json"},
+        fmt::format("{} constant speeds determine the curve, to {:.2g} {}{}.", found.points.size(), found.fit.rms,
+                    units_of(found.model.data.kind).effort, is_levelled ? "; static friction from the breakaway" : "")};
   } catch (const Failure& failure) {
     if (failure.code != ExitCode::refused) throw;
     write_model(rigid, session.folder().path("model.toml"));
-    return {{"model.toml"}, fmt::format("The friction of the steps stays: {}.", failure.what())};
+    return {{"model.toml"}, fmt::format("The friction from the steps is kept: {}.", failure.what())};
   }
 }
 

@@ -1,4 +1,4 @@
-// Before anything else: may this board be asked, is it sound, and does its feedback follow its motor?
+// First checks: access to the board, faults, and the sign of its feedback.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,13 +63,12 @@ Pulse pulse_of(const Record& record, double resolution) {
 
 void require_right_feedback(const Pulse& pulse, const Record& record) {
   if (pulse.with_encoder < 0.0)
-    throw Failure(
-        ExitCode::refused,
-        "the encoder counts backward when the motor is driven forward: swap the encoder's two channels or two "
-        "leads of the motor, and begin again; closing the loop would run away");
+    throw Failure(ExitCode::refused,
+                  "the encoder counts backward when the motor is driven forward, so a closed loop would run away: swap "
+                  "the encoder's two channels or two leads of the motor, and start again");
   if (record.has_speed() && pulse.with_tachometer < 0.0)
     throw Failure(ExitCode::refused,
-                  "the tachometer shows the opposite of what the encoder counts: swap its leads, and begin again");
+                  "the tachometer's sign is opposite to the encoder's: swap its leads, and start again");
 }
 
 }  // namespace
@@ -84,7 +83,7 @@ CommissionStepResult look(CommissionSession& session) {
   session.give_scales();
   nlohmann::json seen;
   seen["standstill"] = look_at_rest(session);
-  session.ask("Look: the voltage rises slowly until the axis breaks away, once to either side.");
+  session.ask("Look: the voltage rises slowly until the axis breaks away, once in each direction.");
   constexpr double kTime_s = 8.0;
   const Record record = session.record({"pulse.csv", "ramp", {{}, {{"time", kTime_s / 4.0}}}, "", kTime_s});
   const Pulse pulse = pulse_of(record, session.options().sheet.data.encoder_resolution);
@@ -94,15 +93,13 @@ CommissionStepResult look(CommissionSession& session) {
   const double breakaway = std::max(pulse.positive_V, pulse.negative_V);
   constexpr double kRoom = 0.7;  // of the volts: what accelerates, beside friction, has to show too
   if (breakaway > kRoom * session.options().box.volts)
-    throw Failure(ExitCode::refused,
-                  fmt::format("the axis breaks away at {:.2g} V of the box's {:.2g} V: with so little "
-                              "to accelerate it inertia cannot be told; give it {:.2g} V",
-                              breakaway, session.options().box.volts, 2.0 * breakaway));
-  return {
-      {"before-params.toml", "standstill.csv", "pulse.csv", "look.json"},
-      fmt::format("Feedback follows the motor. The axis breaks away at {:.2g} V forward and {:.2g} V backward; at rest "
-                  "the encoder shows {:g} counts of movement.",
-                  pulse.positive_V, pulse.negative_V, seen["standstill"]["encoder_counts"].get<double>())};
+    throw Failure(ExitCode::refused, fmt::format("the axis breaks away at {:.2g} V, and the box allows {:.2g} V: too "
+                                                 "little acceleration remains to identify the inertia; allow {:.2g} V",
+                                                 breakaway, session.options().box.volts, 2.0 * breakaway));
+  return {{"before-params.toml", "standstill.csv", "pulse.csv", "look.json"},
+          fmt::format("The feedback has the right sign. The axis breaks away at {:.2g} V forward and {:.2g} V "
+                      "backward; at rest the encoder moves by {:g} counts.",
+                      pulse.positive_V, pulse.negative_V, seen["standstill"]["encoder_counts"].get<double>())};
 }
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// One page: error before, cause, error after, floor; then what it rests on.
+// The page: error before, cause, error after, noise floor; then the evidence.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -36,7 +36,7 @@ struct Page {
   double floor() const { return errors["floor_um"]; }
   bool is_new() const { return state.value("kept", "") == "new"; }
 
-  /// What the improved model has and the first one lacked.
+  /// Effects of the improved model that the first one lacked.
   std::vector<std::string> added() const {
     std::vector<std::string> kinds;
     if (state.at("decided").is_array()) kinds = state.at("decided").get<std::vector<std::string>>();
@@ -45,7 +45,7 @@ struct Page {
     return kinds;
   }
 
-  /// An effect, or the group of those that these motions do not tell from it.
+  /// An effect, or the group that these motions cannot separate from it.
   std::string alike(const std::string& kind) const {
     if (!state.at("decided").is_array())
       for (const auto& alternatives : state.at("verdict").at("alternatives")) {
@@ -66,15 +66,15 @@ struct Page {
     const std::string status = verdict["status"];
     if (status == "adequate") return "nothing is missing in the model";
     if (status == "parameters")
-      return fmt::format("values were off: {}", fmt::join(verdict["parameters"].get<std::vector<std::string>>(), ", "));
+      return fmt::format("wrong values: {}", fmt::join(verdict["parameters"].get<std::vector<std::string>>(), ", "));
     if (status == "ambiguous")
       return fmt::format("one of {}", fmt::join(verdict["effects"].get<std::vector<std::string>>(), ", "));
-    if (status == "insufficient_data") return "none that these motions could show";
-    return "no effect of the catalogue";
+    if (status == "insufficient_data") return "none that these motions can show";
+    return "no known effect";
   }
 };
 
-/// What was found, for someone who has not seen this tool; how it was found is told below.
+/// The result, for a reader who does not know this tool; the method follows below.
 std::vector<std::string> findings(const Page& page) {
   const std::vector<std::string> kinds = page.added();
   if (kinds.empty()) return {page.state.at("verdict").at("explanation")};
@@ -89,12 +89,12 @@ std::vector<std::string> findings(const Page& page) {
   return sentences;
 }
 
-/// What of the gain is the controller's and what is the cause's; empty where it was one step.
+/// Shares of the gain from the bandwidth and from the model; empty if there was only one step.
 std::string shares_of_gain(const Page& page) {
   if (!page.is_new() || page.sets().size() < 3 || page.sets()[1]["rms_um"].is_null()) return {};
   const double faster = page.sets()[1]["rms_um"];
   if (!(faster < page.before()) || !(page.after() < faster)) return {};
-  return fmt::format("Of the {} µm gained, a controller of more bandwidth brings {}, and the better model {}.",
+  return fmt::format("Of the gain of {} µm, the higher bandwidth contributes {} and the better model {}.",
                      format_value(page.before() - page.after()), format_value(page.before() - faster),
                      format_value(faster - page.after()));
 }
@@ -113,35 +113,33 @@ Verdict verdict_of(const Page& page) {
     const std::string name = kind.get<std::string>();
     const sim::EffectInfo* info = sim::find_effect(name.substr(0, name.find_first_of(" :")));
     verdict.sentences.push_back(fmt::format("By hand: {}: {}.", info != nullptr ? std::string(info->title) : name,
-                                            info != nullptr ? std::string(info->remedy) : "no parameter mends it"));
+                                            info != nullptr ? std::string(info->remedy) : "no parameter corrects it"));
   }
   for (const auto& kind : page.errors["needs_home"])
-    verdict.sentences.push_back(
-        fmt::format("{} is compensated only from home: wire a switch or an index, and begin "
-                    "again with --home.",
-                    title_of(kind)));
-  verdict.sentences.push_back(fmt::format(
-      "The {} parameters are on the board{}", page.is_new() ? "new" : "old",
-      page.state.value("saved", false) ? " and saved." : ", until it is switched off. This keeps them for good:"));
+    verdict.sentences.push_back(fmt::format(
+        "Compensation of {} needs homing: wire a switch or an index, and start again with --home.", title_of(kind)));
+  verdict.sentences.push_back(
+      fmt::format("The {} parameters are on the board{}", page.is_new() ? "new" : "old",
+                  page.state.value("saved", false) ? " and saved." : ", until power-off. To keep them:"));
   if (!page.state.value("saved", false)) verdict.command = "axistool save";
   return verdict;
 }
 
-/// What each set of parameters has that the one before has not.
+/// What each set of parameters adds to the previous one.
 std::string set_title(const Page& page, const std::string& name) {
   const bool is_first = page.sets().size() < 3;
   if (name == "before")
     return page.state.value("was_fitted", false) ? "before: as the board was" : "before: base model";
   if (name == "bandwidth") return "with the bandwidth raised";
-  return is_first ? "after: with the better model" : "after: with the better model, too";
+  return is_first ? "after: with the better model" : "after: also with the better model";
 }
 
 BarChart errors_chart(const Page& page) {
   BarChart chart;
   chart.title = "Following error of this axis, RMS";
   chart.caption =
-      "The same jogs twice with each set of parameters; ±: difference of the two runs. The noise floor is what differs "
-      "between equal runs: no parameter can reduce it. The base model holds inertia and friction alone.";
+      "The same jogs, twice with each set of parameters; ±: difference of the two runs. The noise floor is the "
+      "difference between equal runs, which no parameter can reduce. The base model has only inertia and friction.";
   chart.unit = "µm";
   chart.series = {{"RMS", SeriesRole::measured}};
   for (const auto& set : page.sets())
@@ -216,8 +214,8 @@ Table pages_table(const Page& page) {
   table.headings = {"page", "what it shows"};
   for (const auto& [file, shows] :
        {std::pair{"improvement.html", "the residual before and after, along speed, travel and time"},
-        {"diagnosis.html", "every effect that was tried, and how much each explains"},
-        {"response.html", "the measured frequency response, and the loop that was designed on it"}}) {
+        {"diagnosis.html", "every effect tried, and how much each explains"},
+        {"response.html", "the measured frequency response, and the loop designed from it"}}) {
     if (!page.session.folder().has(file)) continue;
     table.rows.push_back({file, shows});
     table.links.emplace_back(file);

@@ -38,10 +38,10 @@ class ResponseStep {
 
   CommissionStepResult run() {
     folder_.put("raised", nullptr);
-    session_.ask("Response: rides to and fro with a sum of sines on top.");
+    session_.ask("Response: slow jogs in both directions with a sum of sines added.");
     session_.download(former_);
     std::optional<AxisResponse> found;
-    // A following error is no wonder where the answer is large for this axis: then more gently.
+    // A large response may cause a following-error fault: then repeat with a smaller amplitude.
     for (const double share : {1.0, kGently}) {
       try {
         found = measure(kFirst_s, "response", share);
@@ -52,7 +52,7 @@ class ResponseStep {
         if ((failure.code != ExitCode::refused && !is_fault) || session_.talk().stop()) throw;
         if (is_fault) session_.recover();
         if (!is_fault || share == kGently)
-          return done(fmt::format("Not measured: {}. The bandwidth stays as it was designed.", failure.what()));
+          return done(fmt::format("Not measured: {}. The bandwidth stays as designed.", failure.what()));
       }
     }
     const AxisResponse& measured = *found;
@@ -125,15 +125,17 @@ class ResponseStep {
   void raise(const AxisResponse& measured) {
     const LoopDesign loop = design(measured);
     const double before_Hz = session_.first_options().bandwidth_Hz, after_Hz = loop.design.used.bandwidth_Hz;
-    response_report(loop.after, "axis " + session_.options().axis_name + ", designed on what was measured", &measured)
+    response_report(loop.after, "axis " + session_.options().axis_name + ", from the measured response", &measured)
         .write(folder_.path("response.html"));
     files_.emplace_back("response.html");
-    if (after_Hz < kWorth * before_Hz && keeps_margin(measured)) return give_up("the margin asked for allows no more");
+    if (after_Hz < kWorth * before_Hz && keeps_margin(measured)) return give_up("the requested margin allows no more");
     const std::string change =
         fmt::format("The bandwidth is {} from {:.3g} to {:.3g} Hz at a modulus margin of {:.2g}{}",
                     after_Hz < before_Hz ? "lowered" : "raised", before_Hz, after_Hz, session_.options().modulus,
                     loop.filters.notch ? fmt::format(", with a notch at {:.3g} Hz", loop.filters.notch->f_Hz) : "");
-    session_.ask(change + ", on the measured response. It is downloaded, not saved, and measured again.");
+    session_.ask(change +
+                 ", from the measured response. The parameters are downloaded but not saved, and the response is "
+                 "measured again.");
     session_.download(session_.design(model_, {loop.design, loop.filters}, "raised-params.toml"));
     files_.emplace_back("raised-params.toml");
     const AxisResponse again = try_loop();
@@ -155,7 +157,7 @@ class ResponseStep {
            axis.margins->modulus->ci95[1] >= kKept * session_.options().modulus;
   }
 
-  /// A loop that swings is none to keep.
+  /// An oscillating loop is not kept.
   AxisResponse try_loop() {
     try {
       return measure(kAgain_s, "response-after", share_);
@@ -168,7 +170,7 @@ class ResponseStep {
 
   void give_up(const std::string& why) {
     session_.download(former_);
-    said_ += fmt::format("The former loop stays: {}.", why);
+    said_ += fmt::format("The former loop is kept: {}.", why);
   }
 
   CommissionSession& session_;

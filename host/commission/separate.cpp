@@ -72,7 +72,7 @@ class Separation {
       kinds.push_back(names);
       believed.push_back(candidate.at("probability"));
     }
-    // Something is missing for sure, and one of its effects stands for others that look alike.
+    // An effect is certainly missing, and one of the candidates represents others that look alike.
     if (!is_ambiguous && !groups.empty())
       for (const std::string& kind : groups.front()) {
         kinds.push_back({kind});
@@ -109,7 +109,7 @@ class Separation {
     if (!plan.by_hand.empty()) said_ += "By hand: " + plan.by_hand + " ";
     if (!plan.separable) return false;
     write_run_plan(plan.run, folder.path(run_file));
-    session_.ask(fmt::format("Separate {}: a run of {:.3g} s, after which the true one stands {:.2g} to 1.",
+    session_.ask(fmt::format("Separate {}: a run of {:.3g} s, with expected odds of {:.2g} to 1 for the true one.",
                              names(rivals_), plan.run.duration_s(), plan.expected_odds));
     session_.download(session_.design(model_, session_.first_loop(model_), "planned-params.toml"));
     Record made = session_.record_plan(plan.run, record);
@@ -127,7 +127,7 @@ class Separation {
     folder.write_json(fmt::format("decision-{}.json", round + 1), to_json(decision));
     files_.push_back(fmt::format("decision-{}.json", round + 1));
     const Rival& best = decision.rivals[decision.best];
-    said_ += fmt::format("A run of {:.3g} s speaks for {}, {:.3g} to 1 (expected {:.3g} to 1). ", plan.run.duration_s(),
+    said_ += fmt::format("A run of {:.3g} s favours {}, {:.3g} to 1 (expected {:.3g} to 1). ", plan.run.duration_s(),
                          rival_name(best.kinds), decision.odds, plan.expected_odds);
     rivals_.clear();
     for (const std::size_t place : decision.left) rivals_.push_back(decision.rivals[place]);

@@ -27,7 +27,7 @@ namespace {
 constexpr double kRideMargin =
     1.3;  // of a commanded speed to the box's, which the board enforces (excite asks for 1.25)
 
-/// An axis without current rolls on for a moment, and the board enables only one that stands.
+/// An axis without current coasts for a moment, and the board enables only an axis at rest.
 constexpr std::chrono::milliseconds kToRest{500};
 
 }  // namespace
@@ -55,8 +55,8 @@ void CommissionSession::ask(const std::string& what) {
   const ExcitationLimits& box = options_.box;
   const char* unit = units_of(options_.sheet.data.kind).travel;
   const std::string question = fmt::format(
-      "{} Axis {} moves, at most {:g} {} to either side of where it stood, {:g} {}/s, {:g} V; {:.0f} s of "
-      "{:g} s of motion are left. Go on?",
+      "{} Axis {} moves at most {:g} {} from its initial position in each direction, {:g} {}/s, {:g} V; {:.0f} s of "
+      "{:g} s of motion remain. Continue?",
       what, options_.axis_name, box.travel / 2.0, unit, box.speed, unit, box.volts, box.time_s - motion_s_, box.time_s);
   if (!talk_.consents(question)) throw Failure(ExitCode::refused, "not done, as you wished: " + what);
 }
@@ -94,11 +94,9 @@ ExcitationLimits CommissionSession::room_for(double time_s, const std::string& w
   ExcitationLimits box = options_.box;
   box.time_s = time_s;
   if (motion_s_ + time_s > options_.box.time_s)
-    throw Failure(
-        ExitCode::refused,
-        fmt::format("{} would take {:g} s, and of the box's {:g} s {:.0f} are left: a longer --box time=… goes "
-                    "on from here",
-                    what, time_s, options_.box.time_s, options_.box.time_s - motion_s_));
+    throw Failure(ExitCode::refused, fmt::format("{} would take {:g} s, but of the box's {:g} s only {:.0f} remain: "
+                                                 "give a longer --box time=… to continue from here",
+                                                 what, time_s, options_.box.time_s, options_.box.time_s - motion_s_));
   if (values.axis(options_.axis).get<"drive.fitted">()) {
     enable();
     if (folder_.document().value("homed", false) && !is_homed()) find_home();  // a reset forgets it, and some faults
@@ -107,11 +105,9 @@ ExcitationLimits CommissionSession::room_for(double time_s, const std::string& w
   const double away = static_cast<double>(std::abs(counts() - origin_)) * options_.sheet.data.encoder_resolution;
   box.travel -= 2.0 * away;
   if (box.travel < options_.box.travel / 4.0)
-    throw Failure(
-        ExitCode::refused,
-        fmt::format("the axis stands {:g} from where it began, near the end of the box: move it back by hand, "
-                    "or widen travel",
-                    away));
+    throw Failure(ExitCode::refused, fmt::format("the axis is {:g} from its initial position, near the end of the box: "
+                                                 "move it back by hand, or widen travel",
+                                                 away));
   return box;
 }
 
@@ -122,7 +118,7 @@ Record CommissionSession::keep(const ExcitationOutcome& outcome, const std::map<
   record.header.insert(header.begin(), header.end());
   record.header["excitation_ended"] = std::string(end_name(outcome.state));
   write_record(record, folder_.path(file));
-  require_completed(board_, options_.axis, outcome, folder_.path(file) + " holds what there is");
+  require_completed(board_, options_.axis, outcome, folder_.path(file) + " holds the rows so far");
   record.path = folder_.path(file);
   return record;
 }
@@ -175,11 +171,11 @@ void CommissionSession::plan_limits(const sim::DriveDescription& model) {
   const AxisDesign made = design_axis(model, {});
   const FrictionLaw friction = friction_law(model);
   const double dry = std::max(friction.effort(1e-3 * options_.box.speed), -friction.effort(-1e-3 * options_.box.speed));
-  // Half of what the box's volts leave beside friction: the other half is the feedback's.
+  // Half of the box's volts beyond friction; the other half is for the feedback.
   const double available =
       0.5 * model.data.lead * (made.axis.effort_per_volt * options_.box.volts - dry) / made.axis.inertia;
   if (!(available > 0.0))
-    throw Failure(ExitCode::refused, "friction takes all of the box's volts: nothing is left to accelerate with");
+    throw Failure(ExitCode::refused, "friction needs all of the box's volts: none remain for acceleration");
   const ReferenceLimits usual = ReferenceLimits::usual_for(model.data.kind);
   const double acceleration = std::min(usual.acceleration, available);
   folder_.put("limits", {{"velocity", std::min(usual.velocity, options_.box.speed / kRideMargin)},
@@ -246,7 +242,7 @@ void CommissionSession::give_scales() {
       const std::size_t place = require_place(options_.axis_name + "." + name);
       if (std::abs(values.at(place) - before.at(place)) > 1e-5F * std::abs(before.at(place)))
         throw Failure(ExitCode::refused,
-                      fmt::format("{} is {} on the board and {} in the data sheet: mend the one that is wrong first",
+                      fmt::format("{} is {} on the board and {} in the data sheet: correct the wrong one first",
                                   full_name(place), before.at(place), values.at(place)));
     }
     return;

@@ -1,4 +1,4 @@
-// What the steps of a commissioning share: board, box, folder, user; and the motions that they make.
+// Shared by the steps of a commissioning: board, box, folder, user, and the motions.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@
 
 namespace host {
 
-/// What finds the place that positions are counted from, on an axis that has a switch or an index pulse.
+/// Homing mode of an axis with a switch or an index pulse.
 struct CommissionHoming {
   firmware::HomingMode mode = firmware::HomingMode::none;
   double position = 0.0;     ///< of the place that is found, mm (m)
@@ -64,7 +64,7 @@ struct CommissionLoop {
   ControlFilterChoice filters;
 };
 
-/// What the step that diagnoses leaves to those after it, as long as one command makes them.
+/// Result of the diagnosis for the following steps of the same command.
 struct CommissionFinding {
   Measurements measured;  ///< what the diagnosis points into
   Diagnosis diagnosis;
@@ -84,16 +84,16 @@ class CommissionSession {
   /// Throws Failure(refused) where the user does not want the motions of this step.
   void ask(const std::string& what);
 
-  /// Makes the motion within what is left of the box, and writes its record however it ended. An axis in closed loop
-  /// goes back to where the command began first. Throws Failure(refused) for a motion that did not end by itself,
-  /// saying why and what to do.
+  /// Makes the motion within the rest of the box, and writes its record even after a failure. An axis in closed loop
+  /// first returns to its initial position. Throws Failure(refused) for a motion that did not end by itself, saying why
+  /// and what to do.
   Record record(const CommissionRun& run);
 
   /// The same for a run that was planned.
   Record record_plan(const RunPlan& run, const std::string& file);
 
-  /// Puts the data sheet's scales and its control rate on an axis that nobody has fitted. Throws Failure(refused) where
-  /// a fitted axis has other scales than the data sheet.
+  /// Sets the data sheet's scales and control rate on an unfitted axis. Throws Failure(refused) where a fitted axis has
+  /// other scales than the data sheet.
   void give_scales();
 
   /// The board's parameters with those of a file.
@@ -111,8 +111,8 @@ class CommissionSession {
   void plan_limits(const sim::DriveDescription& model);
   firmware::ParameterValues with_planned_limits(firmware::ParameterValues values) const;
 
-  /// After a fault of a loop that swings: the next design has half the bandwidth, and an estimator that trusts the
-  /// model more. False where it has been as calm as it can be.
+  /// After a fault of an oscillating loop: halves the bandwidth of the next design and slows its estimator. False at
+  /// the lowest bandwidth.
   bool calm_down();
 
   /// Something finds home on this axis.
@@ -124,7 +124,7 @@ class CommissionSession {
   /// The axis stands and is disabled; whatever fails meanwhile is not said.
   void leave_standing() noexcept;
   void disable();
-  /// Ends the faults that a controller made which is no longer wanted.
+  /// Clears faults caused by a discarded controller.
   void recover();
 
   std::shared_ptr<CommissionFinding> found;

@@ -1,4 +1,4 @@
-// The steps of a commissioning, a file each. What one leaves to the next are files of the folder.
+// The steps of a commissioning, one file each. They pass results through files of the folder.
 #pragma once
 
 #include <string>
@@ -30,7 +30,7 @@ CommissionStepResult home_axis(CommissionSession& session);
 /// Makes ladder-slow.csv, ladder-fast.csv.
 CommissionStepResult climb_ladder(CommissionSession& session);
 
-/// Makes model.toml, of which the jogs decide the friction where they can.
+/// Makes model.toml, with the friction from the jogs if they determine it.
 CommissionStepResult find_friction(CommissionSession& session);
 
 /// Static friction that the jogs leave undetermined (its interval is wider than its value), as where magnets bend the
@@ -45,7 +45,7 @@ CommissionStepResult measure_response(CommissionSession& session);
 /// What the measured response allows for `model`; the first loop where it allowed none, or was not measured.
 CommissionLoop raised_loop(CommissionSession& session, const sim::DriveDescription& model);
 
-/// Makes the other records that train (kTrainingFiles) and those that judge (kJudgingFiles).
+/// Makes the other training records (kTrainingFiles) and the validation records (kJudgingFiles).
 CommissionStepResult record_validation(CommissionSession& session);
 
 /// Makes comparison.json.
@@ -71,13 +71,13 @@ inline const std::vector<std::string> kTrainingFiles{"steps.csv", "ladder-slow.c
                                                      "sweep.csv", "reversals.csv",   "dwell.csv"};
 inline const std::vector<std::string> kJudgingFiles{"judge-jogs.csv", "judge-again.csv", "judge-steps.csv"};
 
-/// All that train and judge, through the gate, with what was recorded to separate explanations.
+/// All training and validation records, through the gate, with the runs that separate explanations.
 Measurements read_measurements(CommissionSession& session, const sim::DriveDescription& model);
 
 /// Steps of voltage in open loop: steps.csv.
 Record record_steps(CommissionSession& session);
 
-/// The motion that judges a controller; the same each time.
+/// The motion for comparing controllers; always the same.
 CommissionRun judging_jogs(const CommissionSession& session, const std::string& file);
 
 }  // namespace host

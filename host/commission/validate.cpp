@@ -1,4 +1,4 @@
-// Motions beside steps and ladder: some to learn from, others that no fit ever sees, and one of those twice.
+// Motions besides steps and ladder: some for training, others for validation, and one of these twice.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ CommissionStepResult record_validation(CommissionSession& session) {
   session.disable();
   std::vector<std::string> files(kTrainingFiles.begin() + 3, kTrainingFiles.end());
   files.insert(files.end(), kJudgingFiles.begin(), kJudgingFiles.end());
-  return {files, "Three motions to learn from, three to judge by; the jogs among these were made twice."};
+  return {files, "Three motions for training, three for validation; the validation jogs were made twice."};
 }
 
 }  // namespace host

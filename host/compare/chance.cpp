@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDraws = 2000;
 
-/// What `after` gains on `before`, block by block of consecutive windows.
+/// Gain of `after` over `before` for each block of consecutive windows.
 std::vector<double> gains_of(const SetError& before, const SetError& after, std::size_t block, double common_square) {
   const std::size_t count = std::min(before.windows.size(), after.windows.size());
   std::vector<double> gains;

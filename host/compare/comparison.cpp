@@ -107,7 +107,7 @@ double mean_square(const std::vector<double>& predicted, const std::vector<doubl
   return sum / static_cast<double>(window.length);
 }
 
-/// A model that runs away is as bad as can be, and that is a number.
+/// A diverging model has the largest error, which is still a number.
 double bounded(double square, double floor) {
   constexpr double kRunAway = 1e6;  // floors
   const double most = kRunAway * kRunAway * floor * floor;

@@ -1,4 +1,4 @@
-// Records and floors that models are compared on, and the one number that compares them.
+// Records and noise floors for comparing models, and the error measure.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// What models are compared by.
+/// Measure of comparison.
 enum class Measure {
   motion,  ///< predicted against measured travel and speed
   effort   ///< what the inverse model needs against what the motor gave; for drives that have an inverse
@@ -23,7 +23,7 @@ struct ComparedRecord {
   std::shared_ptr<const EffortRecord> effort = nullptr;  ///< where the measure is the effort
 };
 
-/// Three floors: one impact or breakaway that comes a moment late must not outweigh all windows that fit.
+/// Three floors: a single late impact or breakaway must not outweigh all windows that fit.
 inline constexpr double kCommonSquare = 9.0;
 
 /// The records of one purpose (training, or validation).
@@ -40,7 +40,7 @@ struct RecordSet {
 
 std::vector<const PreparedRecord*> prepared_records(const RecordSet& set);
 
-/// The earliest time stamp of all: what changes with time is told from there, whatever the logger's clock began with.
+/// The earliest time stamp of all: origin for effects that change with time, whatever the logger's clock started with.
 double first_stamp_s(const RecordSet& set);
 
 /// Steps of the integrator that one pass of a model over the windows in use takes: one a sample, more where masses
@@ -55,9 +55,8 @@ RecordSet compare_on(const std::vector<const Record*>& records, const sim::Drive
 /// The same windows, compared by their motion.
 RecordSet by_motion(const RecordSet& set, const sim::DriveDescription& reference);
 
-/// Computes the floors of the windows in use again with a better model, and with them what is common: where most
-/// windows of `reference` lie far above their floors, as those of a real machine may, three times their median error
-/// counts as common.
+/// Recomputes the floors of the windows in use with a better model, and the common error: if most windows of
+/// `reference` lie far above their floors, as on a real machine, three times their median error counts as common.
 void renew_floors(RecordSet& set, const sim::DriveDescription& reference);
 
 /// Mean over the windows and channels of (error/floor)^2 of one window.

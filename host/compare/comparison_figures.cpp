@@ -22,7 +22,7 @@ namespace host {
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
                            double window_s, const std::vector<std::string>& accepted) {
   if (!(window_s > 0.0) || !std::isfinite(window_s))
-    throw Failure(ExitCode::usage, fmt::format("window {}: a length in seconds above 0 belongs here", window_s));
+    throw Failure(ExitCode::usage, fmt::format("window {}: expected a length in seconds above 0", window_s));
   Measurements measured = MeasurementGate(model, {.accepted = accepted, .as_logged = true}).admit(std::move(records));
   sim::DriveDescription completed = with_measured_sensors(model, measured);
   std::vector<FigureRecord> counted;
@@ -59,8 +59,7 @@ std::size_t record_in(const Focus& focus, const ModelComparison& comparison) {
   const auto found = focus.record.empty() ? std::ranges::max_element(
                                                 records, {}, [](const RecordError& one) { return one.error.combined; })
                                           : std::ranges::find(records, focus.record, &RecordError::path);
-  if (found == records.end())
-    throw Failure(ExitCode::usage, focus.record + ": is none of the records that are compared");
+  if (found == records.end()) throw Failure(ExitCode::usage, focus.record + ": not one of the compared records");
   return static_cast<std::size_t>(found - records.begin());
 }
 
@@ -87,7 +86,7 @@ ResidualEffort part_in(const ResidualEffort& all, std::size_t record, const Time
   return part;
 }
 
-/// Whether there is anything to draw a curve over: one rest is none.
+/// Whether the coordinate varies: a single rest gives no curve.
 bool spreads(const std::vector<double>& coordinate) {
   if (coordinate.empty()) return false;
   const auto [least, most] = std::ranges::minmax(coordinate);
@@ -167,12 +166,11 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report, c
   add_stretch(views, models.front(), focus);
   const std::string effort = first.data.kind == sim::DriveKind::rotary ? "torque" : "force";
   const double period = focus.period_mm ? *focus.period_mm / travel_in_mm(first.data.kind) : ripple_period(first);
-  report.section(
-      "What is missing, as " + effort,
-      fmt::format("The {} that the motion needed beyond the model's: mean in bins{}, forward and backward apart. A "
-                  "missing effect shows as a curve against the coordinate that it depends on. Where there are no "
-                  "samples the line breaks; the strip at the foot shows how many there are.",
-                  effort, views.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
+  report.section("What is missing, as " + effort,
+                 fmt::format("Residual {}, measured minus model: mean in bins{}, forward and backward separately. A "
+                             "missing effect shows as a curve over its coordinate. The line breaks where there are no "
+                             "samples; the strip below shows their number.",
+                             effort, views.size() == 1 ? " with the band that holds 80 % of the samples" : ""));
   add_residual_plots(report, views, first, period, Layout::overlaid);
   const DriveUnits units = units_of(first.data.kind);
   for (const auto& [name, title] :

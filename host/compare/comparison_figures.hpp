@@ -12,7 +12,7 @@
 
 namespace host {
 
-/// A model, the records as it reads them, and how it fares on them.
+/// A model, its prepared records, and its errors on them.
 struct ComparedModel {
   std::string path;             ///< as the user named it
   sim::DriveDescription model;  ///< with_measured_sensors
@@ -24,14 +24,14 @@ struct ComparedModel {
 };
 
 /// Admits the records as they were logged and compares the model, completed by their sensors, on windows of `window_s`.
-/// Throws Failure(usage) where that is no time, and what MeasurementGate, compare_on and compare_model throw.
+/// Throws Failure(usage) for an invalid time, and what MeasurementGate, compare_on and compare_model throw.
 ComparedModel compare_with(const std::string& path, const sim::DriveDescription& model, std::vector<Record> records,
                            double window_s, const std::vector<std::string>& accepted);
 
 /// "axis-comparison/1" of the first model; of several, each in "models".
 nlohmann::json comparison_document(std::span<const ComparedModel> models);
 
-/// Roles that differ in colour, one a model; further models take their turn again.
+/// Roles with different colours, one per model; further models repeat them.
 SeriesRole role_of_model(std::size_t index);
 
 /// The record that the focus names. Throws Failure(usage) where there is no such record.

@@ -27,7 +27,7 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
-/// The records that a model was fitted to, by what its entries say.
+/// The records that a model was fitted to, according to its entries.
 std::vector<std::string> training_files(const sim::DriveDescription& model) {
   std::vector<std::string> files;
   const auto take = [&](const std::string& name) {
@@ -53,7 +53,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return a == b || std::filesystem::equivalent(a, b, unknown);
 }
 
-/// Trains on what the model was fitted to, where that is known, and never on a record that was held back from it.
+/// Training records are those that the model was fitted to, if known, and never a held-back record.
 std::string diagnose_command(const ComparedModel& compared) {
   std::vector<std::string> train = training_files(compared.model), validate;
   for (const RecordError& record : compared.comparison.records) {
@@ -83,8 +83,8 @@ Verdict verdict_of(const ComparedModel& compared) {
     verdict.tone = Tone::bad;
     verdict.label = "check the log";
     verdict.headline = comparison.log_faults.size() == 1
-                           ? "The record has a fault that no model can explain; mend it first."
-                           : fmt::format("The records have {} faults that no model can explain; mend them first.",
+                           ? "The record has a fault that no model can explain; correct it first."
+                           : fmt::format("The records have {} faults that no model can explain; correct them first.",
                                          comparison.log_faults.size());
     for (const LogFault& fault : comparison.log_faults) verdict.sentences.push_back(fault.message + ".");
   } else if (comparison.error.combined <= kAtFloor) {
@@ -99,7 +99,7 @@ Verdict verdict_of(const ComparedModel& compared) {
     verdict.tone = nearly || helps ? Tone::attention : Tone::bad;
     verdict.label = nearly ? "nearly fits" : helps ? "fits in part" : "does not fit";
     verdict.headline = helps
-                           ? fmt::format("{} times better than without {}; {} times the noise floor remain",
+                           ? fmt::format("{} times better than without {}; the error is {} times the noise floor",
                                          format_value(comparison.without_effects), names_of(comparison.effects), times)
                            : fmt::format("The prediction error is {} times the noise floor", times);
     if (worst != nullptr && worst->share)
@@ -111,8 +111,8 @@ Verdict verdict_of(const ComparedModel& compared) {
   if (comparison.log_faults.empty()) {
     verdict.command = diagnose_command(compared);
     verdict.sentences.push_back(training_files(compared.model).empty()
-                                    ? "Next: find out which effect is missing, trained on other records than these."
-                                    : "Next: find out which effect is missing.");
+                                    ? "Next: find the missing effect, with other records for training."
+                                    : "Next: find the missing effect.");
   }
   return verdict;
 }
@@ -142,7 +142,7 @@ Table error_table(std::span<const ComparedModel> models) {
   table.title = "Prediction error";
   table.caption = fmt::format(
       "Predicted from the recorded command over {:g} s, restarted from the smoothed measurement.{}",
-      first.error.window_s, models.size() > 1 ? " Each model has a floor of its own; compare the RMS errors." : "");
+      first.error.window_s, models.size() > 1 ? " Each model has its own noise floor; compare the RMS errors." : "");
   table.headings = {"record", "channel", "unit", "RMS error", "floor", "fit", "error/floor", "inverse model"};
   if (models.size() > 1) table.headings.insert(table.headings.begin() + 1, "model");
   const auto append = [&](const std::string& name, const ComparedModel& model, bool is_first,
@@ -176,7 +176,7 @@ Table error_table(std::span<const ComparedModel> models) {
   return table;
 }
 
-/// The regions that hold most of the error beyond their part of the samples.
+/// The regions whose share of the error most exceeds their share of the samples.
 std::vector<ErrorRegion> outstanding(const std::vector<ErrorRegion>& where, std::size_t most) {
   std::vector<ErrorRegion> regions;
   for (const ErrorRegion& region : where)
@@ -250,8 +250,8 @@ void add_where_it_fails(std::span<const ComparedModel> models, Report& report) {
   for (const auto& [partition, title] :
        {std::pair("regime", "By what the axis does"), std::pair("direction", "By direction"),
         std::pair("speed", "By speed"), std::pair("position", "By position along the travel"),
-        std::pair("order", "What repeats along the travel (of the missing effort)"),
-        std::pair("rest", "By time at rest before moving"), std::pair("frequency", "By frequency"),
+        std::pair("order", "What repeats along the travel (of the residual)"),
+        std::pair("rest", "By time at rest before motion"), std::pair("frequency", "By frequency"),
         std::pair("time", "By time")})
     add(bars_of(where, partition, title));
 }
@@ -269,7 +269,7 @@ std::string comparison_text(std::span<const ComparedModel> models, const Termina
                                 first.model.data.kind == sim::DriveKind::rotary ? "torque" : "force",
                                 has_inverse(sim::Drive(first.model))
                                     ? ""
-                                    : " It leaves out what has no inverse (a second mass, a lag, bristles)."),
+                                    : " It omits effects without an inverse (second mass, lag, bristles)."),
                     terminal.columns) +
             "\n";
   for (const RecordError& record : first.comparison.records)

@@ -1,4 +1,4 @@
-// A record as the inverse model sees it: the effort that its motion needed, beside the effort that the motor gave.
+// A record for the inverse model: the torque or force (effort) that its motion needed, and that of the motor.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,7 @@
 
 namespace host {
 
-/// The motion of a record, filtered once; every model is asked about the same. Refers to the record, which must outlive
-/// it.
+/// The motion of a record, filtered once for all models. Refers to the record, which must outlive it.
 struct EffortRecord {
   const Record* record;
   sim::DataSheet data;

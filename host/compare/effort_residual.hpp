@@ -1,4 +1,4 @@
-// What a model leaves unexplained, sample by sample: as effort at the motor, and as speed at the tachometer.
+// The residual of a model, sample by sample: torque or force at the motor, and speed at the tachometer.
 #pragma once
 
 #include <vector>
@@ -21,15 +21,15 @@ struct ResidualSamples {
 };
 
 /// Residuals of `model` on every `stride`-th moving sample of a record. Friction is the model's curve at the smoothed
-/// speed; effects that remember are left out, and a load on a spring or behind a gap moves with the motor.
+/// speed; effects with memory are left out, and a load on a spring or behind a gap moves with the motor.
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride);
 
 /// Of all records of a set, one after the other.
 ResidualSamples residual_samples(const sim::DriveDescription& model, const RecordSet& set, std::size_t stride);
 
-/// The same in averages at the samples of residual_effort(), for models that have an inverse (has_inverse): exact, where
-/// a prediction drifts from the measured motion and meets another friction.
+/// The same in averages at the samples of residual_effort(), for models that have an inverse (has_inverse): exact,
+/// where a prediction drifts from the measured motion and meets another friction.
 ResidualEffort residual_of_inverse(const sim::DriveDescription& model, const RecordSet& set);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// How far a model's predictions are from records: the one set of figures that every command prints.
+// Prediction errors of a model: the figures that every command prints.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -34,7 +34,7 @@ struct ErrorFigures {
   const ChannelFigures* worst() const;
 };
 
-/// A record, and those of its rows that count.
+/// A record and its rows in use.
 struct FigureRecord {
   const Record* record;
   std::optional<std::vector<Window>> windows = {};  ///< of the same length; empty: all that the record has room for

@@ -52,7 +52,7 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
   const std::vector<sim::DriveState> states = restart_states(drive, prepared, stride);
   if (prepared.record->has_position()) floor.x.resize(prepared.windows.size());
   if (prepared.record->has_speed()) floor.w.resize(prepared.windows.size());
-  // A measured effort is not quite what acts.
+  // The measured torque differs from the acting one.
   std::vector<sim::Drive> misled;
   if (prepared.effort_noise > 0.0 && !prepared.windows.empty())
     for (const double sign : {-1.0, 1.0})
@@ -62,8 +62,8 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
     const Window& window = prepared.windows[index];
     const sim::DriveState& start = states[index / stride];
     // The two independent parts of the restart's error: of the speed with the travel that goes with it, and of the
-    // travel alone. Each is tried up and down, since friction turns small errors into different motions.
-    // An axis that seems to stand may creep, and a command near the breakaway then decides the whole window.
+    // travel alone. Each is tried with both signs, because friction turns small errors into different motions. An axis
+    // that seems to stand may creep, and a command near breakaway then determines the whole window.
     const bool stands = motion.standing[window.begin];
     const double speed_variance = stands ? motion.hidden_creep * motion.hidden_creep : motion.w_variance[window.begin];
     const double slant = !stands && speed_variance > 0.0 ? motion.xw_covariance[window.begin] / speed_variance : 0.0;
@@ -89,7 +89,7 @@ void renew_floor(ErrorFloor& floor, const sim::DriveDescription& model, const si
       run_side_by_side(misled[1], prepared, more);
       spread(slower, faster);
     }
-    // A model that runs away: its error is as bad as can be on any floor.
+    // A diverging model: its error is largest on any floor.
     if (!std::isfinite(x_variance + w_variance)) {
       x_variance = motion.x_variance[window.begin];
       w_variance = motion.w_variance[window.begin];

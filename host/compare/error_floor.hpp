@@ -1,5 +1,5 @@
-// What the best possible model would leave: sensor noise, quantisation, and the uncertainty of the restart state and of
-// a measured effort carried through the model, window by window.
+// Noise floor: the error of a perfect model. Sensor noise, quantisation, and the uncertainty of the restart state and
+// of a measured torque or force, propagated through the model, window by window.
 #pragma once
 
 #include <vector>

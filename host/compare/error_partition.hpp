@@ -1,4 +1,4 @@
-// One way of sharing out a squared error over regions.
+// One partition of a squared error into regions.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// Sums of one region while rows are handed out. Regions keep the order of their rank.
+/// Sums of one region while rows are assigned. Regions are ordered by rank.
 struct RegionSum {
   std::string region, words;
   double squares = 0.0;

@@ -34,7 +34,7 @@ double round_step(double span, double count) {
 
 std::string number(double value) { return fmt::format("{:.6g}", std::abs(value) < 1e-12 ? 0.0 : value); }
 
-/// Hands a row to its bin of equal width; bins get names with round edges.
+/// Assigns a row to its bin of equal width; bin names have round edges.
 void add_to_bin(Partition& partition, double value, double step, double square,
                 const std::function<std::pair<std::string, std::string>(const std::string&, const std::string&)>& name,
                 long offset = 0) {
@@ -80,7 +80,7 @@ std::string regime_words(Regime regime, const sim::DataSheet& data) {
     case Regime::constant_speed:
       return "at constant speed";
     case Regime::acceleration:
-      return "while the axis speeds up";
+      return "while the axis accelerates";
     case Regime::braking:
       return "while the axis brakes";
     case Regime::saturated_command:
@@ -174,8 +174,8 @@ Stretch largest_stretch(const std::vector<double>& values, const Joins& joins) {
   return best;
 }
 
-/// The stretch of the travel that stands out most, found as by_event finds one of time. Absent where it is most of the
-/// travel.
+/// The interval of travel with the most excess error, found like that of time in by_event. Absent if it covers most of
+/// the travel.
 Partition by_place(const std::vector<ErrorRow>& rows, const RecordSet& set, const DriveUnits& units) {
   constexpr std::size_t kBins = 200;
   Partition partition("place");
@@ -264,8 +264,7 @@ Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   return partition;
 }
 
-/// The stretch of time that stands out most against the rest: where the sum of what windows exceed twice the mean is
-/// largest (Kadane).
+/// The interval of time with the most excess error: largest sum of the windows' excess over twice the mean (Kadane).
 Partition by_event(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   Partition partition("event");
   if (rows.empty()) return partition;
@@ -320,7 +319,7 @@ const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions) {
     if (order ? region.region == "not periodic" : !(region.rms > 1.0)) continue;
     const double share = order ? region.share : region.prevalence;
     const double portion = order ? kOrderPortion : region.portion;
-    // A stretch was picked among all stretches: it must hold most of the error, and one of time must be short.
+    // The interval is the best of all intervals, so it must hold most of the error, and one of time must be short.
     if (region.partition == "event" && (share < kStretchShare || portion > kEventPortion)) continue;
     if (region.partition == "place" && share < kStretchShare) continue;
     if (share < kLeastShare || portion <= 0.0 || portion >= share) continue;
@@ -337,7 +336,7 @@ std::string where_it_fails(const std::vector<ErrorRegion>& regions) {
   const ErrorRegion* worst = worst_region(regions);
   if (worst == nullptr) return "the error is spread evenly: no part of the motion stands out";
   if (worst->partition == "order")
-    return fmt::format("the missing effort repeats {} ({:.0f} % of its square)", worst->words, 100.0 * worst->share);
+    return fmt::format("the residual repeats {} ({:.0f} % of its square)", worst->words, 100.0 * worst->share);
   return fmt::format("the model fails {} ({:.0f} % of the squared error in {:.2g} % of the samples)", worst->words,
                      100.0 * worst->share, 100.0 * worst->portion);
 }

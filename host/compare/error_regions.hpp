@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// A part of the samples and its part of the squared error. Shares sum to 1 over the regions of a partition.
+/// A share of the samples and its share of the squared error. Shares sum to 1 over the regions of a partition.
 struct ErrorRegion {
   std::string partition;  ///< regime, direction, speed, position, place, order, time, rest, frequency, event
   std::string region;     ///< "reversal", "120..140 mm"
@@ -17,18 +17,18 @@ struct ErrorRegion {
   double share = 0.0;     ///< 0..1
   double portion = 0.0;   ///< of the samples (frequency: of the spectrum; order: none, 0), 0..1
   double rms = 0.0;       ///< error over floor, RMS; about 1 for a perfect model. Order: RMS effort, Nm or N
-  /// Share of the error's magnitude, 0..1: what happened once, but violently, has less of it than of the squares.
+  /// Share of the error's magnitude, 0..1: a single large event has a smaller share of it than of the squares.
   double prevalence = 0.0;
 };
 
-/// Errors of `model` on every used window of `set`, in units of each window's floor, over all measured channels.
-/// Two partitions have a measure of their own: "order" shares out the squared missing effort of the inverse model
-/// (prediction errors smear over a window what repeats along the travel), "frequency" the spectrum of the windows'
-/// errors. A partition that the records cannot show (no motion, no position) is absent.
+/// Errors of `model` on every used window of `set`, in units of each window's floor, over all measured channels. Two
+/// partitions have their own measure: "order" uses the squared residual of the inverse model (prediction errors blur
+/// periodic effects over a window), "frequency" the spectrum of the windows' errors. A partition that the records
+/// cannot show (no motion, no position) is absent.
 std::vector<ErrorRegion> error_regions(const sim::DriveDescription& model, const RecordSet& set);
 
-/// The region that holds the most error in the fewest samples, or nullptr where all error is floor. Judged by the
-/// error's magnitude: by its square, one breakaway that comes a moment late would hide what recurs.
+/// The region that holds the most error in the fewest samples, or nullptr where all error is floor. By the error's
+/// magnitude: by its square, one late breakaway would hide recurring errors.
 const ErrorRegion* worst_region(const std::vector<ErrorRegion>& regions);
 
 /// "most of the error lives in the first 50 um after a reversal (41 % of it, 3 % of the time)".

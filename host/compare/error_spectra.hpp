@@ -1,4 +1,4 @@
-// Shares of the error by frequency, and of the missing effort by what repeats along the travel.
+// Shares of the error by frequency, and of the torque or force residual by period along the travel.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What a reader of a comparison looks at.
+// The part of a comparison that its reader selects.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// It chooses what is drawn, and changes no figure.
+/// It selects what is plotted and changes no figure.
 struct Focus {
   std::string record = {};               ///< whose traces are drawn; empty: the one with the largest error
   std::optional<TimeSpan> stretch = {};  ///< of that record, lit in every plot

@@ -1,4 +1,4 @@
-// A model on its own: from the first samples to the end of a record, by the command alone.
+// Free run of a model: from the first samples to the end of a record, from the command alone.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@ namespace host {
 inline constexpr std::size_t kGivenSamples = 20;
 
 /// RMS of the position error of a free run over all samples that were not given, mm or m. Nothing where the record has
-/// no position, or hardly more samples than are given. What drifts is what friction and offset are wrong by; a record
-/// in closed loop hides that, a free run adds it up.
+/// no position, or hardly more samples than are given. The drift shows errors of friction and offset, which a free run
+/// accumulates and a closed loop hides.
 std::optional<double> free_run_rms(const sim::DriveDescription& model, const PreparedRecord& prepared);
 
 }  // namespace host

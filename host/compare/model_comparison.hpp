@@ -1,4 +1,4 @@
-// A model held against measurements: how far off, in which channel, where, and whether the log itself is sound.
+// Compares a model with measurements: size, channel and place of the error, and faults of the log.
 #pragma once
 
 #include <nlohmann/json.hpp>

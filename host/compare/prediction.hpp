@@ -1,5 +1,5 @@
-// What a model predicts of a record from the recorded command alone, over short windows that restart from the smoothed
-// measured state: free runs drift, and a drift tells little about what is wrong.
+// Prediction of a record from its command alone, over short windows that restart from the smoothed measured state. Free
+// runs drift, and a drift says little about its cause.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ struct WindowRun {
   double* table = nullptr;
 };
 
-/// Runs do not wait for one another: the processor works on several at once where one alone would wait for its own last
-/// result, which makes them twice as fast.
+/// Runs are interleaved: the processor overlaps them, where a single run would wait for its last result. This doubles
+/// the speed.
 inline constexpr std::size_t kSideBySide = 4;
 
 /// Carries out some runs, up to kSideBySide of them, of the same record.

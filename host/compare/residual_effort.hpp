@@ -1,4 +1,4 @@
-// The effort that a model's predictions lacked, and where the axis was meanwhile.
+// Torque or force missing in a model's predictions (residual), with the coordinates of the motion.
 #pragma once
 
 #include <vector>

@@ -22,10 +22,10 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Fewer samples in a set tell nothing of a dependence.
+/// Fewest samples in a set for a test.
 constexpr std::size_t kFewestTested = 100;
 
-/// A sudden breakaway counts as so many times the median size at most: one must not hide what recurs.
+/// Samples are clipped at this multiple of the median size: one breakaway must not hide recurring effects.
 constexpr double kMostMedians = 6.0;
 
 Values clipped(Values values) {
@@ -96,8 +96,8 @@ struct Half {
   }
 };
 
-/// Both sets along one coordinate, dealt out in blocks to two folds: a curve that was learnt on one is tried on the
-/// other. Whole sets would not do: one of them may never visit the place where something happens.
+/// Both sets along one coordinate, split in blocks into two folds: a curve fitted on one is validated on the other.
+/// Whole sets would not do, because one may never visit the place of an effect.
 struct Folds {
   std::array<Values, 2> along, value;
 
@@ -128,8 +128,8 @@ struct Folds {
   }
 };
 
-/// The strongest ripple over the travel, learnt on one fold and tried on the other: bins over the whole travel are too
-/// wide for what repeats with each turn of a screw.
+/// The strongest ripple over the travel, fitted on one fold and validated on the other: bins over the whole travel are
+/// too wide for effects that repeat each turn of a screw.
 ResidualDependence on_period(const std::array<const Half*, 2>& halves, double resolution, double in_mm) {
   constexpr double kStepsAPeriod = 40.0, kFinest = 2000.0, kPeriodsOfTravel = 3.0;
   ResidualDependence result{"position", {}, 0.0};

@@ -1,7 +1,7 @@
-// Does what a model leaves depend on anything? Its residual effort is held against each coordinate of the motion,
-// against time and frequency, by curves that are learnt on half of the data and tried on the other half. Significance
-// alone is no test here: with 25,000 samples whiteness is refused to every model of a real machine. What counts is how
-// much of the residual a dependence carries, and that it carries it again in other data.
+// Tests whether a model's residual depends on a coordinate of the motion, on time or on frequency, by curves fitted to
+// half of the data and validated on the other half. Significance alone is no test: with 25,000 samples every model of a
+// real machine fails a whiteness test. The criterion is the share of the residual that a dependence explains in the
+// other half.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct ResidualDependence {
   /// Frequency: the smaller part of both sets, at the same line. Time: the larger, since what happens at a time may
   /// happen in one of them.
   double share = 0.0;
-  /// The same seen more finely, which only names a coordinate: speeds after rests of one length, the first micrometres
+  /// The same with finer bins, used only to name a coordinate: speeds after rests of one length, the first micrometres
   /// after a reversal, time over whole records.
   double in_detail = 0.0;
 };

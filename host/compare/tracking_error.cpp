@@ -17,7 +17,7 @@ namespace host {
 namespace {
 
 constexpr std::size_t kPeriods = 3;
-/// Part of what is left that a period must explain to be named: noise over as many periods explains less.
+/// Least share of the residual that a period must explain to be named; noise over as many periods explains less.
 constexpr double kNamedShare = 0.1;
 
 bool by_position(const Record& record) { return record.has_position() && !record.x_ref.empty(); }
@@ -36,7 +36,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Regressors one after the other, each with the part of the squared error that it takes along with those before it.
+/// Regressors in order, each with the share of the squared error that it explains together with the earlier ones.
 Eigen::VectorXd take_parts(const Eigen::VectorXd& error, const std::vector<Eigen::VectorXd>& columns,
                            TrackingError& result) {
   const double whole = error.squaredNorm();
@@ -83,7 +83,7 @@ std::vector<Record> tracking_records(const std::vector<std::string>& paths, cons
 
 TrackingError tracking_error(const Record& record) {
   if (!has_reference_only(record))
-    throw Failure(ExitCode::bad_input, record.path + ": not a record of position or speed and reference alone");
+    throw Failure(ExitCode::bad_input, record.path + ": not a record of only position or speed and reference");
   const bool position = by_position(record);
   const auto channel = position ? &Record::x : &Record::w;
   const Eigen::VectorXd reference = vector_of(position ? record.x_ref : record.w_ref);
@@ -122,20 +122,24 @@ TrackingError tracking_error(const Record& record) {
 
 std::string tracking_text(const std::vector<TrackingError>& errors) {
   std::string text =
-      "No effort was recorded (u_V or i_A), so that no model can be held against this, and no physics told from the "
-      "controller.\nWhat the measurement and its reference say:\n";
+      "The record has no command or current (u_V or i_A), so it cannot be compared with a model.\n"
+      "Tracking error from measurement and reference:\n";
   const auto out = std::back_inserter(text);
   for (const TrackingError& error : errors) {
-    fmt::format_to(out, "\n{}: reference less {}: {:.4g} rms, {:.4g} at worst (t = {:.3f} s)\n", error.path,
-                   error.channel, error.rms, error.largest, error.largest_at_s);
+    fmt::format_to(out,
+                   "\n"
+                   "{}: reference minus {}: {:.4g} rms, {:.4g} at worst (t = {:.3f} s)\n",
+                   error.path, error.channel, error.rms, error.largest, error.largest_at_s);
     for (const TrackingPart& part : error.parts)
-      fmt::format_to(out, "  {:5.1f} % of its square goes with {:<13} {:.4g} {}\n", 100.0 * part.share,
+      fmt::format_to(out, "  {:5.1f} % of its square follows {:<13} {:.4g} {}\n", 100.0 * part.share,
                      part.with == "constant" ? "an offset:" : part.with + ":", part.coefficient, part.unit);
     for (const PeriodPeak& peak : error.periods)
       fmt::format_to(out, "  {:5.1f} % of the rest repeats every {:.4g} along the travel, amplitude {:.3g}\n",
                      100.0 * peak.share, peak.period, std::hypot(peak.cosine, peak.sine));
   }
-  text += "\nNext: log the command (u_V) or the motor current (i_A) too; then compare and diagnose can say why.\n";
+  text +=
+      "\n"
+      "Next: also log the command (u_V) or the motor current (i_A), so that compare and diagnose can find the cause.\n";
   return text;
 }
 

@@ -1,5 +1,5 @@
-// What position (or speed) and reference say of a loop where nobody recorded the effort: no physics, but where the
-// tracking error comes from.
+// Tracking error of a record without command or current, from position (or speed) and reference: its sources in the
+// motion, without physics.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@
 
 namespace host {
 
-/// A part of the tracking error that goes with something of the reference.
+/// A share of the tracking error that follows a quantity of the reference.
 struct TrackingPart {
   std::string with;  ///< "constant", "speed", "direction", "acceleration"
   double coefficient = 0.0;

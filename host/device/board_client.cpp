@@ -35,20 +35,19 @@ constexpr milliseconds kSavePatience{5000};
   const firmware::ParameterKey key{problem.key};
   if (reply.type == firmware::reply_to(MessageType::start_excitation))
     fail(ExitCode::refused,
-         fmt::format("the axis is not fitted, and no experiment on it goes beyond {} = {:g}: choose a smaller box, or "
-                     "raise the limit if the machine may be moved so (axistool set-params)",
+         fmt::format("the axis is not fitted, and experiments on it must stay within {} = {:g}: choose a smaller box, "
+                     "or raise the limit if the machine allows it (axistool set-params)",
                      full_name(key), std::bit_cast<float>(problem.bits)));
   if (reply.type == firmware::reply_to(MessageType::jog))
     fail(ExitCode::refused,
-         fmt::format("the axis does not know where it is, and jogs no faster than {} = {:g}: `axistool home` first, or "
-                     "jog slower",
+         fmt::format("the axis is not homed, and jogs at most at {} = {:g}: `axistool home` first, or jog slower",
                      full_name(key), std::bit_cast<float>(problem.bits)));
   if (reply.status == Status::drive_enabled)
     fail(ExitCode::refused,
          fmt::format("{} may change only while all drives are disabled: `axistool disable`", full_name(key)));
   if (reply.status == Status::unknown_parameter)
     fail(ExitCode::protocol,
-         fmt::format("the board does not know {}: flash the firmware that belongs to this axistool", full_name(key)));
+         fmt::format("the board does not know {}: flash the firmware that matches this axistool", full_name(key)));
   fail(ExitCode::bad_input, describe(key, problem.kind, std::bit_cast<float>(problem.bits)));
 }
 
@@ -89,7 +88,7 @@ void require_ok(const Message& reply, const std::string& others = "") {
                "the axis is not in a state that allows this: `axistool info` shows it; enable it first, and let it "
                "come to rest");
     case Status::not_standing:
-      fail(ExitCode::refused, refusing_axis(reply) + "it moves: let it come to rest, then enable it");
+      fail(ExitCode::refused, refusing_axis(reply) + "it moves: wait until it is at rest, then enable it");
     case Status::outside_travel:
       throw_outside_travel(reply);
     case Status::not_fitted:
@@ -108,22 +107,20 @@ void require_ok(const Message& reply, const std::string& others = "") {
     case Status::brown_out_off:
       fail(ExitCode::refused, brown_out_problem());
     case Status::not_homed:
-      fail(ExitCode::refused,
-           "the axis does not know where it is: `axistool home` first (or move it --relative, or jog it)");
+      fail(ExitCode::refused, "the axis is not homed: `axistool home` first (or move it --relative, or jog it)");
     case Status::homing_mode:
-      fail(
-          ExitCode::refused,
-          "homing.mode decides how home is found: with 0 the operator says it (`axistool home AXIS --here`), otherwise "
-          "the axis looks for it (without --here)");
+      fail(ExitCode::refused,
+           "homing.mode selects how to home: with 0 the operator defines it (`axistool home AXIS --here`), otherwise "
+           "the axis searches for it (without --here)");
     case Status::unreachable:
       fail(ExitCode::refused, "the move would last too long: raise limits.velocity, or split it");
     case Status::device_fault:
       fail(ExitCode::device_fault,
-           refusing_axis(reply) + "the board reports a fault: `axistool faults` tells cause and remedy");
+           refusing_axis(reply) + "the board reports a fault: `axistool faults` shows cause and remedy");
     case Status::flash_failed:
-      fail(ExitCode::device_fault, "the flash does not take the parameters; what was saved before still holds");
+      fail(ExitCode::device_fault, "the flash rejects the parameters; the former ones remain saved");
     case Status::not_verified:
-      fail(ExitCode::device_fault, "the saved parameters read back differently; what was saved before still holds");
+      fail(ExitCode::device_fault, "the saved parameters read back differently; the former ones remain saved");
     case Status::wrong_version:
       fail(ExitCode::protocol, "the board speaks another version of the protocol: flash the firmware of this axistool");
     case Status::damaged:
@@ -195,7 +192,7 @@ Message BoardClient::reply_to(Message message, milliseconds patience) {
       keep_samples(*reply);
     } else if (reply->type == MessageType::rejected) {
       require_ok(*reply);
-      fail(ExitCode::protocol, "the board rejects a report and does not say why");
+      fail(ExitCode::protocol, "the board rejects a report without a reason");
     } else if (reply->type == firmware::reply_to(message.type) && reply->sequence == message.sequence) {
       return *reply;
     }  // else an answer to a request that was given up: of no use any more
@@ -224,7 +221,7 @@ std::string BoardClient::other_users() const { return host::other_users(link_->f
 
 void BoardClient::keep_samples(const Message& message) {
   constexpr std::size_t kMostWaiting = 100'000;  // more than a minute's worth: nobody takes them
-  if (message.length <= 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of a length that cannot be");
+  if (message.length <= 4 || message.length % 4 != 0) fail(ExitCode::protocol, "samples of an impossible length");
   if (samples_.size() == kMostWaiting) fail(ExitCode::protocol, "the board sends samples that were not asked for");
   Samples samples;
   std::memcpy(&samples.first_row, message.payload.data(), 4);
@@ -263,7 +260,7 @@ std::size_t BoardClient::axis_count() {
   const std::size_t axes = identify().axis_count;
   if (axes == 0 || axes > hal::kMostAxes)
     fail(ExitCode::protocol,
-         fmt::format("the board says that it has {} axes, and 1 to {} can be", axes, hal::kMostAxes));
+         fmt::format("the board says that it has {} axes, but 1 to {} are possible", axes, hal::kMostAxes));
   return axis_count_ = axes;
 }
 
@@ -297,7 +294,7 @@ firmware::ParameterValues BoardClient::read_values(firmware::ValueSet set) {
       fail(ExitCode::protocol, "the board's answer holds other parameters than were asked for");
     for (std::size_t i = 0; i < part.count && place < values.size(); ++i, ++place) {
       if (part.key[i] != firmware::key_at(place).code)
-        fail(ExitCode::protocol, "the board's parameters stand in another order: its firmware is another version");
+        fail(ExitCode::protocol, "the board's parameters are in another order: its firmware is another version");
       values.set(place, std::bit_cast<float>(part.bits[i]));
     }
   }

@@ -105,7 +105,7 @@ class CaptureRun {
   /// A heartbeat that also tells whether the axis still runs.
   void examine() {
     if (board_.status().axis.at(settings_.axis).fault != 0)
-      throw Failure(ExitCode::device_fault, "the axis stopped with a fault: `axistool faults` tells cause and remedy");
+      throw Failure(ExitCode::device_fault, "the axis stopped with a fault: `axistool faults` shows cause and remedy");
   }
 
   void take(const BoardClient::Samples& samples) {
@@ -192,11 +192,10 @@ void require_capturable(const firmware::ParameterValues& values, const CaptureSe
   const double reports_Hz = rate_Hz / std::floor(static_cast<double>(firmware::kWordsPerReport) /
                                                  static_cast<double>(settings.channels.size()));
   if (reports_Hz > 1000.0)
-    throw Failure(ExitCode::usage,
-                  fmt::format("{} channels at {:g} Hz need {:.0f} reports a second, and USB carries 1000: fewer "
-                              "channels, or --every {}",
-                              settings.channels.size(), rate_Hz, reports_Hz,
-                              settings.every * static_cast<unsigned>(std::ceil(reports_Hz / 1000.0))));
+    throw Failure(ExitCode::usage, fmt::format("{} channels at {:g} Hz need {:.0f} reports per second, but USB carries "
+                                               "1000: give fewer channels, or --every {}",
+                                               settings.channels.size(), rate_Hz, reports_Hz,
+                                               settings.every * static_cast<unsigned>(std::ceil(reports_Hz / 1000.0))));
 }
 
 void require_no_loss(const Capture& capture, const std::string& where) {

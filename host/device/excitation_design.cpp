@@ -16,14 +16,14 @@
 namespace host {
 
 const std::array<ExcitationKindText, 8> kExcitationKindTexts{{
-    {"steps", "levels of voltage to and fro, each until the box tells it to turn", "[V …] hold=S"},
-    {"ramp", "voltage that rises slowly until the axis breaks away, both ways", "amplitude=V time=S"},
+    {"steps", "voltage levels in both directions, each until the box makes it turn", "[V …] hold=S"},
+    {"ramp", "voltage that rises slowly until the axis breaks away, in both directions", "amplitude=V time=S"},
     {"sine", "a sine", "amplitude=V|mm frequency=HZ ride=MM/S"},
     {"chirp", "a sine whose frequency rises", "amplitude=V|mm from=HZ to=HZ ride=MM/S"},
     {"multisine", "odd lines with random phases",
      "amplitude=V|mm (peak) from=HZ to=HZ lines=N period=SAMPLES ride=MM/S"},
     {"reversals", "triangles of the reference", "amplitude=MM speed=MM/S"},
-    {"ladder", "jogs at a ladder of speeds, both ways", "[MM/S …] hold=S"},
+    {"ladder", "jogs at a series of speeds, in both directions", "[MM/S …] hold=S"},
     {"dwell", "short jogs with longer and longer rests between them", "[S …] speed=MM/S hold=S"},
 }};
 
@@ -113,11 +113,11 @@ class Designer {
     firmware::ExcitationRequest& r = made_.request;
     const double half = counts(box_.travel) / 2.0;
     if (!(half >= 1.0) || half > firmware::kMostBoxCounts)
-      refuse(fmt::format("travel = {:g} is no window that the encoder can tell", box_.travel));
+      refuse(fmt::format("travel = {:g} is too narrow for the encoder", box_.travel));
     r.travel_counts = static_cast<std::int32_t>(half);
     r.speed = static_cast<float>(counts_a_sample(box_.speed));
     if (!(r.speed * firmware::kSpeedSamples >= 2.0F) || r.speed > firmware::kMostSpeedCounts)
-      refuse(fmt::format("speed = {:g} is {:g} counts a sample: the encoder cannot tell it", box_.speed,
+      refuse(fmt::format("speed = {:g} is {:g} counts per sample: the encoder cannot resolve it", box_.speed,
                          static_cast<double>(r.speed)));
     r.drive_velocity = static_cast<float>(!scale_.has_tachometer ? -1.0
                                           : scale_.lead > 0      ? box_.speed / scale_.lead
@@ -202,7 +202,7 @@ class Designer {
   void put_ride() {
     const double ride = number("ride", 0.0);
     if (ride != 0.0 && closed_loop_.empty())
-      refuse("only a closed loop can ride on a jog: --closed-loop reference or output");
+      refuse("only a closed loop can be combined with a jog: --closed-loop reference or output");
     if (std::abs(ride) * 1.25 > box_.speed) refuse(fmt::format("ride = {:g} is too near the box's speed", ride));
     made_.request.ride = static_cast<float>(counts_a_sample(ride));
     if (ride == 0.0) return;
@@ -320,7 +320,7 @@ class Designer {
     const double hold = positive("hold", box_.time_s / (2.0 * static_cast<double>(speeds.size())));
     for (const double speed : speeds) {
       if (!(speed > 0.0) || speed * 1.25 > box_.speed)
-        refuse(fmt::format("{:g} is no speed of a ladder within the box", speed));
+        refuse(fmt::format("{:g} is not a possible speed of a ladder within the box", speed));
       add_level(counts_a_sample(speed), hold);
       add_level(-counts_a_sample(speed), hold);
     }

@@ -27,9 +27,9 @@ std::string disagreement(const ExcitationOutcome& outcome, double lead) {
   }
   constexpr double kAlike = 0.8, kDead = 1e-3;
   if (travel_2 <= kDead * kDead * angle_2)
-    return "the tachometer shows motion and the encoder stands: it is dead, or not on this axis";
+    return "the tachometer shows motion but the encoder does not: the encoder is dead, or not on this axis";
   if (angle_2 <= kDead * kDead * travel_2)
-    return "the encoder shows motion and the tachometer none: it is dead, or not on this axis";
+    return "the encoder shows motion but the tachometer does not: the tachometer is dead, or not on this axis";
   const double alike = both / std::sqrt(travel_2 * angle_2), factor = both / angle_2;
   if (alike < -kAlike) return "encoder and tachometer run against each other: one of them is reversed";
   if (alike > kAlike)
@@ -37,7 +37,7 @@ std::string disagreement(const ExcitationOutcome& outcome, double lead) {
         "the encoder shows {:.3g} times the tachometer's motion: drive.encoder_resolution, drive.lead or "
         "tachometer.gain is not this drive's (--drive DRIVE.toml gives them)",
         factor);
-  return general + ", unlike in course too: one of them is not on this axis";
+  return general + ", with another time course: one of them is not on this axis";
 }
 
 }  // namespace
@@ -49,9 +49,9 @@ void require_completed(BoardClient& board, std::uint8_t axis, const ExcitationOu
   switch (static_cast<ExcitationEnd>(outcome.state.end)) {
     case ExcitationEnd::completed:
       if (outcome.capture.lost == 0) return;
-      throw Failure(ExitCode::protocol, fmt::format("{} rows were lost on the way; `axistool doctor` looks at the way "
-                                                    "to the board{}",
-                                                    outcome.capture.lost, where));
+      throw Failure(ExitCode::protocol,
+                    fmt::format("{} rows were lost; `axistool doctor` checks the connection to the board{}",
+                                outcome.capture.lost, where));
     case ExcitationEnd::fault:
     case ExcitationEnd::refused:
       require_no_fault(board.status(), axis);
@@ -60,15 +60,15 @@ void require_completed(BoardClient& board, std::uint8_t axis, const ExcitationOu
     case ExcitationEnd::blind:
       throw Failure(ExitCode::refused,
                     disagreement(outcome, static_cast<double>(board.read_values().axis(axis).get<"drive.lead">())) +
-                        "; mend that first" + where);
+                        "; correct that first" + where);
     case ExcitationEnd::no_motion:
       throw Failure(ExitCode::refused,
-                    "nothing moved under the largest command: free the axis, look at motor, amplifier, brake and "
-                    "encoder, or raise the volts of the box" +
+                    "nothing moved at the largest command: free the axis, check motor, amplifier, brake and encoder, "
+                    "or raise the volts of the box" +
                         where);
     case ExcitationEnd::travel:
     case ExcitationEnd::speed:
-      throw Failure(ExitCode::refused, fmt::format("the axis {} and was stopped: less volts, or a wider box{}",
+      throw Failure(ExitCode::refused, fmt::format("the axis {} and was stopped: give fewer volts, or a wider box{}",
                                                    end_name(outcome.state), where));
     default:
       throw Failure(ExitCode::refused, fmt::format("interrupted{}", where));

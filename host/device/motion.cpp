@@ -41,7 +41,7 @@ bool for_all(std::uint8_t mask, Each each) {
 /// Throws once the motion is another program's: it is no longer this one's to end.
 void require_own_motion(const BoardState& status) {
   if ((status.flags & firmware::kBoardOthers) != 0)
-    throw Failure(ExitCode::refused, "another program has taken the motion over");
+    throw Failure(ExitCode::refused, "another program has taken over the motion");
 }
 
 bool rests(const BoardState& status, std::uint8_t axis) {
@@ -77,12 +77,11 @@ void wait_for_rest(BoardClient& board, std::uint8_t axis, const std::function<bo
   const double turn = spacing > 0.0 ? spacing : static_cast<double>(values.get<"homing.index_travel">());
   const double way = count * (row ? row->index_way : 0);
   const double ahead = values.get<"homing.velocity">() < 0 ? -1.0 : 1.0;
-  throw Failure(
-      ExitCode::device_fault,
-      fmt::format("axis {}: homing_index_near_switch: the index pulse comes {:.4g} behind the place where the "
-                  "home switch acts, of a turn of {:.4g}: another time the switch may choose the next pulse. "
-                  "Remedy: move the switch by {:+.4g} along the axis; then `axistool clear-faults`",
-                  firmware::kAxisNames.at(axis), way, turn, ahead * (way - turn / 2.0)));
+  throw Failure(ExitCode::device_fault,
+                fmt::format("axis {}: homing_index_near_switch: the index pulse is {:.4g} after the home switch, in a "
+                            "turn of {:.4g}: the next homing may choose the next pulse. Remedy: move the switch by "
+                            "{:+.4g} along the axis; then `axistool clear-faults`",
+                            firmware::kAxisNames.at(axis), way, turn, ahead * (way - turn / 2.0)));
 }
 
 }  // namespace
@@ -111,7 +110,8 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
       return state_of(status, axis) == SupervisorState::enabled;
     });
   });
-  if (!closed) throw Failure(ExitCode::time_out, "the board does not enable the axis; `axistool doctor` looks further");
+  if (!closed)
+    throw Failure(ExitCode::time_out, "the board does not enable the axis; `axistool doctor` checks further");
 }
 
 bool are_enabled(BoardClient& board, std::uint8_t mask) {

@@ -64,7 +64,7 @@ class PitchFile {
       const bool is_known = what == "x" || what == "forward" || what == "backward" || what == "error";
       if (!is_known || mm == 0.0)
         fail(text.substr(0, 40), fmt::format("not known: the columns are {} (units _um, _mm, _m)", kColumns));
-      if (place_of(what)) fail(text, "stands there twice: take one out");
+      if (place_of(what)) fail(text, "occurs twice: remove one");
       columns_.push_back({what, mm});
     }
     const bool has_both = place_of("forward") && place_of("backward");
@@ -93,7 +93,7 @@ class PitchFile {
 
   void take_row() {
     if (fields_.size() != columns_.size())
-      fail("", fmt::format("{} fields, the header has {}: one a column", fields_.size(), columns_.size()));
+      fail("", fmt::format("{} fields, the header has {}: one per column", fields_.size(), columns_.size()));
     if (points_.size() == firmware::kMostPitchPoints)
       fail("",
            fmt::format("more than {} rows: leave some out where the screw is straight", firmware::kMostPitchPoints));
@@ -106,7 +106,8 @@ class PitchFile {
     point.forward = deviation(place_of("error") ? "error" : "forward");
     point.backward = place_of("error") ? point.forward : deviation("backward");
     if (!points_.empty() && point.counts <= points_.back().counts)
-      fail("x", "not beyond the row before: one row a place, in rising order, the mean where it was measured often");
+      fail("x",
+           "not above the row before: give one row per position in rising order, the mean of repeated measurements");
     if (!points_.empty() && !may_follow(points_.back(), point))
       fail("x", "the deviation changes by more than 1/64 of the way from the row before: is the unit right?");
     points_.push_back(point);

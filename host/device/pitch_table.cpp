@@ -41,7 +41,7 @@ PitchPoints read_pitch(BoardClient& board, std::uint8_t axis) {
     const firmware::ReadTableRequest wanted{axis, 0, static_cast<std::uint16_t>(points.size())};
     const Message reply = ask(board, MessageType::read_table, wanted, board.patience());
     if (!reply.get(part) || part.points > firmware::kMostPitchPoints)
-      throw Failure(ExitCode::protocol, "the board tells a table of pitch errors that cannot be");
+      throw Failure(ExitCode::protocol, "the board reports an impossible table of pitch errors");
     for (const firmware::PitchPoint& point : part.point)
       if (points.size() < part.points) points.push_back(point);
   } while (points.size() < part.points);
@@ -64,7 +64,7 @@ void write_pitch(BoardClient& board, std::uint8_t axis, const PitchPoints& point
   ask(board, MessageType::finish_table, firmware::FinishTableRequest{crc, static_cast<std::uint8_t>(on ? 1 : 0), {}},
       kErasePatience);
   if (read_pitch(board, axis) != points)
-    throw Failure(ExitCode::protocol, "the board tells another table than was sent: send it again");
+    throw Failure(ExitCode::protocol, "the board reports another table than was sent: send it again");
 }
 
 std::string pitch_text(const PitchPoints& points, bool on, double count_mm) {

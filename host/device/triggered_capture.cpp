@@ -60,7 +60,7 @@ double level_of(std::string_view text, sim::DriveKind kind, bool has_unit_in_nam
   const std::string_view unit = written ? trim_blanks(written->unit) : "";
   if (written && unit.empty() && !has_unit_in_name)
     throw Failure(ExitCode::usage,
-                  fmt::format("{}: a level without unit; write it behind the number: um, mm, m, mm/s, m/s, rad/s or V",
+                  fmt::format("{}: a level without unit; write it after the number: um, mm, m, mm/s, m/s, rad/s or V",
                               trim_blanks(text)));
   const bool is_own = unit.empty() || unit == "V" || unit == "rad/s" || unit == "m/s";
   const double factor = is_own ? 1.0 : length_factor(unit == "mm/s" ? "mm" : unit, kind);
@@ -121,7 +121,7 @@ class Widener {
 std::vector<std::uint16_t> fetch(BoardClient& board, const firmware::TriggerStatePayload& state) {
   const std::size_t wanted = std::size_t{state.rows} * state.half_words;
   if (state.half_words == 0 || wanted > state.capacity)
-    throw Failure(ExitCode::protocol, "the board's capture cannot be");
+    throw Failure(ExitCode::protocol, "the board's capture is impossible");
   std::vector<std::uint16_t> all;
   while (all.size() < wanted) {
     const auto part = board.read_triggered(static_cast<std::uint32_t>(all.size()));

@@ -13,13 +13,13 @@ namespace host {
 Addition add_kind(const sim::DriveDescription& model, const std::string& kind, const std::string& over,
                   const Measurements& measured) {
   const bool curve = kind == "free_curve";
-  if (!curve && !over.empty()) throw Failure(ExitCode::usage, "--over belongs to free_curve");
+  if (!curve && !over.empty()) throw Failure(ExitCode::usage, "--over applies only to free_curve");
   Addition addition = curve ? add_free_curve(model, over, measured) : add_effect(model, kind, measured);
   const JudgedCandidate& judged = addition.judged;
   if (!(judged.before > 0.0) || !std::isfinite(judged.before) || !std::isfinite(judged.after))
     throw Failure(ExitCode::refused,
-                  fmt::format("{}: nothing was fitted: no stretch of these records judges it (error over floor "
-                              "{:.3f} -> {:.3f}); record longer, or give --validate. No model is written",
+                  fmt::format("{}: not fitted: no part of these records can validate it (error over noise floor {:.3f} "
+                              "-> {:.3f}); record longer, or give --validate. No model was written",
                               kind, judged.before, judged.after));
   return addition;
 }

@@ -1,4 +1,4 @@
-// One effect at a word: `axis-addition/1`.
+// Adds one named effect: `axis-addition/1`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,12 +8,12 @@
 
 namespace host {
 
-/// add_effect, or add_free_curve where `kind` is "free_curve": `over` belongs to it alone. Throws Failure(usage) where
-/// it does not, Failure(refused) where no stretch of the records judges what was fitted, and what those two throw.
+/// add_effect, or add_free_curve where `kind` is "free_curve": only it takes `over`. Throws Failure(usage) if another
+/// kind gives it, Failure(refused) if no part of the records can validate the fit, and what those two throw.
 Addition add_kind(const sim::DriveDescription& model, const std::string& kind, const std::string& over,
                   const Measurements& measured);
 
-/// `model_path` is where the new model went; may be empty.
+/// `model_path`: path of the new model; may be empty.
 nlohmann::json to_json(const Addition& addition, const std::string& kind, const Measurements& measured,
                        const std::string& model_path);
 

@@ -1,5 +1,5 @@
-// Whether a model that nothing in the catalogue improves deserves an all-clear: what is left must be small, must depend
-// on nothing, and the records must have been able to show what they did not show.
+// Decides whether a model that no known effect improves is complete: the residual must be small and independent of all
+// coordinates, and the records must be able to show each effect that was not found.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// An error over floor up to which a model may be complete: made cases without any effect leave 0.8 to 1.05.
+/// Largest error over noise floor of a complete model: simulated cases without an effect give 0.8 to 1.05.
 inline constexpr double kSmall = 1.2;
 
 /// Why there is no all-clear, or no claim.
@@ -20,17 +20,18 @@ struct Objection {
   std::string next_experiment;
 };
 
-/// The objection to claiming an effect: a base fitted to both sets needs none. Empty where there is none.
+/// The objection to claiming an effect, if a base fitted to both sets needs no effect; empty otherwise.
 std::optional<Objection> objection_to_claim(const Diagnosis& diagnosis);
 
-/// The objection to calling the re-fitted base complete; empty where there is none.
+/// The objection to calling the refitted base complete, if any.
 std::optional<Objection> objection_to_all_clear(const Diagnosis& diagnosis, const ResidualTests& tests);
 
-/// Whether the base fails at the speed channel, and not at the motion that the position shows.
+/// Whether the base fails to predict the speed channel but predicts the position.
 bool speed_channel_alone_fails(const Diagnosis& diagnosis);
 
-/// What is left as the coordinate that carries most of it, and where along it, in words: of the effort (`of_motion`),
-/// or of the speed channel where that alone fails. Falls back on the regions of the error where it depends on nothing.
+/// The coordinate that carries most of the residual, and where along it, in words: of the torque or force
+/// (`of_motion`), or of the speed channel if only that fails. Falls back on the regions of the error if there is no
+/// dependence.
 struct Trace {
   std::string coordinate, where;
 };

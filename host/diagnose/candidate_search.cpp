@@ -8,9 +8,9 @@
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
-#include "host/parallel.hpp"
 #include "host/diagnose/pattern_search.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/parallel.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -20,18 +20,18 @@ namespace {
 /// A candidate must lower the training error of a first look by this factor to be worth a serious fit.
 constexpr double kPromise = 0.98;
 
-/// Behind the best of a first look by this factor, only a few are worth a serious fit; none of those whose simulation
-/// takes many small steps.
+/// Of the candidates worse than the best of the first look by this factor, only a few get a serious fit, and none that
+/// needs many small integration steps.
 constexpr double kOutOfSight = 2.0;
 
-/// After the serious fits the last word is between those within this factor of the best.
+/// Candidates within this factor of the best after the serious fits enter the final comparison.
 constexpr double kClose = 1.5;
 
 /// Two starts of one effect are both pursued while their errors are so close.
 constexpr double kOpenRace = 1.25;
 
-/// A spectrum sees an effect along the travel at the right place but weakened by smoothing, and a base that was bent to
-/// make up for its absence would hold it down: its amplitude comes first, alone.
+/// A spectrum shows a periodic effect at the right period, but smoothing weakens it, and a base biased by its absence
+/// would suppress it. So its amplitude is fitted first, alone.
 constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom = Freedom::last_effect};
 /// Budgets of at least three times what a drive of one step a sample needs, so that a resonance of 200 Hz at 1 kHz
 /// (five steps) still gets as many passes as most fits take; all fits of a search together are some 400 million steps
@@ -39,15 +39,15 @@ constexpr FitOptions kOwnSize{.most_iterations = 5, .least_gain = 1e-2, .freedom
 constexpr FitOptions kFirstLook{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 8e6};
 constexpr FitOptions kSeriousFit{.most_iterations = 12, .least_gain = 3e-4, .most_steps = 8e6};
 constexpr FitOptions kLastWord{.most_iterations = 12, .least_gain = 3e-5, .most_steps = 20e6};
-/// Of the starts round a finalist, where a serious fit of each would cost too much: enough to see which valley is deep.
+/// Budget for each start near a finalist: enough to see which local minimum is the deepest.
 constexpr FitOptions kTryout{.most_iterations = 7, .least_gain = 1e-3, .most_steps = 2.5e6};
 constexpr std::size_t kBestOfTryout = 4;
-/// On top of a drive that takes many small steps every candidate does: each gets this part of its budget there.
+/// If the base itself needs many small steps, so does every candidate: each gets this share of its budget.
 constexpr double kCostlyPart = 0.4;
-/// Passes that a budget must hold for a fit to get anywhere: six slopes of some eight parameters.
+/// Least number of passes for a useful fit: six Jacobians of some eight parameters.
 constexpr double kLeastPasses = 50.0;
 
-/// The set with about so many windows in use, evenly spread over the records.
+/// The set with about this many windows in use, evenly spread over the records.
 RecordSet thinned(const RecordSet& set, std::size_t windows) {
   RecordSet thin = set;
   thin.stride = 1;
@@ -81,8 +81,8 @@ struct Start {
   }
 };
 
-/// Floors suit the model that they are propagated through. Motion on a contact (bristles, a second mass, a gap) spreads
-/// a restart's uncertainty in ways of its own: such a candidate is compared with the base on floors of its own model.
+/// Noise floors depend on the model that propagates them. Presliding, a second mass or a gap propagates the restart's
+/// uncertainty differently, so such a candidate is compared with the base on its own noise floors.
 bool needs_own_floors(const sim::DriveDescription& model) {
   const sim::Drive drive(model);
   return drive.has_second_mass() || drive.bristles.has_value();
@@ -95,7 +95,7 @@ RecordSet suited_to(const sim::DriveDescription& model, const RecordSet& shared)
   return own;
 }
 
-/// Fits a start on a set and notes what is left of the base's error there.
+/// Fits a start on a set and stores its error relative to the base.
 void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet& shared, double base_error,
                const FitOptions& options) {
   const RecordSet set = affordable(shared, start.model, options);
@@ -111,15 +111,15 @@ void fit_start(Start& start, const sim::DriveDescription& base, const RecordSet&
   start.error = fit.robust / error_of(sim::Drive(base), own).robust;
 }
 
-/// An effect with more starts than this is scanned: each start is measured as it stands, and only the best go on, by a
-/// search without slopes first.
+/// An effect with more starts than this is scanned: each start is evaluated unfitted, and only the best continue, first
+/// by a search without gradients.
 constexpr std::size_t kMostStarts = 6;
 constexpr std::size_t kBestOfScan = 2;
-/// What a start may leave of the base's error, before any fit, to go on. A second mass that is a little off is worse
-/// than none: the starts that found a gap on top of asymmetric friction began at 1.17 and ended at 0.7.
+/// Largest unfitted error, relative to the base, of a start that continues. A slightly wrong second mass is worse than
+/// none: the starts that found a gap beside asymmetric friction began at 1.17 and ended at 0.7.
 constexpr double kWorstOfScan = 1.25;
 
-/// What is left of the base's error at a start, unfitted.
+/// Error of an unfitted start relative to the base.
 double left_at(const sim::DriveDescription& start, const sim::DriveDescription& base, const RecordSet& shared) {
   const RecordSet own = suited_to(start, shared);
   return error_of(sim::Drive(start), own).robust / error_of(sim::Drive(base), own).robust;
@@ -153,8 +153,8 @@ SearchEffort SearchEffort::over(double window_s) const {
 
 namespace {
 
-/// Whether a breakaway carried static friction beyond three times what was given, into a valley that the rest of the
-/// base may have left since.
+/// Whether a breakaway drove static friction above three times the given value, to a local minimum that the other
+/// parameters may have left.
 bool static_friction_ran_away(const sim::DriveDescription& fitted, const sim::DriveDescription& given) {
   constexpr double kFar = 3.0;
   const sim::EffectEntry *before = given.find("stribeck"), *after = fitted.find("stribeck");
@@ -167,7 +167,7 @@ bool static_friction_ran_away(const sim::DriveDescription& fitted, const sim::Dr
 }  // namespace
 
 sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training) {
-  // From the given values, and from a drive 25 % heavier or lighter with friction that goes the other way.
+  // From the given values, and with the inertia 25 % higher or lower and friction changed in the opposite sense.
   constexpr std::array kFactors{1.0, 1.25, 0.8};
   std::vector<sim::DriveDescription> starts(kFactors.size(), given);
   for (std::size_t k = 1; k < kFactors.size(); ++k) {
@@ -220,8 +220,8 @@ Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescript
 
 namespace {
 
-/// The model whose friction fades alike in both directions: jogs that an effect disturbs bend the fading of each
-/// direction by itself, and a fit does not find back from there. Empty where it does so already.
+/// The model with equal Stribeck speeds in both directions: an effect that disturbs the jogs biases each direction
+/// separately, and the fit does not recover. Empty if they are already equal.
 std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescription& model) {
   const sim::EffectEntry* stribeck = model.find("stribeck");
   const sim::EffectEntry* coulomb = model.find("coulomb");
@@ -243,9 +243,9 @@ std::optional<sim::DriveDescription> with_even_fading(const sim::DriveDescriptio
   return even;
 }
 
-/// Fits the last effect again from both sides of each of its parameters (a scan has looked there already): an effect
-/// that acts at breakaway or on impact leaves valleys side by side. All that from the base as it was given too, since a
-/// re-fit without the effect may have bent the base so far that it does not come back.
+/// Refits the last effect from both sides of each of its parameters (unless a scan did), because an effect at breakaway
+/// or impact has several local minima. Does the same from the given base, because a refit without the effect may have
+/// biased the base beyond recovery.
 sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription* nominal, const RecordSet& set) {
   const sim::DriveDescription& model = finalist.model;
   std::vector<sim::DriveDescription> starts{model};
@@ -270,7 +270,7 @@ sim::DriveDescription shaken(const Start& finalist, const sim::DriveDescription*
   };
   for (const double factor : {0.55, 1.8}) {
     for (const std::string& id : ids) start_from({id}, factor);
-    // And all together: a size and the time over which it grows may trade against each other.
+    // Also all together, because a size and its time constant may be correlated.
     if (ids.size() > 1) start_from(ids, factor);
   }
   for (const sim::DriveDescription& base : bases)
@@ -294,8 +294,8 @@ bool is_confused_with(const sim::EffectInfo& one, const sim::EffectInfo& other) 
   return std::ranges::find(one.confused_with, other.kind) != one.confused_with.end();
 }
 
-/// An effect that is no more complicated than the leader's, on the leader's base, as its own fit has left it and as it
-/// was before, its size first: that fit may have bent the base into a valley from which it did not come back.
+/// Fits an effect no more complicated than the leader's on the leader's base, with its fitted and with its original
+/// values, its size first: its own fit may have ended in a local minimum of the base.
 void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescription& base, const RecordSet& set,
                     const FitOptions& options) {
   if (rival.effect.parameters.size() > leader.effect.parameters.size()) return;
@@ -313,8 +313,8 @@ void try_on_base_of(const Start& leader, Start& rival, const sim::DriveDescripti
   }
 }
 
-/// A model that holds the base cannot be worse: an effect none of whose fits got anywhere starts again, its size alone
-/// first, from the base as it stands.
+/// A model that contains the base cannot be worse than it: if all fits of an effect failed, it starts again from the
+/// present base, its size alone first.
 std::vector<Start> lost_starts(const std::vector<Start>& looked_at, const sim::DriveDescription& base) {
   std::vector<Start> lost;
   for (const Start& start : looked_at) {
@@ -374,10 +374,10 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     if (progress) progress(std::min(1.0, static_cast<double>(++done) / most));
   };
   const auto fit_all = [&](std::vector<Start>& list, const RecordSet& set, const FitOptions& options) {
-    // The base gets the same chance to suit these few windows as the candidates have.
+    // The base is also fitted to these few windows, for a fair comparison with the candidates.
     const double base_error = fit_model(model, set, options).robust;
     for_each_in_parallel(list.size(), [&](std::size_t k) {
-      // What needed a scan on many windows would be lost on a few.
+      // An effect that needed a scan on many windows would be lost on a few.
       fit_start(list[k], model, list[k].scanned ? medium : set, base_error, options);
       report();
     });
@@ -413,7 +413,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
     const RecordSet own = suited_to(first, affordable(medium, first, kSeriousFit));
     finalists.front().model = shaken(finalists.front(), effort.nominal, own);
     leader = finalists.front();
-    // What it is often taken for may have fallen behind only because the base was bent.
+    // An effect often confused with it may be behind only because the base was biased.
     for (const Start& start : starts)
       if (is_confused_with(*leader->info, *start.info) && !needs_own_floors(start.model) &&
           std::ranges::find(finalists, start.info, &Start::info) == finalists.end())

@@ -1,4 +1,4 @@
-// Tries effects of the catalogue on a model: fits each with all parameters free, and measures what it would bring.
+// Tries effects of the catalogue on a model: fits each with all parameters free and measures its gain.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,14 @@
 
 namespace host {
 
-/// A model with effects added to a base, fitted, and what it reaches.
+/// A fitted model with effects added to a base, and its errors.
 struct Candidate {
   std::vector<std::string> kinds;  ///< what was added to the base, in the order of the search
   sim::DriveDescription model;
   SetError training;
   SetError validation;
 
-  /// What is left of the base's error, training and validation multiplied: a real effect lowers both, a lucky one one.
+  /// Error relative to the base, product of training and validation: a real effect lowers both, a chance fit only one.
   double left = 1.0;
 };
 
@@ -41,8 +41,8 @@ struct SearchEffort {
   std::vector<std::string>* cut_short = nullptr;     ///< takes the kinds of which a fit ended at its budget
 };
 
-/// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates that
-/// promise nothing on a few windows are not fitted further. Sorted by what they leave, best first.
+/// Fits `model` with each applicable effect added; `kinds` are those it already has beyond the base. Candidates without
+/// gain on a few windows are not fitted further. Sorted by remaining error, best first.
 std::vector<Candidate> search_candidates(const sim::DriveDescription& model, const std::vector<std::string>& kinds,
                                          const RecordSet& training, const RecordSet& validation,
                                          const ShareDone& progress = {}, const SearchEffort& effort = {});
@@ -57,7 +57,7 @@ std::vector<Candidate> search_kinds(const std::vector<const sim::EffectInfo*>& i
 Candidate judged(const std::vector<std::string>& kinds, const sim::DriveDescription& model,
                  const sim::DriveDescription& base, const RecordSet& training, const RecordSet& validation);
 
-/// Fits the base from several starts, since a re-fit that is stuck in a local minimum fakes discoveries.
+/// Fits the base from several starts, because a refit stuck in a local minimum causes false discoveries.
 sim::DriveDescription fit_base(const sim::DriveDescription& given, const RecordSet& training);
 
 }  // namespace host

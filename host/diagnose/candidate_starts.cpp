@@ -26,7 +26,7 @@ constexpr double kUsualSpeed_mm_s = 10.0 / (2.0 * std::numbers::pi);
 double scale_value(sim::Scale scale, const sim::DriveDescription& model, const RecordScales& scales) {
   const sim::Drive drive(model);
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
-  // A base that was bent to make up for what is missing may have no Coulomb friction left.
+  // A base biased by the missing effect may have no Coulomb friction.
   const double coulomb = std::max(0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb),
                                   kLeastFriction * drive.effort_per_volt * scales.top_command_V);
   const double breakaway_travel = kBreakawayTravel_mm * (rotary ? 1.0 : 1e-3) / model.data.lead;
@@ -67,8 +67,8 @@ double scale_value(sim::Scale scale, const sim::DriveDescription& model, const R
   return 1.0;
 }
 
-/// The parameters that a new entry has: those that must be there, and of the pairs the form that the model's Coulomb
-/// friction has (speeds of fading are shared by both directions, which data seldom tell apart).
+/// The parameters of a new entry: the mandatory ones, and of the pairs the form of the model's Coulomb friction (both
+/// directions share the Stribeck speeds, which data seldom separate).
 std::vector<const sim::ParameterInfo*> parameters_to_start(const sim::EffectInfo& info,
                                                            const sim::DriveDescription& model,
                                                            const RecordScales& scales) {
@@ -183,7 +183,7 @@ std::vector<sim::EffectEntry> periodic_entries(const sim::EffectInfo& info, cons
   const TravelSignal signal = signal_of(info, model, set);
   constexpr std::size_t kPeaks = 3;
   const bool slow = info.kind == "position_dependent_friction";
-  // Fast effects repeat many times over the travel; friction along the travel has a few waves at most.
+  // Fast effects repeat many times over the travel; friction along the travel has at most a few periods.
   const double shortest =
       slow ? scales.travel / 12.0 : std::max(40.0 * model.data.encoder_resolution, scales.travel / 2000.0);
   const double longest = slow ? 3.0 * scales.travel : scales.travel / 3.0;

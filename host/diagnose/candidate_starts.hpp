@@ -19,15 +19,15 @@ struct RecordScales {
 
 RecordScales scales_of(const RecordSet& set);
 
-/// Whether the effect can be added to this model and seen in these records at all: not yet in it, not contained in the
-/// form of another, and measured by a channel that is there.
+/// Whether the effect can be added to this model and observed in these records: not yet in the model, not contained in
+/// another effect, and visible in a recorded channel.
 bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set);
 
 /// Whether two effects describe the same part of a drive, so that one drive cannot have both.
 bool exclude_each_other(const sim::EffectInfo& a, const sim::EffectInfo& b);
 
-/// The model with the effect added: one start for every combination of the catalogue's starting values, or for every
-/// period that stands out of the residual where the effect is periodic.
+/// The model with the effect added: one start for every combination of the catalogue's starting values, or, for a
+/// periodic effect, one for every significant period of the residual.
 std::vector<sim::DriveDescription> starting_models(const sim::EffectInfo& info, const sim::DriveDescription& model,
                                                    const RecordSet& set);
 

@@ -18,10 +18,6 @@ using Kinds = std::vector<std::string>;
 
 bool holds(const Kinds& all, const std::string& kind) { return std::ranges::find(all, kind) != all.end(); }
 
-bool holds_all(const Kinds& all, const Kinds& kinds) {
-  return std::ranges::all_of(kinds, [&](const std::string& kind) { return holds(all, kind); });
-}
-
 double probability_of_any(const Diagnosis& diagnosis, const Kinds& group) {
   double sum = 0.0;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
@@ -37,14 +33,14 @@ const JudgedCandidate* candidate_of(const Diagnosis& diagnosis, const Kinds& kin
   return found == diagnosis.candidates.end() ? nullptr : &*found;
 }
 
-/// Part of the squared error on held-back records that a candidate takes, by the measure that judged.
+/// Share of the squared error on held-back records that a candidate explains, in the measure of the verdict.
 double taken_by(const JudgedCandidate& candidate) {
   const double left = candidate.before > 0.0 ? candidate.after / candidate.before : 1.0;
   return 1.0 - left * left;
 }
 
-/// The most probable single effects, as few as together hold kNamed; empty where that takes more than a reader can
-/// try, or where one of them hardly helps.
+/// The smallest set of most probable single effects that together reach kNamed; empty if there are too many to test, or
+/// if one of them hardly helps.
 Kinds tied_group(const Diagnosis& diagnosis) {
   std::vector<const JudgedCandidate*> singles;
   for (const JudgedCandidate& candidate : diagnosis.candidates)
@@ -64,8 +60,8 @@ void leave_unexplained(Diagnosis& diagnosis) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const auto best = std::ranges::max_element(diagnosis.candidates, {}, &JudgedCandidate::probability);
   verdict.explanation += fmt::format(
-      " This is not claimed: {} has a probability of {:.0f} %, something that is no candidate {:.0f} %, and a name is "
-      "given from {:.0f} % on.",
+      " This is not claimed: {} has a probability of {:.0f} %, an effect outside the candidates {:.0f} %; a claim "
+      "needs {:.0f} %.",
       fmt::join(best->kinds, " + "), 100.0 * best->probability, 100.0 * verdict.probability_other, 100.0 * kNamed);
   verdict.status = Status::unexplained;
   verdict.effects.clear();
@@ -120,6 +116,10 @@ void fill_by_motion(Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+bool holds_all(const std::vector<std::string>& all, const std::vector<std::string>& kinds) {
+  return std::ranges::all_of(kinds, [&](const std::string& kind) { return holds(all, kind); });
+}
 
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds) {
   double sum = 0.0;

@@ -1,5 +1,4 @@
-// What may be said with the probabilities that the candidates have: the losses, stated once, and the status that
-// follows.
+// From the candidates' probabilities to a status: the losses of wrong answers, and the decision that follows.
 #pragma once
 
 #include <string>
@@ -10,11 +9,13 @@
 
 namespace host {
 
-/// The verdict keeps a name that is more probable than all else together. The probabilities of today's two judges are
-/// not calibrated between this and kClaimed: of the real machines that they answer rightly some stand at 60 %.
+/// The verdict keeps a name that is more probable than all else together. The probabilities are not calibrated between
+/// this and kClaimed: for some real machines the right answer has 60 %.
 inline constexpr double kNamed = 0.5;
-/// So many rivals at most are a group: one further measurement tells as many apart.
+/// Largest group of rivals: one further measurement can separate this many.
 inline constexpr std::size_t kLargestGroup = 4;
+/// Whether a list of kinds has each of these.
+bool holds_all(const std::vector<std::string>& all, const std::vector<std::string>& kinds);
 /// Of all these effects together, whatever else is there besides: of all candidates that hold them.
 double probability_of(const Diagnosis& diagnosis, const std::vector<std::string>& kinds);
 

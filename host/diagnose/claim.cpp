@@ -14,23 +14,24 @@ namespace host {
 
 namespace {
 
-/// Of the bootstrap over blocks of validation windows: one in twenty, since gain and share below keep luck out (the
-/// luckiest candidate never came near them); on a rough machine, where share asks for little, one in a hundred.
+/// Significance level of the block bootstrap over validation windows: 5 %, because the limits of gain and share below
+/// exclude chance (no chance candidate came near them); 1 % on a machine limited by model error, where the limit of
+/// share is low.
 constexpr double kLeastConfidence = 0.95;
 constexpr double kLeastRoughConfidence = 0.99;
-/// Part of what there is to explain below which an effect is no explanation.
+/// Least share of the explainable error for an explanation.
 constexpr double kLeastShare = 0.35;
-/// The same on a rough machine, whose residual has many small causes.
+/// The same on a machine limited by model error, whose residual has many small causes.
 constexpr double kLeastRoughShare = 0.1;
-/// An effect that is really there leaves 2 % of the error (impacts and breakaways that come a moment late), two of
-/// three some 15 %; what made up for things that no catalogue knows left 40 % and more, two that bend friction to a
-/// shape of nobody's formula 20 %. Not asked on a rough machine.
+/// A true effect leaves 2 % of the error (late impacts and breakaways), two true effects of three about 15 %.
+/// Substitutes for unknown effects left 40 % and more, two substitutes for an unknown friction curve 20 %. Not tested
+/// on a machine limited by model error.
 constexpr double kMostLeft = 0.15;
-/// An error, over floor, from which on there is something to explain at all.
+/// Least error over noise floor that needs an explanation.
 constexpr double kSomething = 1.1;
 
 bool gains(const JudgedCandidate& candidate, const Diagnosis& diagnosis) {
-  // Where the base is more probably complete than not, whatever improves on it is none.
+  // If the base is probably complete, an improvement on it is no explanation.
   if (std::max(candidate.before, diagnosis.before_train) < ProbabilityScale{}.complete) return false;
   const double least = diagnosis.rough ? kLeastRoughShare : kLeastShare;
   const auto on = [&](double before, double after) {
@@ -93,7 +94,7 @@ Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis&
 }
 
 double least_validation_s(std::size_t tried) {
-  // All of m blocks improve by luck with probability 2^-m.
+  // All of m blocks improve by chance with probability 2^-m.
   return kLuckBlock_s * std::ceil(std::log2(static_cast<double>(std::max<std::size_t>(1, tried)) / kMostLuck));
 }
 

@@ -1,5 +1,5 @@
-// The bar that a candidate must pass to be claimed. It rises with the number of candidates that were tried and falls
-// with the windows that judged them.
+// The criteria for claiming a candidate. They become stricter with the number of tried candidates and looser with the
+// number of validation windows.
 #pragma once
 
 #include <string>
@@ -12,17 +12,18 @@ namespace host {
 /// An error of a complete model, over its floor: made cases without any effect leave 0.8 to 1.05.
 inline constexpr double kComplete = 1.0;
 
-/// Nothing is claimed whose improvement is luck with more than this probability.
+/// Largest p-value of an improvement that is claimed.
 inline constexpr double kMostLuck = 0.05;
 
-/// The luckiest of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5 %.
+/// By chance the best of all candidates lowers the error of a complete model by up to 1.6 %; nothing is claimed below 5
+/// %.
 inline constexpr double kLeastGain = 0.05;
 
 /// Part of what there is to explain, before^2 - kComplete^2, that is gone, 0..1. 0 where there was nothing.
 double explained_share(double before, double after);
 
-/// That share of the training data, with or without the weight of the windows in which a breakaway or an impact comes a
-/// moment late: no model hits their instant.
+/// The same share on the training data, with or without the windows of late breakaways or impacts, whose instant no
+/// model predicts.
 double explained_in_training(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
 /// That a candidate adds to the base.
@@ -40,11 +41,12 @@ enum class Reservation {
 /// The first reservation, in the order above.
 Reservation reservation_about(const JudgedCandidate& candidate, const Diagnosis& diagnosis);
 
-/// Parameters of the effects in `kinds` that stand at the end of their range, "compliance: damping_ratio". A range that
-/// ends at zero ends where the parameter's part of the effect is absent, which is no fault.
+/// Parameters of the effects in `kinds` that stand at the end of their range, "compliance: damping_ratio". A bound at
+/// zero means that this part of the effect is absent, which is allowed.
 std::vector<std::string> parameters_on_bound(const sim::DriveDescription& model, const std::vector<std::string>& kinds);
 
-/// Seconds of validation windows after which an improvement in all of them is no luck, of `tried` candidates.
+/// Seconds of validation data for which an improvement in all windows is significant for the best of `tried`
+/// candidates.
 double least_validation_s(std::size_t tried);
 
 }  // namespace host

@@ -33,8 +33,8 @@ std::vector<DataSheetConflict> data_sheet_conflicts(const sim::DriveDescription&
       if (off <= kFarOff || entry.held.contains(id)) continue;
       const std::string name = name_of(entry, id, fitted.data.kind);
       conflicts.push_back({name, belief.value, entry.at(id),
-                           fmt::format("The data fight the data sheet: {} came out as {:.4g}, {:.1f} deviations from "
-                                       "the {:.4g} ± {:.2g} that is believed.",
+                           fmt::format("The data contradict the data sheet: {} is estimated as {:.4g}, {:.1f} standard "
+                                       "deviations from the prior {:.4g} ± {:.2g}.",
                                        name, entry.at(id), off, belief.value, belief.deviation)});
     }
   }
@@ -52,8 +52,8 @@ std::vector<DataSheetConflict> data_sheet_conflicts(const sim::DriveDescription&
       if (std::abs(wanted - known) <= kWantsToMove * std::abs(known)) continue;
       const std::string name = name_of(fitted.effects[k], id, fitted.data.kind);
       conflicts.push_back({name, known, wanted,
-                           fmt::format("The data fight the data sheet: {} is held at {:.4g}; free, it would be {:.4g}, "
-                                       "and the error {:.0f} % lower.",
+                           fmt::format("The data contradict the data sheet: {} is held at {:.4g}; a free fit gives "
+                                       "{:.4g}, and the error is {:.0f} % lower.",
                                        name, known, wanted, 100.0 * (1.0 - after / before))});
     }
   return conflicts;

@@ -1,4 +1,4 @@
-// Where the data fight what is known of a drive.
+// Contradictions between the data and the known values of a drive.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// One parameter that the records would have otherwise.
+/// One parameter whose known value the records contradict.
 struct DataSheetConflict {
   std::string parameter;  ///< "inertia J_kg_m2"
   double known = 0.0;     ///< as held or believed
@@ -16,8 +16,8 @@ struct DataSheetConflict {
   std::string words;      ///< a sentence
 };
 
-/// Believed parameters of `fitted` that ended two deviations off, and held ones that a fit without constraint would
-/// move by more than a tenth while it lowers the error by a twentieth. `set` trains.
+/// Parameters of `fitted` with a prior that ended two standard deviations off, and held ones that a free fit changes by
+/// more than 10 % while it lowers the error by 5 %. `set`: training data.
 std::vector<DataSheetConflict> data_sheet_conflicts(const sim::DriveDescription& fitted, const RecordSet& set);
 
 }  // namespace host

@@ -27,7 +27,8 @@ namespace host {
 
 namespace {
 
-/// A machine is rough when half of the windows of the best model lie this far above their floors.
+/// A machine is limited by model error (rough) if half of the best model's windows lie this far above their noise
+/// floors.
 constexpr double kRoughError = 10.0;
 
 }  // namespace
@@ -59,7 +60,7 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
 
 namespace {
 
-/// By a search over the effects, on sets of `model` whose base is fitted.
+/// Diagnosis by a search over the effects, on sets whose base is fitted.
 Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& model, const FigureRows& rows,
                              const ShareDone& progress) {
   Diagnosis result(std::move(sets));
@@ -82,7 +83,7 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   return result;
 }
 
-/// Whether the motion shows an effect that the regression of the effort could not have seen.
+/// Whether the motion shows an effect that the force-balance regression cannot see.
 bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   const DiagnosisVerdict& verdict = by_motion.verdict;
   if (by_motion.rough || verdict.effects.empty()) return false;
@@ -93,10 +94,11 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   return std::ranges::none_of(verdict.effects, seen);
 }
 
-/// Whether the motion may tell what the effects that the effort shows leave: it is left with more than noise, but no
-/// rough machine.
+/// Whether the motion can explain the rest after the regression's effects: more than noise remains, but the machine is
+/// not limited by model error.
 bool may_be_completed(const Diagnosis& by_effort, const RecordSet& validation) {
-  return by_effort.after_validate > kExplained && !is_rough(error_of(sim::Drive(by_effort.best), validation));
+  const SetError left = error_of(sim::Drive(by_effort.best), validation);
+  return left.combined > kExplained && !is_rough(left);
 }
 
 /// Down to the noise.
@@ -105,14 +107,42 @@ bool completes(const Diagnosis& by_motion) {
          std::max(by_motion.after_train, by_motion.after_validate) <= kExplained;
 }
 
-/// Whether the motion names anything that the force balance does not, which knows its rivals better.
-bool names_more(const Diagnosis& by_motion, const Diagnosis& by_effort) {
-  const std::vector<std::string>& known = by_effort.verdict.effects;
-  return std::ranges::any_of(by_motion.verdict.effects,
-                             [&](const std::string& kind) { return std::ranges::find(known, kind) == known.end(); });
+/// Whether one names an effect that the other does not.
+bool names_more(const Diagnosis& one, const Diagnosis& other) {
+  return !holds_all(other.verdict.effects, one.verdict.effects);
 }
 
-/// Whether an effect changes when the motor's effort acts.
+/// Whether the regression names all effects of the motion and more, and the motion's residual exceeds noise.
+bool goes_further(const Diagnosis& by_effort, const Diagnosis& by_motion) {
+  std::vector<std::string> known = by_effort.verdict.effects;
+  for (const std::vector<std::string>& group : by_effort.verdict.alternatives)
+    known.insert(known.end(), group.begin(), group.end());
+  return by_motion.after_validate > kExplained && names_more(by_effort, by_motion) &&
+         holds_all(known, by_motion.verdict.effects);
+}
+
+/// One diagnosis from the regression's effects and the further ones of the motion, by the motion's errors.
+Diagnosis together(const sim::DriveDescription& given, Diagnosis by_effort, Diagnosis further) {
+  const auto put_first = [](auto& list, const auto& first) { list.insert(list.begin(), first.begin(), first.end()); };
+  const std::vector<std::string> known = by_effort.verdict.effects;
+  further.base = std::move(by_effort.base);
+  const sim::Drive base(further.base), as_given(given);
+  further.given_train = error_of(as_given, further.training).combined;
+  further.given_validate = error_of(as_given, further.validation).combined;
+  further.before_train = error_of(base, further.training).combined;
+  further.before_validate = error_of(base, further.validation).combined;
+  for (JudgedCandidate& candidate : further.candidates) {
+    put_first(candidate.kinds, known);
+    candidate.before = further.before_validate;
+  }
+  put_first(further.verdict.effects, known);
+  put_first(further.verdict.alternatives, by_effort.verdict.alternatives);
+  further.verdict.parameters = std::move(by_effort.verdict.parameters);
+  further.verdict.explanation = by_effort.verdict.explanation + " Beyond that: " + further.verdict.explanation;
+  return further;
+}
+
+/// Whether an effect changes the timing of the motor torque.
 bool acts_late(const sim::EffectInfo& effect) {
   if (effect.stage != sim::Stage::command) return false;
   sim::EffectEntry entry{.kind = std::string(effect.kind), .parameters = {}, .ci95 = {}, .from = {}};
@@ -134,9 +164,9 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   split.absent = absent;
   const FigureRows rows = before != nullptr ? before->rows : figure_rows(given, measured, &split);
   std::shared_ptr<const EffortScreen> screen;
-  const auto search = [&](PreparedSets sets) {
+  const auto search = [&](PreparedSets sets, const sim::DriveDescription& from) {
     sets.absent = absent;
-    Diagnosis result = diagnose_by_search(std::move(sets), model, rows, progress);
+    Diagnosis result = diagnose_by_search(std::move(sets), from, rows, progress);
     result.log = measured.log();
     result.screen = screen;
     return result;
@@ -151,9 +181,11 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     return diagnosis;
   };
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
-  // Where the motion is not explained, what the effort shows is.
+  // If the motion is not explained, use the regression's answer.
   const auto unless_unexplained = [&](Diagnosis by_motion) {
-    const bool explains = by_motion.verdict.status != Status::unexplained || !only_in_the_effort;
+    if (!only_in_the_effort) return by_motion;
+    const bool explains =
+        by_motion.verdict.status != Status::unexplained && !goes_further(*only_in_the_effort, by_motion);
     return explains ? std::move(by_motion) : *std::move(only_in_the_effort);
   };
   if (before == nullptr) {
@@ -165,14 +197,20 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
         return *std::move(diagnosis);
       // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
-      over_long_windows = search(with_base_fitted(split));
+      over_long_windows = search(with_base_fitted(split), model);
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
                                    : goes_beyond(*over_long_windows, *screen);
-      return *std::move(is_better ? over_long_windows : diagnosis);
+      if (is_better) return *std::move(over_long_windows);
+      if (!tells || diagnosis->verdict.status != Status::missing) return *std::move(diagnosis);
+      PreparedSets on_top = split;
+      on_top.base = diagnosis->best;
+      Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis->best);
+      const bool adds = !further.rough && further.verdict.status == Status::missing;
+      return adds ? together(model, *std::move(diagnosis), std::move(further)) : *std::move(diagnosis);
     }
   }
   if (!by_short_windows) {
-    over_long_windows = search(with_base_fitted(split));
+    over_long_windows = search(with_base_fitted(split), model);
     if (!over_long_windows->rough) return unless_unexplained(*std::move(over_long_windows));
     if (before == nullptr && !screen)
       if (std::optional<Diagnosis> diagnosis = by_effort(true)) return *std::move(diagnosis);
@@ -180,12 +218,12 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   const double short_s = rough_window_s(training);
   if ((before == nullptr || before->measure == Measure::effort) &&
       rough_measure(model, training, validation) == Measure::effort) {
-    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort));
+    Diagnosis result = search(prepare_sets(model, training, validation, short_s, Measure::effort), model);
     const Status status = result.verdict.status;
     if (before != nullptr || status == Status::missing || status == Status::ambiguous) return result;
   }
   if (short_s < kWindow_s || !over_long_windows)
-    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s))));
+    return unless_unexplained(search(prepare_sets(model, training, validation, std::min(short_s, kWindow_s)), model));
   return unless_unexplained(*std::move(over_long_windows));
 }
 

@@ -1,4 +1,4 @@
-// Which physical effect is missing from a model, by how much it lowers the error on data that its fit never saw.
+// Finds the physical effect missing from a model, by how much it lowers the error on held-back data.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ enum class Status { missing, adequate, parameters, ambiguous, unexplained, insuf
 
 std::string_view status_name(Status status);
 
-/// RMS of the torque or force on both sets, Nm or N, where that was judged.
+/// RMS of the torque or force residual on both sets, Nm or N, if the regression decided.
 struct EffortError {
   std::string name;                                  ///< "effort_Nm" or "effort_N"
   double before_train = 0.0, before_validate = 0.0;  ///< of the base, re-fitted
@@ -77,7 +77,7 @@ struct DiagnosisVerdict {
   double probability_other = 0.0;       ///< that something is missing that is no candidate, 0..1
 };
 
-/// What it began with, and what came of it.
+/// Start and result.
 struct Diagnosis : PreparedSets {
   Diagnosis() = default;
   explicit Diagnosis(PreparedSets sets) : PreparedSets(std::move(sets)), best(base) {}
@@ -102,7 +102,7 @@ struct Diagnosis : PreparedSets {
   std::shared_ptr<const TableStudy> table;     ///< what a sensor on the table shows; empty where there is none
   bool by_effort = false;                      ///< that decided: errors are then of the effort over its sensors' noise
 
-  /// Whether candidates were judged in the measure of compare.
+  /// Whether candidates were compared by the error that compare prints.
   bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }
 
   /// A combined error that judged held-back records, in the measure of `base_error`: candidates are judged over the

@@ -36,7 +36,7 @@ std::vector<std::string> titles_of(const std::vector<std::string>& kinds) {
 
 void add_found(Report& report, const std::vector<FoundEffect>& found, bool rivals) {
   if (found.empty()) return;
-  report.section(rivals ? "What it could be" : "What was found",
+  report.section(rivals ? "Possible explanations" : "What was found",
                  rivals ? "These records cannot tell these effects apart." : "");
   for (const FoundEffect& effect : found) report.add(effect_plot(effect));
 }
@@ -51,7 +51,7 @@ void add_unexplained(Report& report, const Diagnosis& diagnosis) {
   if ((samples.*over.along).size() != samples.w.size() || samples.w.empty()) return;
   ScatterPlot plot;
   plot.title = fmt::format("Unexplained residual against {}", over.axis.quantity);
-  plot.caption = fmt::format("What is left on training and validation data, most of it {}.", diagnosis.verdict.where);
+  plot.caption = fmt::format("Residual on training and validation data, most of it {}.", diagnosis.verdict.where);
   plot.large = true;
   plot.x = over.axis;
   plot.y = {kind == sim::DriveKind::rotary ? "torque residual" : "force residual", units_of(kind).effort};
@@ -149,9 +149,9 @@ void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveD
   if (views.front().force.w.empty()) return;
   const double period = period_of(best, diagnosis);
   report.section(added ? "Residual before and after" : "Residual",
-                 "What the model leaves unexplained on validation data: mean in bins with the band that holds 80 % of "
-                 "the samples, forward and backward apart. A complete model leaves a flat line at zero. Where there "
-                 "are no samples the line breaks; the strip at the foot shows how many there are.");
+                 "Residual on validation data: mean in bins with the band that holds 80 % of the samples, forward and "
+                 "backward separately. A complete model gives a flat line at zero. The line breaks where there are no "
+                 "samples; the strip below shows their number.");
   add_residual_maps(report, views, best, period);
   add_residual_plots(report, views, best, period, Layout::side_by_side);
 }
@@ -174,16 +174,16 @@ ScatterPlot correlation_plot(const std::string& title, const std::string& captio
 void add_whiteness(Report& report, const Diagnosis& diagnosis) {
   const ResidualTests& tests = diagnosis.residual;
   if (tests.dependences.empty()) return;
-  report.section(
-      "Is what is left noise?",
-      "The effort that the model leaves on validation data. Within the bounds it is white; a model of a real "
-      "machine may leave them, so the verdict asks how much of it depends on something, and does so again in "
-      "data that the dependence was not learnt on.");
+  report.section("Is the residual noise?",
+                 "Autocorrelation of the residual on validation data. Within the bounds it is white noise. The model "
+                 "of a real machine may exceed them, so the verdict measures how much of the residual depends on a "
+                 "coordinate, and confirms that on held-back data.");
   report.add(correlation_plot("Correlation with itself",
-                              "The first 20 ms show the smoother that the effort comes from.", tests.with_itself));
-  report.add(correlation_plot("Correlation with the command",
-                              "At positive lags with earlier commands: a delay, a lag or a resonance shows there.",
-                              tests.with_command));
+                              "The first 20 ms show the smoother that computes the residual.", tests.with_itself));
+  report.add(
+      correlation_plot("Correlation with the command",
+                       "Positive lags: correlation with earlier commands. A delay, a lag or a resonance shows there.",
+                       tests.with_command));
   Table table;
   table.title = "What it depends on";
   table.headings = {"coordinate", "of the squared residual", "most"};
@@ -220,9 +220,8 @@ void add_traces(Report& report, const Diagnosis& diagnosis, const sim::DriveDesc
   };
   TimePlot plot;
   plot.title = "Measured and predicted";
-  plot.caption =
-      fmt::format("The prediction follows from the command alone and restarts from the measurement every {:g} s.",
-                  diagnosis.window_s);
+  plot.caption = fmt::format("The prediction uses only the command and restarts from the measurement every {:g} s.",
+                             diagnosis.window_s);
   plot.t_s = record.t_s;
   if (record.has_speed()) {
     plot.panels.push_back({"speed",
@@ -291,8 +290,8 @@ void add_candidates(Report& report, const Diagnosis& diagnosis) {
                           {diagnosis.told(candidate.before), diagnosis.told(candidate.after)},
                           fmt::format("{:.0f} % probable", 100.0 * candidate.probability)});
   }
-  if (rest.rows.size() == 1) rest.title = "One effect that was tried changes nothing";
-  if (rest.rows.size() > 1) rest.title = fmt::format("{} effects that were tried change nothing", rest.rows.size());
+  if (rest.rows.size() == 1) rest.title = "One tried effect makes no difference";
+  if (rest.rows.size() > 1) rest.title = fmt::format("{} tried effects make no difference", rest.rows.size());
   rest.folded = true;
   for (BarChart* chart : {&named, &others, &rest})
     if (!chart->rows.empty()) report.add(std::move(*chart));

@@ -36,20 +36,20 @@ Verdict verdict_block(const Diagnosis& diagnosis, const std::vector<FoundEffect>
       break;
     case Status::ambiguous:
       block.headline =
-          fmt::format("Something is missing, and these data cannot tell which: {}", fmt::join(titles, " or "));
+          fmt::format("Something is missing; these data cannot separate the candidates: {}", fmt::join(titles, " or "));
       break;
     case Status::parameters:
       block.headline =
-          fmt::format("The structure is right; these values were off: {}", fmt::join(verdict.parameters, ", "));
+          fmt::format("No effect is missing; these values were wrong: {}", fmt::join(verdict.parameters, ", "));
       break;
     case Status::adequate:
       block.headline = "The model explains these measurements";
       break;
     case Status::unexplained:
-      block.headline = "Something happens here that no effect of the catalogue explains";
+      block.headline = "No known effect explains the residual";
       break;
     case Status::insufficient_data:
-      block.headline = "The axis moved too little to say anything";
+      block.headline = "The axis moved too little for a diagnosis";
       break;
   }
   for (const LogFault& fault : diagnosis.log)

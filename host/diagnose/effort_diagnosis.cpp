@@ -21,12 +21,11 @@ namespace host {
 
 namespace {
 
-/// The best model of a made drive, whatever it lacks, leaves one to five times the sensors' noise; real machines leave
-/// ten to sixty.
+/// The best model of a simulated drive leaves one to five times the sensor noise; real machines leave ten to sixty.
 constexpr double kFarAboveNoise = 6.0;
-/// That one answer names; a reader looks at no more.
+/// Most effects named in one answer.
 constexpr std::size_t kMostEffects = 6;
-/// An effort is explained when this part of the error remains: nine tenths of its square are gone.
+/// The torque or force counts as explained if this share of the error remains (a tenth of its square).
 constexpr double kExplainedPart = 0.316;
 
 /// The kinds of a step beyond the first `known`.
@@ -42,7 +41,7 @@ std::string steps_in_words(const EffortScreen& screen) {
   double before = screen.base.validate;
   std::size_t known = 0;
   for (const ScreenedModel& step : screen.chosen) {
-    words += fmt::format(" {} bring{} that from {:.1f} to {:.1f} %.", described(step, known),
+    words += fmt::format(" {} reduce{} that from {:.1f} to {:.1f} %.", described(step, known),
                          step.kinds.size() - known == 1 ? "s" : "", 100.0 * before, 100.0 * step.validate);
     before = step.validate;
     known = step.kinds.size();
@@ -54,20 +53,20 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
   DiagnosisVerdict verdict;
   verdict.parameters = moved_parameters(given, screen.best().model);
   verdict.explanation = fmt::format(
-      "Judged by the effort that the motion needed, by plain least squares where the axis slides: inertia and friction "
-      "leave {:.1f} % of it on validation data.",
+      "While the axis moves, inertia and friction leave {:.1f} % of the motor torque or force unexplained on "
+      "validation data (least squares).",
       100.0 * screen.base.validate);
   if (screen.chosen.empty()) {
     verdict.status = Status::unexplained;
-    verdict.explanation += " No effect of the catalogue takes its part of that on training and on validation data.";
+    verdict.explanation += " No known effect reduces this significantly on both training and validation data.";
     if (!screen.steps.empty() && !screen.steps.front().empty()) {
       const ScreenedModel& closest = screen.steps.front().front();
       verdict.explanation +=
-          fmt::format(" The closest, {}, leaves {:.1f} %.", described(closest, 0), 100.0 * closest.validate);
+          fmt::format(" The best candidate, {}, leaves {:.1f} %.", described(closest, 0), 100.0 * closest.validate);
     }
     verdict.next_experiment =
-        "Repeat one motion ten times: what repeats a model can explain. Then jogs at several speeds over the whole "
-        "travel, both ways.";
+        "Repeat one motion ten times: a model can explain the part that repeats. Then jog at several speeds over the "
+        "whole travel, in both directions.";
   } else {
     const std::string& first = screen.chosen.front().kinds.front();
     verdict.explanation += steps_in_words(screen);
@@ -88,19 +87,20 @@ DiagnosisVerdict verdict_of(const EffortScreen& screen, const sim::DriveDescript
   }
   if (screen.repeatable)
     verdict.explanation += fmt::format(
-        " Of what is left, {:.0f} % comes back when the motion is repeated and could be explained; {:.1f} % of the "
-        "effort does not, and is this machine's floor.",
+        " {:.0f} % of the residual repeats when the motion is repeated, so a better model could explain it; {:.1f} % "
+        "of the torque or force is random (noise floor).",
         100.0 * screen.repeatable->share, 100.0 * screen.repeatable->floor / screen.effort_validate);
-  for (const std::string& held : screen.held) verdict.explanation += fmt::format(" Held as given: {}.", held);
+  for (const std::string& held : screen.held) verdict.explanation += fmt::format(" Held at the given value: {}.", held);
   if (screen.rows.by_speed && screen.rows.has_position)
-    verdict.explanation += " The motion was taken from the speed channel: the position differentiates worse.";
+    verdict.explanation +=
+        " The motion was taken from the speed channel, because the differentiated position is noisier.";
   return verdict;
 }
 
-/// Errors of the forward prediction that are so near to each other say nothing.
+/// Errors of the forward prediction closer than this ratio count as equal.
 constexpr double kHardly = 0.98;
-/// Every kind that was tried, with its probability: a later step's share what the steps before it hold, and what was
-/// chosen before the last step stands for its group.
+/// Every tried kind with its probability: later steps share the probability of the earlier ones, and a kind chosen
+/// before the last step represents its group.
 void assign_evidence(const EffortScreen& screen, Diagnosis& diagnosis) {
   const std::size_t last = screen.chosen.size() - 1;  // beyond all where nothing was chosen
   std::size_t whole = 0;
@@ -167,7 +167,8 @@ JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   if (screen.empty()) return false;
   const double left = over_noise(screen, screen.best(), true), before = over_noise(screen, screen.base, true);
-  // At steady speeds nothing adds up to a motion; but an effort within its noise tells that nothing shows, no more.
+  // At steady speeds no error accumulates in the motion; a residual within noise then only means that nothing is
+  // visible.
   if (screen.rows.steady && (!screen.chosen.empty() || left > kSmall)) return true;
   if (before > kFarAboveNoise && left < kExplainedPart * before) return true;
   if (left < kFarAboveNoise) return false;
@@ -203,8 +204,8 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
 
 namespace {
 
-/// Whether the base suits either set, but not with the same values: a machine that has warmed up between the records.
-/// Says so.
+/// Whether the base fits each set, but with different values, as after warm-up between the records; adds that to the
+/// verdict.
 bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdict) {
   constexpr double kSuits = 1.5, kFails = 2.0;  // of what the base leaves where it was fitted
   if (!screen.judge_alone) return false;
@@ -220,11 +221,11 @@ bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdi
   verdict.coordinate = "time";
   verdict.where = "between the records";
   verdict.explanation += fmt::format(
-      " Fitted to the judging records alone, inertia and friction leave {:.1f} % of it, with {}: the machine was in "
-      "another state (temperature, load, lubrication) than in training.",
+      " Fitted to the validation records alone, inertia and friction leave {:.1f} %, with {}: the machine's state "
+      "(temperature, load, lubrication) differed from that in training.",
       100.0 * alone.train, fmt::join(moved, ", "));
   verdict.next_experiment =
-      "Record both kinds of motion in one state of the machine, or in turn while it warms up, with its temperature "
+      "Record both motions in the same state of the machine, or alternately during warm-up, with its temperature "
       "(temp_C).";
   return true;
 }
@@ -232,22 +233,22 @@ bool differs_between_records(const EffortScreen& screen, DiagnosisVerdict& verdi
 }  // namespace
 
 std::string said_by_the_motion(const Diagnosis& diagnosis) {
-  // What takes less than half of the squared error is no confirmation.
+  // An effect that explains less than half of the squared error is not confirmed.
   constexpr double kHalfOfTheSquare = 0.71;
   const EffortScreen* screen = diagnosis.screen.get();
   if (!diagnosis.by_effort || screen == nullptr || screen->chosen.empty() || screen->rows.steady) return {};
   const double before = diagnosis.base_error.validate.combined, after = diagnosis.best_error.validate.combined;
-  const char* said = after < kHalfOfTheSquare * before ? "falls, which confirms it"
+  const char* said = after < kHalfOfTheSquare * before ? "decreases, which confirms it"
                      : after < kHardly * before        ? "falls a little"
                      : after > before / kHardly
-                         ? "rises: it does not confirm that, so record more of the motion in which it shows"
-                         : "stays as it was";
-  return fmt::format(" Predicted forward from the command, the error {} ({:.3g} -> {:.3g} times the noise floor).",
-                     said, before, after);
+                         ? "increases, which does not confirm this effect; record more motion that excites it"
+                         : "does not change";
+  return fmt::format(" The error of the prediction from the command {} ({:.3g} -> {:.3g} times the noise floor).", said,
+                     before, after);
 }
 
 void name_coordinate(Diagnosis& diagnosis) {
-  // Less is what 25 knots take of anything, and no help to a reader.
+  // 25 knots explain this much of any residual, so less is not reported.
   constexpr double kLeastShare = 0.2;
   DiagnosisVerdict& verdict = diagnosis.verdict;
   if (verdict.status != Status::unexplained) return;
@@ -260,8 +261,8 @@ void name_coordinate(Diagnosis& diagnosis) {
   const EffortScreen& screen = *diagnosis.screen;
   if (differs_between_records(screen, verdict)) return;
   std::optional<FreeCurveFit> curve = fit_free_curve(screen);
-  // Anything in proportion to the effort explains the effort: a curve over it is drawn where the predictions ask for
-  // it, and has to beat the others.
+  // Anything proportional to torque explains torque, so a curve over it is offered only if the predictions support it
+  // and it beats the others.
   if (verdict.coordinate == "current")
     if (std::optional<FreeCurveFit> over_current = fit_free_curve(screen, "current");
         over_current && (!curve || over_current->model.validate < curve->model.validate))
@@ -270,8 +271,8 @@ void name_coordinate(Diagnosis& diagnosis) {
   const double ratio = curve->model.validate / screen.best().validate, share = 1.0 - ratio * ratio;
   if (share < kLeastShare) return;
   verdict.explanation += fmt::format(
-      " A free curve of {} knots over {} takes {:.0f} % of the squared effort that is left (axistool add MODEL "
-      "free_curve --over {}).",
+      " A free curve of {} knots over {} explains {:.0f} % of the squared residual (axistool add MODEL free_curve "
+      "--over {}).",
       curve->knots, spaced(curve->over), 100.0 * share, curve->over);
   if (curve->period > 0.0)
     verdict.explanation += fmt::format(" It repeats every {:.4g} {}.", curve->period,
@@ -284,15 +285,15 @@ void name_coordinate(Diagnosis& diagnosis) {
   };
   const auto none = diagnosis.residual.dependences.end();
   const auto named = along(verdict.coordinate), taken = along(coordinate);
-  // From one moment to the next everything lasts.
+  // Every residual is correlated over short times.
   if (named != none && named->coordinate != "time" && named->share >= share) return;
   if (verdict.coordinate == coordinate) return;
-  // What takes much of the effort while the axis slides, but nothing of what the predictions lack, fits by chance.
+  // A curve that explains much of the torque in sliding motion, but none of the prediction error, fits by chance.
   constexpr double kShows = 0.02;
   if (taken != none && std::max(taken->share, taken->in_detail) < kShows) return;
   verdict.coordinate = coordinate;
   verdict.where = taken == none ? "over all of it" : taken->where;
-  verdict.explanation += fmt::format(" So it goes with {}.", spaced(coordinate));
+  verdict.explanation += fmt::format(" So it depends on {}.", spaced(coordinate));
 }
 
 nlohmann::json effort_screen_json(const EffortScreen& screen) {

@@ -41,7 +41,7 @@ double sum_of_squares(const Values& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
-/// The part of the trace's square that its means over the coordinate hold, 0..1.
+/// Share of the trace's square in its means over the coordinate, 0..1.
 double carried_share(const ResidualEffort& samples, const Values& trace, const ResidualCoordinate& over) {
   double carried = 0.0;
   for (const ScatterSeries& curve : direction_curves(samples, trace, over))
@@ -87,7 +87,7 @@ std::vector<bool> blurred_samples(const FoundEffect& effect, const sim::DriveDes
   return blurred;
 }
 
-/// NaN for samples that tell nothing over the coordinate.
+/// NaN for samples without a value of the coordinate.
 void trace_of(FoundEffect& effect, const sim::DriveDescription& model, const RecordSet& shown) {
   const sim::DriveDescription less = without_kind(model, effect.kind);
   std::vector<ResidualEffort> both;
@@ -176,7 +176,7 @@ double largest_encoder_error(const sim::DriveDescription& model, double period) 
   return largest;
 }
 
-/// The parameter whose value says more than a torque; empty where the torque says it.
+/// The parameter that describes the effect better than a torque does; empty if there is none.
 std::string_view main_parameter(const sim::EffectInfo& info) {
   const bool acts_elsewhere =
       info.stage == sim::Stage::command || info.stage == sim::Stage::motor || info.stage == sim::Stage::mechanics;
@@ -358,11 +358,10 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
   ScatterPlot plot;
   plot.title = size_in_words(effect);
   plot.caption = effect.cutout_s
-                     ? "The 0.4 s in which the effect is strongest. Points: residual of the model without "
-                       "it. Line: what the fitted effect adds to the model."
-                     : "Points: residual of the model without this effect, with the band that holds 80 % of "
-                       "the samples, on training and validation data. Lines: what the fitted effect adds to "
-                       "the model.";
+                     ? "The 0.4 s with the strongest effect. Points: residual of the model without it. Line: "
+                       "contribution of the fitted effect."
+                     : "Points: residual of the model without this effect, with the band that holds 80 % of the "
+                       "samples, on training and validation data. Lines: contribution of the fitted effect.";
   plot.large = true;
   plot.y = {effect.of_speed_channel                  ? "speed residual"
             : effect.drive == sim::DriveKind::rotary ? "torque residual"

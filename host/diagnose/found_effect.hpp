@@ -1,5 +1,4 @@
-// An effect that was found, as its machine shows it: the residual of the model without it, the part of that residual
-// that it explains, and how large it is.
+// A found effect in its machine's data: the residual of the model without it, the part that it explains, and its size.
 #pragma once
 
 #include <array>

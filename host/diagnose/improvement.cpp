@@ -37,8 +37,8 @@ Rung rung_of(const Diagnosis& diagnosis, bool after, const std::vector<std::stri
   return rung;
 }
 
-/// What a search by motion tried on top of what was added before, and halves the squared error that is left, on both
-/// sets and for certain: too little to be named, but not to be left to the controller. Null where there is none.
+/// A candidate of the search by motion that significantly halves the remaining squared error on both sets: too little
+/// for a claim, but worth compensating. Null if there is none.
 const JudgedCandidate* halves_the_rest(const Diagnosis& diagnosis) {
   constexpr double kHalf = 0.707;
   const JudgedCandidate* found = nullptr;
@@ -56,7 +56,7 @@ Rung rung_of(const Diagnosis& diagnosis, const JudgedCandidate& candidate) {
   return {candidate.kinds, candidate.train_after, candidate.after, error};
 }
 
-/// The rungs of a regression: it chose one effect after the other against one floor, and stopped by itself.
+/// The steps of the regression, which added effects one by one against one noise floor until none was significant.
 void append_effort_ladder(const Diagnosis& diagnosis, Improvement& result) {
   const EffortScreen& screen = *diagnosis.screen;
   std::size_t known = 0;
@@ -70,10 +70,10 @@ void append_effort_ladder(const Diagnosis& diagnosis, Improvement& result) {
     result.model = step.model;
   };
   for (const ScreenedModel& step : screen.chosen) append(step);
-  result.stopped_because = "no further effect takes its part of the effort that is left";
+  result.stopped_because = "no further effect explains enough of the remaining torque or force";
 }
 
-/// A fit of the motion, from where another one ended.
+/// A fit to the motion, starting from another fit.
 sim::DriveDescription fitted_to_motion(const sim::DriveDescription& model, const FigureRows& rows) {
   RecordSet training = figure_set(model, rows.train, kWindow_s);
   renew_floors(training, model);
@@ -91,10 +91,10 @@ std::string in_words(const ErrorFigures& error, const ErrorFigures& given) {
   return fmt::format(" ({:.4g} against {:.4g} {} in {})", worst->rms, before->rms, worst->unit, worst->name);
 }
 
-/// No model is handed over that predicts held-back records worse than the one that came in. What was fitted to the
-/// torque or force is fitted to the motion first.
+/// Never returns a model that predicts held-back records worse than the given one. A model fitted to torque or force is
+/// first refitted to the motion.
 void keep_the_better(Improvement& result, const sim::DriveDescription& given) {
-  // By less a re-fit changes nothing that anyone would call an improvement or a failure.
+  // A smaller change by a refit is neither an improvement nor a failure.
   constexpr double kNothing = 0.02;
   const ErrorOnSets& before = result.first.given_error;
   if (!is_worse(result.error.validate, before.validate)) return;
@@ -111,7 +111,7 @@ void keep_the_better(Improvement& result, const sim::DriveDescription& given) {
   result.is_refused =
       result.ladder.size() > 1 || result.error.validate.combined > (1.0 + kNothing) * before.validate.combined;
   result.stopped_because +=
-      fmt::format("; it predicts held-back records worse than the model as given{}, which is kept",
+      fmt::format("; the result predicts held-back records worse than the given model{}, so that is kept",
                   in_words(result.error.validate, before.validate));
   result.model = given;
   result.error = before;
@@ -150,10 +150,10 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
     if (adds) {
       result.ladder.push_back(rung_of(diagnosis, true, modelled_kinds(diagnosis)));
     } else {
-      result.stopped_because = status == Status::unexplained ? "no effect of the catalogue explains what is left"
+      result.stopped_because = status == Status::unexplained ? "no known effect explains the residual"
                                : status == Status::insufficient_data
-                                   ? "these motions cannot show what else may be there"
-                                   : "nothing in the catalogue lowers the validation error beyond chance";
+                                   ? "these motions cannot show further effects"
+                                   : "no known effect lowers the validation error significantly";
     }
     if (const JudgedCandidate* further = adds || step == 0 ? nullptr : halves_the_rest(diagnosis)) {
       result.ladder.push_back(rung_of(diagnosis, *further));
@@ -164,11 +164,11 @@ Improvement improve(const sim::DriveDescription& model, const Measurements& meas
     if (!adds) break;
     current = result.model;
     if (left <= 1.0) {
-      result.stopped_because = "the error has reached its floor";
+      result.stopped_because = "the error has reached the noise floor";
       break;
     }
   }
-  if (result.stopped_because.empty()) result.stopped_because = "the ladder has as many rungs as it may";
+  if (result.stopped_because.empty()) result.stopped_because = "the maximum number of steps was reached";
   document_fit(result.model, result.first.training);
   result.model.data = model.data;
   result.error = result.first.rows.error_of(result.model);
@@ -185,7 +185,7 @@ Addition addition_of(const EffortScreen& screen, const ScreenedModel& added, con
   return addition;
 }
 
-/// The addition by plain least squares, where that is to judge and knows the effect.
+/// The addition by least squares, if the regression decides and knows the effect.
 std::optional<Addition> add_by_effort(const sim::DriveDescription& model, const std::string& kind,
                                       const PreparedSets& sets) {
   std::vector<std::string> others;
@@ -209,12 +209,9 @@ Addition curve_added(const sim::DriveDescription& model, const std::string& over
   const PreparedSets sets = split_sets(model, measured.training_records(), measured.validation_records());
   const EffortScreen screen = screen_effort(model, sets.training, sets.validation, 0);
   if (screen.empty())
-    throw Failure(ExitCode::refused, "free_curve: the axis hardly slides in these records; record it in motion");
+    throw Failure(ExitCode::refused, "free_curve: the axis hardly moves in these records; record more motion");
   const std::optional<FreeCurveFit> fit = fit_free_curve(screen, over);
-  if (!fit)
-    throw Failure(ExitCode::refused,
-                  "free_curve: no curve lowers the error on validation data; these records do not "
-                  "show one");
+  if (!fit) throw Failure(ExitCode::refused, "free_curve: no curve lowers the error on validation data");
   Addition addition = addition_of(screen, fit->model, sets);
   for (const auto& [id, value] : fit->model.model.effects.back().parameters) {
     const auto interval = fit->model.model.effects.back().ci95.find(id);
@@ -236,20 +233,21 @@ Addition effect_added(const sim::DriveDescription& model, const std::string& kin
   const auto search = [&](PreparedSets fitted) {
     sets = std::move(fitted);
     if (!sets.moves_enough)
-      throw Failure(ExitCode::refused, fmt::format("{}: {:.1f} s more of motion are needed to fit and to judge it",
-                                                   kind, std::max(0.1, missing_motion_s(sets))));
+      throw Failure(ExitCode::refused, fmt::format("{}: fitting and validating it needs {:.1f} s more motion", kind,
+                                                   std::max(0.1, missing_motion_s(sets))));
     if (!is_applicable(*info, sets.base, sets.training))
       throw Failure(ExitCode::usage,
-                    fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or "
-                                "these records do not hold the channel in which it shows",
+                    fmt::format("{}: cannot be added: the model already has it (perhaps in another form) or excludes "
+                                "it, or these records lack the channel that shows it",
                                 kind));
     SearchEffort effort = SearchEffort{}.over(sets.window_s);
     effort.nominal = &model;
     found = search_kinds({info}, sets.base, {}, sets.training, sets.validation, {}, effort);
     if (found.empty())
-      throw Failure(ExitCode::refused,
-                    fmt::format("{}: no start of the fit lowers the error; these records do not show the effect. {}",
-                                kind, info->separate_by));
+      throw Failure(
+          ExitCode::refused,
+          fmt::format("{}: no starting value of the fit lowers the error; these records do not show the effect. {}",
+                      kind, info->separate_by));
   };
   search(with_base_fitted(split));
   if (is_rough(error_of(sim::Drive(found.front().model), sets.validation)))
@@ -265,7 +263,7 @@ Addition effect_added(const sim::DriveDescription& model, const std::string& kin
   return addition;
 }
 
-/// What `adding` makes of the model and of what its records show of the sensors; the data sheet stays as it was given.
+/// Applies `adding` to the model with the measured sensor noise; keeps the given data sheet.
 template <typename Adding>
 Addition on_measured_sensors(Adding adding, const sim::DriveDescription& model, const std::string& what,
                              const Measurements& measured) {

@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// One rung: what was added since the rung before, and the errors that the model then leaves.
+/// One step: the effects added since the last step, and the errors of the model with them.
 struct Rung {
   std::vector<std::string> added;
   double train = 0.0, validate = 0.0;  ///< combined, in the measure that judged
@@ -24,16 +24,16 @@ struct Improvement {
   sim::DriveDescription model;
   Diagnosis first;    ///< the diagnosis that the ladder began with
   ErrorOnSets error;  ///< of `model`
-  /// `model` is the one that came in: what the ladder ends with predicts held-back records worse.
+  /// `model` is the given one, because the last step predicts held-back records worse.
   bool kept_given = false;
   bool is_refused = false;  ///< and what the ladder ends with was more than a re-fit that changes next to nothing
 };
 
-/// More rungs than a drive has ever needed; the ladder ends long before.
+/// Limit of steps; no drive has needed as many.
 inline constexpr int kMostRungs = 5;
 
-/// Never adds what does not replicate on validation data, nor of the kinds in `absent`. `known`: the diagnosis of this
-/// model on these measurements, where it is there already. Throws as diagnose() does.
+/// Never adds an effect that does not replicate on validation data, nor a kind in `absent`. `known`: the diagnosis of
+/// this model on these measurements, where it is there already. Throws as diagnose() does.
 Improvement improve(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
                     const std::vector<std::string>& absent = {}, std::optional<Diagnosis> known = std::nullopt,
                     int most_rungs = kMostRungs);
@@ -50,8 +50,8 @@ struct Addition {
 };
 Addition add_effect(const sim::DriveDescription& model, const std::string& kind, const Measurements& measured);
 
-/// The model with a curve over a coordinate added, or over the one that judges best where `over` is empty: it names
-/// nothing, and takes what no formula fits. Throws Failure(refused) where no curve lowers the error.
+/// The model with a curve over a coordinate added, or over the one that judges best where `over` is empty: it gives no
+/// cause, and fits any shape. Throws Failure(refused) where no curve lowers the error.
 Addition add_free_curve(const sim::DriveDescription& model, const std::string& over, const Measurements& measured);
 
 /// Writes intervals and origin into a fitted model; returns what the data say of each parameter.

@@ -42,19 +42,19 @@ std::vector<ChannelError> channels_of(const Improvement& improvement) {
 }
 
 std::string headline(const Improvement& improvement) {
-  if (improvement.is_refused) return "Nothing is better than the model as given, which is kept";
+  if (improvement.is_refused) return "No better model was found; the given one is kept";
   const std::vector<std::string> added = added_kinds(improvement);
   if (!added.empty()) return fmt::format("{} by adding {}", fall(improvement), join_words(added));
   constexpr double kLower = 0.95;  // of the error: by less a re-fit changes nothing that anyone would call a change
   const Status status = improvement.verdict.status;
   const double given = improvement.first.given_error.validate.combined, left = improvement.error.validate.combined;
   if (left < kLower * given && (status == Status::unexplained || status == Status::insufficient_data))
-    return fmt::format("{} by fitting the parameters again; no effect of the catalogue was added", fall(improvement));
+    return fmt::format("{} by refitting the parameters; no effect was added", fall(improvement));
   switch (status) {
     case Status::adequate:
       return "Nothing had to be added: the model explains these measurements";
     case Status::parameters:
-      return fmt::format("{} by fitting the parameters again: {} were off", fall(improvement),
+      return fmt::format("{} by refitting the parameters: {} were wrong", fall(improvement),
                          join_words(improvement.verdict.parameters));
     case Status::insufficient_data:
       return "Nothing was added: these motions show too little";
@@ -63,7 +63,7 @@ std::string headline(const Improvement& improvement) {
     case Status::unexplained:
       break;
   }
-  return "Nothing was added: no effect of the catalogue explains what is left";
+  return "Nothing was added: no known effect explains the residual";
 }
 
 std::string parameters_file(const std::string& model) {
@@ -93,7 +93,7 @@ Verdict improvement_verdict(const Improvement& improvement, const ImprovementFil
     return verdict;
   }
   verdict.sentences.push_back(
-      fmt::format("The model is in {}. Next, the parameters of the board from it:", files.output));
+      fmt::format("The model is in {}. Next, make the board's parameters from it:", files.output));
   verdict.command =
       fmt::format("axistool design {} -o {}", shell_word(files.output), shell_word(parameters_file(files.output)));
   return verdict;
@@ -133,7 +133,7 @@ void write_improvement_report(const Improvement& improvement, const ImprovementF
   report.add(ladder_chart(improvement));
   report.add(error_table(channels_of(improvement), !added.empty()));
   if (!improvement.first.candidates.empty()) {
-    report.section("What was tried at the first step");
+    report.section("Effects tried at the first step");
     add_candidates(report, improvement.first);
   }
   add_residuals(report, improvement.first, improvement.model, !added.empty());

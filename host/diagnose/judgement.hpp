@@ -1,4 +1,4 @@
-// Judging what a search found: errors on both sets, candidates side by side, and the verdict.
+// Evaluates the result of a search: errors on both sets, comparison of candidates, verdict.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// From records of an unknown machine and a motor constant to what its base model lacks: identified, then diagnosed.
+// Identifies and diagnoses an unknown machine from records and a motor constant.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct LogVerdict {
   Diagnosis diagnosis;  ///< refers to `measured`
 };
 
-/// Records whose name says so ("valid", "test", "check") judge; without one, blocks of the others are kept back. Throws
+/// Records named "valid", "test" or "check" are for validation; without one, blocks of the others are held back. Throws
 /// as the gate, identify_drive() and diagnose() do.
 std::unique_ptr<LogVerdict> verdict_of(std::vector<Record> records, const sim::DriveDescription& sheet,
                                        const std::vector<std::string>& accepted, const ShareDone& progress = {});

@@ -21,7 +21,7 @@ class WindowResiduals : public ceres::CostFunction {
  public:
   WindowResiduals(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set)
       : model_(model), vector_(vector), set_(set), rows_(static_cast<Eigen::Index>(residual_count(set))) {
-    // What is believed weighs like one window of the error that this set has, as a further measurement would.
+    // A prior weighs like one further measurement with this set's error.
     const auto windows = static_cast<double>(std::max<std::size_t>(1, set.used_windows()));
     belief_weight_ = std::sqrt(std::max(1.0, set.common_square / kCommonSquare) / windows);
     for (std::size_t k = 0; k < vector.size(); ++k)
@@ -30,7 +30,7 @@ class WindowResiduals : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(vector.size()));
   }
 
-  /// Parameters arrive in units of their scales. Nothing comes of it once the fit is cancelled.
+  /// Parameters arrive in units of their scales. Returns false once the fit is cancelled.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const auto columns = static_cast<Eigen::Index>(vector_.size());
     const Eigen::Map<const Eigen::VectorXd> scaled(parameters[0], columns);

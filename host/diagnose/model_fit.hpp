@@ -36,7 +36,7 @@ struct Linearisation {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;  ///< per scale of each parameter
 };
 
-/// At the model's present values. Empty where the model runs away.
+/// At the model's present values. Empty if the model diverges.
 Linearisation linearise(const sim::DriveDescription& model, const ParameterVector& vector, const RecordSet& set);
 
 /// What the data say of one fitted parameter.

@@ -1,7 +1,8 @@
 #include "host/diagnose/parameter_covariance.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "host/dense_solutions.hpp"
 #include "host/diagnose/model_fit.hpp"
 
 namespace host {
@@ -27,7 +28,7 @@ ParameterCovariance covariance_of(const sim::DriveDescription& model, const Reco
     }
   }
   for (; row < rows; ++row) meat += jacobian.row(row).transpose() * jacobian.row(row);  // what is believed
-  const Eigen::MatrixXd bread = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd bread = pseudo_inverse(gram(jacobian));
   Eigen::VectorXd scales(columns);
   for (Eigen::Index k = 0; k < columns; ++k) scales(k) = result.vector.parameters()[static_cast<std::size_t>(k)].scale;
   result.matrix = scales.asDiagonal() * bread * meat * bread * scales.asDiagonal();

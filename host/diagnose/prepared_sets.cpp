@@ -13,7 +13,7 @@ namespace {
 /// hold three windows.
 constexpr double kBlocks = 24.0;
 constexpr double kShortestBlock_s = 0.3, kLongestBlock_s = 2.0;
-/// One block of four judges; one of three where there are few.
+/// One block of four is held back; one of three if there are few.
 constexpr std::size_t kUsualEvery = 4, kEveryOfFew = 3;
 constexpr double kFew_s = 30.0;
 

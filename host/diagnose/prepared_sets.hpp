@@ -1,4 +1,4 @@
-// What a diagnosis begins with: which windows of the records train, which judge, and the base fitted to the first.
+// Inputs of a diagnosis: training windows, validation windows, and the base fitted to the training windows.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace host {
 
-/// Stretches of motion so long are independent of one another: a window restarts from the measured state.
+/// Motions of this length are independent of one another, because a window restarts from the measured state.
 inline constexpr double kIndependent_s = 0.1;
-/// Fewest independent windows of motion to learn from and to be judged by. Below, neither inertia and friction nor a
-/// claim and its absence can be told apart.
+/// Fewest independent windows of motion for training and for validation. Fewer can separate neither inertia from
+/// friction nor an effect from its absence.
 inline constexpr std::size_t kFewestToLearn = 10;
 inline constexpr std::size_t kFewestToJudge = 8;
 
@@ -37,7 +37,7 @@ struct PreparedSets {
 /// Independent windows of motion in so many seconds of it.
 std::size_t independent_windows(double moving_s);
 
-/// Seconds of motion that are missing before a diagnosis means anything; 0 where there is enough.
+/// Seconds of further motion that a diagnosis needs; 0 if there is enough.
 double missing_motion_s(const PreparedSets& sets);
 
 /// Keeps blocks of the windows back, across all records: 0.3 to 2 s of motion each, so fine that a single short record

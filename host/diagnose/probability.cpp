@@ -41,7 +41,7 @@ double probability_complete(const Diagnosis& diagnosis, const ProbabilityScale& 
                   objected);
 }
 
-/// That something else makes what the best candidate seems to explain, by the part that it leaves.
+/// Probability that something else causes the error that the best candidate explains, from the share that it leaves.
 double probability_of_other(double unexplained, const Diagnosis& diagnosis, const ProbabilityScale& scale) {
   constexpr double kLeastPart = 0.01;
   const bool claimed = is_claimed(diagnosis);
@@ -58,7 +58,7 @@ double probability_of_other(double unexplained, const Diagnosis& diagnosis, cons
 void assign_probabilities(Diagnosis& diagnosis, const ProbabilityScale& scale) {
   DiagnosisVerdict& verdict = diagnosis.verdict;
   const double nothing = probability_complete(diagnosis, scale);
-  // What may be luck is no evidence for a candidate, nor against the others.
+  // A gain that may be chance is no evidence for a candidate, nor against the others.
   std::vector<double> costs, weights;
   for (const JudgedCandidate& candidate : diagnosis.candidates) costs.push_back(cost_of(candidate, scale));
   const double least = costs.empty() ? 0.0 : *std::ranges::min_element(costs);

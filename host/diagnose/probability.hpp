@@ -20,8 +20,8 @@ struct ProbabilityScale {
   double other_slope = 2.4;   ///< of the log odds over the log of that part
   double lapse = 0.05;        ///< "something else" however well a candidate explains: on cuts one such answer in 16
   double rough = 3.5;  ///< log odds that a rough machine, which lacks many small things, takes off "something else"
-  // Of effects that have passed everything asked of a claim (claim.hpp, effort_screen.cpp). What they leave may have
-  // further causes, which does not make them less probable.
+  // For effects that meet all criteria of a claim (claim.hpp, effort_screen.cpp). Their residual may have further
+  // causes, which does not make them less probable.
   double lapse_of_claim = 0.01;  ///< `lapse`: of 133 records that were cut, faulty or rewritten one claim was wrong
   /// `other_at` and `other_slope`: what is no effect of the catalogue left 0.2 and more of the squared error of made
   /// machines, and on rough ones 0.65 and more, where right claims left up to 0.55.

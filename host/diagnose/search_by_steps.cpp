@@ -15,7 +15,8 @@ namespace host {
 
 namespace {
 
-/// What only helps at the end of its physical range makes up for something else: nothing stands on it.
+/// An effect that helps only at a bound of its physical range substitutes for another; no further effect is built on
+/// it.
 bool is_physical(const Candidate& candidate) { return parameters_on_bound(candidate.model, candidate.kinds).empty(); }
 
 struct Errors {
@@ -26,7 +27,7 @@ struct Errors {
         validation(error_of(sim::Drive(model), sets.validation).combined) {}
 };
 
-/// A pair that takes two fifths of what there is, and leaves more than a complete model does, is part of something.
+/// A pair that explains two fifths of the error, and leaves more than a complete model, is incomplete.
 bool promises_a_third(const Errors& base, const Errors& pair) {
   constexpr double kMost = 0.4;
   return pair.validation > kExplained && explained_share(base.training, pair.training) > kMost &&
@@ -42,9 +43,9 @@ sim::DriveDescription without(const sim::DriveDescription& model, const std::str
   return fit_model(rest, training, kWithoutOne).model;
 }
 
-/// A constant force is nothing but friction by direction while the axis slides, and an offset of the command is one:
-/// friction takes over all of it at once, where a fit by steps would stay in the valley beside. Nothing for other
-/// effects and other friction.
+/// While the axis slides, a constant force or an offset of the command equals friction by direction. Friction takes it
+/// over in one step, where a fit by gradients would stay in a nearby local minimum. Empty for other effects and other
+/// friction.
 std::optional<sim::DriveDescription> handed_to_friction(const sim::DriveDescription& model, const std::string& kind) {
   double force = 0.0;
   if (kind == "constant_torque") force = model.find(kind)->at("torque");
@@ -63,7 +64,7 @@ std::optional<sim::DriveDescription> handed_to_friction(const sim::DriveDescript
   return other;
 }
 
-/// The model without one of its effects, from where that effect has carried the fit.
+/// The model without one of its effects, with the fitted values of the others.
 sim::DriveDescription without_or_handed(const Candidate& whole, const std::string& kind, const PreparedSets& sets) {
   sim::DriveDescription model = without(whole.model, kind, sets.training);
   const std::optional<sim::DriveDescription> other = handed_to_friction(whole.model, kind);
@@ -78,8 +79,8 @@ bool is_as_good(const sim::DriveDescription& model, const Errors& with, const Pr
   return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
 }
 
-/// Whether the base was stuck in a valley: from where the best effect has carried its fit it trains as well as with
-/// that effect. It stays there then.
+/// Whether the base was stuck in a local minimum: refitted from the best effect's fit it trains as well without the
+/// effect. Then it keeps that fit.
 bool base_was_stuck(PreparedSets& sets, const Candidate& best) {
   constexpr double kBetter = 0.98;
   const sim::DriveDescription base = without_or_handed(best, best.kinds.back(), sets);
@@ -90,8 +91,8 @@ bool base_was_stuck(PreparedSets& sets, const Candidate& best) {
   return true;
 }
 
-/// Several effects without each of them in turn, fitted again from there. The last one may have made an earlier one
-/// needless; and the last one itself may have done no more than carry a fit out of a valley in which it was stuck.
+/// Refits several effects without each of them in turn: the last may have made an earlier one unnecessary, or may only
+/// have moved the fit out of a local minimum.
 std::vector<Candidate> without_what_is_needless(const Candidate& whole, const PreparedSets& sets) {
   std::vector<Candidate> found;
   const Errors with(whole.model, sets);
@@ -105,8 +106,8 @@ std::vector<Candidate> without_what_is_needless(const Candidate& whole, const Pr
   return found;
 }
 
-/// The pair with its first effect exchanged for what that is confused with, where this explains something alone: the
-/// second was searched on top of the first only.
+/// The pair with its first effect replaced by one it is confused with, if that explains something alone, because the
+/// second was searched only beside the first.
 std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::vector<Candidate>& singles,
                                             const PreparedSets& sets) {
   std::vector<Candidate> found;

@@ -1,4 +1,5 @@
-// One effect, a second on top of the best one, a third on top of the best two - as long as something is left to find.
+// Searches for one effect, a second beside the best one, and a third beside the best two, as long as the residual needs
+// it.
 #pragma once
 
 #include <vector>
@@ -12,8 +13,8 @@ namespace host {
 struct Findings {
   std::vector<Candidate> singles;  ///< one effect added to the base
   std::vector<Candidate> pairs;    ///< a second one added to the best single
-  /// A third one added to the best pair, where that takes much and leaves much; and the triple without what the third
-  /// one makes needless, which is a pair.
+  /// A third effect added to the best pair, if that explains much and leaves much; and the pair that remains if the
+  /// third makes another unnecessary.
   std::vector<Candidate> triples;
 };
 

@@ -17,18 +17,18 @@ namespace host {
 
 namespace {
 
-/// A further effect must take half of what the first leaves (on a rough machine it is enough that the two need each
-/// other), and a sixth of the error.
+/// A further effect must explain half of the remaining error (on a machine limited by model error it is enough that the
+/// two need each other), and a sixth of the total.
 constexpr double kLeastFurtherShare = 0.5;
 constexpr double kLeastFurtherGain = 0.15;
-/// Candidates whose errors are so close, over both sets alike, are not told apart.
+/// Candidates with errors closer than this on both sets are not distinguished.
 constexpr double kTie = 0.05;
-/// Base parameters that moved by more than this were off, relative.
+/// Relative change by which a base parameter counts as wrong.
 constexpr double kMoved = 0.05;
 
 double error_of_both(const JudgedCandidate& candidate) { return std::sqrt(candidate.after * candidate.train_after); }
 
-/// What only helps at the end of its range is no name, unless nothing else is there.
+/// An effect that helps only at a bound of its range is not claimed unless there is no other.
 const JudgedCandidate* best_of_size(const Diagnosis& diagnosis, std::size_t size) {
   const JudgedCandidate* best = nullptr;
   const auto is_better = [&](const JudgedCandidate& candidate) {
@@ -45,8 +45,7 @@ bool earns_its_place(const JudgedCandidate& candidate, const Diagnosis& diagnosi
   return reservation_about(candidate, diagnosis) == Reservation::none;
 }
 
-/// Whether two effects do more together than what each does alone adds up to: judged one at a time, each hides the
-/// other.
+/// Whether two effects together explain more than the sum of each alone, so that neither is found alone.
 bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
   double alone_train = 0.0, alone_validate = 0.0;
   for (const std::string& kind : pair.kinds) {
@@ -59,7 +58,7 @@ bool need_each_other(const JudgedCandidate& pair, const Diagnosis& diagnosis) {
          explained_share(diagnosis.before_validate, pair.after) > alone_validate;
 }
 
-/// The effect that a candidate has in place of `kind`, all others alike; empty where it differs otherwise.
+/// The effect that a candidate has instead of `kind`, all others equal; empty if it differs otherwise.
 std::string exchanged_for(const std::string& kind, const JudgedCandidate& best, const JudgedCandidate& candidate) {
   if (candidate.kinds.size() != best.kinds.size()) return {};
   std::string other;
@@ -85,8 +84,8 @@ std::vector<std::string> ties_of(const std::string& kind, const JudgedCandidate&
   return tied;
 }
 
-/// Friction that falls with a power of the speed is Stribeck friction too where no constant speeds tell: a fit that has
-/// found the one shape does not lead to the other. What steepens with speed is the drag of a fluid.
+/// Without constant speeds, friction that falls with a power of the speed may be Stribeck friction, and a fit of one
+/// form does not lead to the other. An exponent that steepens with speed is fluid drag.
 bool may_be_stribeck(const JudgedCandidate& chosen, const Diagnosis& diagnosis) {
   constexpr double kSteepens = 1.5;
   const sim::EffectEntry* bend = chosen.model.find("nonlinear_viscous");
@@ -134,8 +133,8 @@ std::string ripple_that_does_not_transfer(const Diagnosis& diagnosis, sim::Drive
     const double period_mm = kind == sim::DriveKind::rotary ? last.at("period") : 1e3 * last.at("period");
     return fmt::format(
         " A ripple every {:.4g} mm of travel ({}) lowers the error on training data from {:.2f} to {:.2f} times the "
-        "floor, but not on validation data: its phase does not transfer from record to record, as after a new homing, "
-        "so it is not claimed.",
+        "noise floor, but not on validation data: its phase differs between records, as after a new homing, so it is "
+        "not claimed.",
         period_mm, last.kind, diagnosis.told_of_training(train), diagnosis.told_of_training(candidate.train_after));
   }
   return {};
@@ -154,7 +153,7 @@ double validation_s(const Diagnosis& diagnosis) {
 /// Why the closest candidate is not claimed, to follow a statement of the error.
 std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis& diagnosis) {
   const std::string what =
-      fmt::format("; the closest, {}, leaves {:.2f} (training: {:.2f})", fmt::join(closest.kinds, " + "),
+      fmt::format("; the best candidate, {}, leaves {:.2f} (training: {:.2f})", fmt::join(closest.kinds, " + "),
                   diagnosis.told(closest.after), diagnosis.told_of_training(closest.train_after));
   switch (reservation_about(closest, diagnosis)) {
     case Reservation::none:
@@ -162,12 +161,13 @@ std::string reservation_in_words(const JudgedCandidate& closest, const Diagnosis
     case Reservation::no_gain:
       return what;
     case Reservation::on_bound:
-      return what + fmt::format(", and only with {} at the end of its range", fmt::join(closest.on_bound, ", "));
+      return what + fmt::format(", but only with {} at a bound of its range", fmt::join(closest.on_bound, ", "));
     case Reservation::luck:
-      return what + fmt::format(", which with {} candidates tried may be luck on {:.1f} s of validation data",
+      return what + fmt::format(", which may be chance: {} candidates were tried on {:.1f} s of validation data",
                                 diagnosis.tried, validation_s(diagnosis));
     case Reservation::leaves_much:
-      return what + ", too much for an effect that is really there: it makes up for something else";
+      return what +
+             ". The true cause would bring the error close to 1, so this effect is probably standing in for another";
   }
   return {};
 }
@@ -195,14 +195,14 @@ DiagnosisVerdict insufficient_data(const sim::DriveDescription& model, const Pre
   DiagnosisVerdict verdict;
   verdict.status = Status::insufficient_data;
   verdict.next_experiment = fmt::format(
-      "Record {:.1f} s more of motion{}: steps of the command in both directions that are well above static friction "
-      "(up to {:g} V), and jogs at several speeds both ways.",
+      "Record {:.1f} s more of motion{}: command steps in both directions well above static friction (up to {:g} V), "
+      "and jogs at several speeds in both directions.",
       std::max(0.1, missing_motion_s(sets)), sets.held_back ? ", or a record of another motion for --validate" : "",
       0.5 * model.data.dac_limit_V);
   verdict.explanation = fmt::format(
-      "The axis moved for {:.2f} s in the data that train and for {:.2f} s in {}: {} and {} independent windows, of "
-      "which at least {} and {} are needed before inertia, friction and anything else can be told apart.",
-      sets.moving_train_s, sets.moving_validate_s, sets.held_back ? "what was kept back of them" : "those that judge",
+      "The axis moved for {:.2f} s in the training data and for {:.2f} s in {}: {} and {} independent windows. At "
+      "least {} and {} are needed to separate inertia, friction and other effects.",
+      sets.moving_train_s, sets.moving_validate_s, sets.held_back ? "the held-back part" : "the validation data",
       independent_windows(sets.moving_train_s), independent_windows(sets.moving_validate_s), kFewestToLearn,
       kFewestToJudge);
   return verdict;
@@ -259,18 +259,18 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
         chosen->kinds, [](const std::string& kind) { return sim::find_effect(kind)->stage == sim::Stage::friction; });
     if (shapes_friction && gap) verdict.next_experiment += " " + speeds_to_record(*gap);
     verdict.explanation = fmt::format(
-        "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of what "
-        "there is to explain. {}.",
+        "{} ({}) lowers the error on validation data from {:.2f} to {:.2f} times the noise floor: {:.0f} % of the "
+        "explainable error. {}.",
         fmt::join(titles, " and "), parameters_in_words(chosen->model.effects.back(), given.data.kind), before,
         told_of(*chosen, diagnosis), 100.0 * explained_share(diagnosis.before_validate, chosen->after), first.shows);
     for (const std::vector<std::string>& group : verdict.alternatives)
       verdict.explanation += fmt::format(" These data cannot tell {} apart.", fmt::join(group, ", "));
     if (diagnosis.rough)
       verdict.explanation += fmt::format(
-          " Much more than noise is left whatever is added, so the model is judged {} before it adds up to a drift.",
-          diagnosis.measure == Measure::effort
-              ? std::string("by the effort that the measured motion needed, in which what is missing shows")
-              : fmt::format("over windows of {:g} s, in which an error of force shows", diagnosis.window_s));
+          " Every candidate leaves much more than noise, so the model is judged {}, before the error accumulates to a "
+          "drift.",
+          diagnosis.measure == Measure::effort ? std::string("by the torque or force of the measured motion")
+                                               : fmt::format("over windows of {:g} s", diagnosis.window_s));
     if (chosen->after > kExplained) verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     return verdict;
   }
@@ -280,8 +280,8 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     verdict.explanation =
         fmt::format("The error on validation data is {:.2f} times the noise floor{}.", before, closest);
     verdict.next_experiment = fmt::format(
-        "Record longer: of {} candidates the best may be lucky on so little; {:.1f} s of validation data (four times "
-        "as much in all, where it is kept back) in which the axis moves throughout can decide.",
+        "Record longer: with so few data the best of {} candidates may win by chance. {:.1f} s of validation data in "
+        "continuous motion can decide (four times as much in total if they are held back).",
         diagnosis.tried, std::max(2.0 * validation_s(diagnosis), least_validation_s(diagnosis.tried)));
     return verdict;
   }
@@ -293,7 +293,7 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
       const Trace trace = strongest_trace(diagnosis, tests);
       verdict.coordinate = trace.coordinate;
       verdict.where = trace.where;
-      verdict.explanation += fmt::format(" What is left depends most on {}: {}. By motion, {}.",
+      verdict.explanation += fmt::format(" The residual depends most on {}: {}. By motion, {}.",
                                          spaced(trace.coordinate), trace.where, where_it_fails(diagnosis.where));
       verdict.explanation += ripple_that_does_not_transfer(diagnosis, given.data.kind);
     }
@@ -301,18 +301,15 @@ DiagnosisVerdict reach_verdict(const sim::DriveDescription& given, const Diagnos
     return verdict;
   }
   verdict.status = verdict.parameters.empty() ? Status::adequate : Status::parameters;
-  verdict.explanation =
-      verdict.parameters.empty()
-          ? fmt::format(
-                "The model leaves {:.2f} times the noise floor on validation data; nothing in the catalogue lowers "
-                "that "
-                "beyond chance.",
-                before)
-          : fmt::format(
-                "Re-fitting {} leaves {:.2f} times the noise floor on validation data; nothing in the catalogue lowers "
-                "that beyond chance.",
-                fmt::join(verdict.parameters, ", "), before);
-  verdict.next_experiment = "None needed for this model on motions like these.";
+  verdict.explanation = verdict.parameters.empty() ? fmt::format(
+                                                         "The error is {:.2f} times the noise floor on validation "
+                                                         "data; no known effect lowers it significantly.",
+                                                         before)
+                                                   : fmt::format(
+                                                         "After refitting {} the error is {:.2f} times the noise floor "
+                                                         "on validation data; no known effect lowers it significantly.",
+                                                         fmt::join(verdict.parameters, ", "), before);
+  verdict.next_experiment = "None needed for motions like these.";
   return verdict;
 }
 

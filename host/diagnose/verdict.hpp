@@ -1,4 +1,4 @@
-// From judged candidates to an answer: what is missing, what the data cannot tell, and what to measure next.
+// From candidates to a verdict: the missing effect, what the data cannot separate, and what to measure next.
 #pragma once
 
 #include "host/diagnose/diagnosis.hpp"
@@ -8,10 +8,10 @@ namespace host {
 /// A combined error up to which nothing is left to explain: a perfect model gives about 1.
 inline constexpr double kExplained = 1.25;
 
-/// Whether a re-fit moved a parameter of an effect by more than a twentieth.
+/// Whether a refit changed a parameter of an effect by more than 5 %.
 bool has_moved(const sim::EffectEntry& before, const sim::EffectEntry& after);
 
-/// Kinds of the base of which a re-fit moved a parameter by more than a twentieth.
+/// Kinds of the base with a parameter that a refit changed by more than 5 %.
 std::vector<std::string> moved_parameters(const sim::DriveDescription& given, const sim::DriveDescription& base);
 
 /// Fills the verdict of a diagnosis whose candidates are judged; `given` is the model before its re-fit.

@@ -1,14 +1,15 @@
 #include "host/diagnose/visibility.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "host/dense_solutions.hpp"
 #include "host/diagnose/candidate_starts.hpp"
-#include "host/parallel.hpp"
 #include "host/diagnose/parameter_vector.hpp"
+#include "host/parallel.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -89,7 +90,7 @@ std::vector<Visibility> visibility_of_effects(const sim::DriveDescription& base,
     vector.write(moved, model);
     slopes.col(k) = (errors_of(model, sets) - here) / kStep;
   }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> refit(slopes);
+  const auto refit = least_norm_solver(slopes);
 
   std::vector<const sim::EffectInfo*> infos;
   for (const sim::EffectInfo* info : sim::catalogue())
@@ -100,7 +101,7 @@ std::vector<Visibility> visibility_of_effects(const sim::DriveDescription& base,
     for (const sim::DriveDescription& model : usual_sizes(*infos[k], base, training)) {
       const Eigen::VectorXd trace = errors_of(model, sets) - here;
       if (!trace.allFinite()) continue;
-      seen[k].floors = std::max(seen[k].floors, (trace - slopes * refit.solve(trace)).norm());
+      seen[k].floors = std::max(seen[k].floors, (trace - slopes * refit(trace)).norm());
     }
   });
   return seen;

@@ -1,5 +1,5 @@
-// What records could have shown: whether an effect of usual size would have left a trace that a re-fit of the base
-// cannot take up. Where it would not, that nothing was found tells nothing about it.
+// Which effects the records can show: whether an effect of usual size leaves a residual that a refit of the base cannot
+// absorb. If not, the absence of a finding says nothing about it.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct Visibility {
   double floors = 0.0;  ///< RMS over floor that the effect adds to a complete base, after a re-fit of the base
 };
 
-/// A trace of so many floors turns a complete model's error of 1 into 1.25.
+/// An effect of this many noise floors raises a complete model's error from 1 to 1.25.
 inline constexpr double kVisible = 0.75;
 
 /// Every effect of the catalogue that can be added to `base`, at the sizes that fits start from (for ripples: a usual

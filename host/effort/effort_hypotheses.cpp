@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/dense_solutions.hpp"
 #include "host/effort/effort_memory.hpp"
 #include "host/effort/effort_waves.hpp"
 #include "host/effort/second_mass_terms.hpp"
@@ -84,15 +85,15 @@ bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
   return wave.order * travel / wave.period <= kMostWaves || (wave.period == turn && wave.order <= kMostOrders);
 }
 
-/// Of many waves, those whose plain gain is largest; `rest` counts the others.
-std::vector<Wave> most_promising(std::vector<Wave> waves, const EffortRows& rows, const VectorXd& weight,
-                                 const VectorXd& left) {
+using WaveColumns = std::function<MatrixXd(const Wave&)>;
+
+/// Of many waves, those whose plain gain is largest.
+std::vector<Wave> most_promising(std::vector<Wave> waves, const WaveColumns& columns_of, const VectorXd& left) {
   std::vector<std::pair<double, Wave>> ranked;
   for (const Wave& wave : waves) {
-    const MatrixXd columns = wave_columns(rows, weight, wave);
-    const Eigen::Matrix2d moments = columns.transpose() * columns;
-    const Eigen::Vector2d pull = columns.transpose() * left;
-    ranked.emplace_back(-pull.dot(moments.ldlt().solve(pull)), wave);
+    const MatrixXd columns = columns_of(wave);
+    const VectorXd pull = columns.transpose() * left;
+    ranked.emplace_back(-pull.dot(symmetric_solution(gram(columns), pull)), wave);
   }
   std::ranges::stable_sort(ranked, {}, &std::pair<double, Wave>::first);
   ranked.resize(std::min(ranked.size(), kMostWavesWeighed));
@@ -123,7 +124,7 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
     all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
     all.rightCols(term.columns.cols()) = thin_.of(term.columns);
   }
-  const VectorXd factors = all.completeOrthogonalDecomposition().solve(thin_.rows.effort);
+  const VectorXd factors = least_norm_solution(all, thin_.rows.effort);
   for (Index c = 0; c < all.cols(); ++c)
     deviations.push_back(kBaseKnownTo *
                          std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));
@@ -192,24 +193,46 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     const VectorXd one = VectorXd::Ones(rows_.w.size());
     const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
     const VectorXd left = thin_.of(rows_.effort - explained);
+    const double turn = turn_of(model_.data);
+    const auto weigh_waves = [&](const std::string& kind, const std::vector<Wave>& waves, const WaveColumns& columns_of,
+                                 const std::function<EffortTerm(const Wave&)>& term_of) {
+      counts[kind] += static_cast<double>(waves.size());
+      for (const Wave& wave : most_promising(waves, columns_of, left)) {
+        std::optional<Form> form =
+            form_of(kind, columns_of(wave), {0, 0}, 1.0, [term_of, wave] { return term_of(wave); });
+        if (form) forms[kind].push_back(*std::move(form));
+      }
+    };
+    const auto slow_waves = [&](double longest) {
+      std::vector<Wave> waves = waves_over(model_.data, rows_, longest);
+      std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
+      return waves;
+    };
+    if (!rows_.steady && !is_excluded(kNoName))
+      weigh_waves(
+          kNoName, slow_waves(1.0), [this](const Wave& wave) { return varying_inertia_columns(thin_.rows, wave); },
+          [this](const Wave& wave) {
+            return EffortTerm{kNoName,
+                              varying_inertia_columns(rows_, wave),
+                              {0, 0},
+                              [](const VectorXd&, sim::DriveDescription&) { return true; },
+                              {}};
+          });
     for (const auto& [kind, weight, longest] : {std::tuple<std::string, const VectorXd*, double>{"cogging", &one, 1.0},
                                                 {"torque_ripple", &explained, 1.0},
                                                 {"position_dependent_friction", &direction, 2.0}}) {
       if (is_excluded(kind) || (kind == "position_dependent_friction" && held.find("coulomb") == nullptr)) continue;
-      std::vector<Wave> waves = waves_over(model_.data, rows_, longest);
-      const double turn = turn_of(model_.data);
       // Friction varies slowly along the travel, or with the pitch of the screw.
-      if (kind == "position_dependent_friction")
-        std::erase_if(waves, [&](const Wave& wave) { return !is_slow(wave, rows_, turn); });
-      counts[kind] += static_cast<double>(waves.size());
-      const VectorXd thin_weight = thin_.of(*weight);
-      for (const Wave& wave : most_promising(waves, thin_.rows, thin_weight, left)) {
-        std::optional<Form> form = form_of(kind, wave_columns(thin_.rows, thin_weight, wave), {0, 0}, 1.0,
-                                           [this, kind = std::string(kind), weight = *weight, wave] {
-                                             return wave_term(model_, rows_, kind, weight, wave);
-                                           });
-        if (form) forms[kind].push_back(*std::move(form));
-      }
+      const std::vector<Wave> waves =
+          kind == "position_dependent_friction" ? slow_waves(longest) : waves_over(model_.data, rows_, longest);
+      weigh_waves(
+          kind, waves,
+          [this, thin_weight = thin_.of(*weight)](const Wave& wave) {
+            return wave_columns(thin_.rows, thin_weight, wave);
+          },
+          [this, kind = kind, weight = *weight](const Wave& wave) {
+            return wave_term(model_, rows_, kind, weight, wave);
+          });
     }
   }
 
@@ -246,44 +269,67 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   std::size_t in_reach = kinds.size();
   while (in_reach > kMostFitted && kinds[in_reach - 1].best < kinds.front().best - kOutOfReach) --in_reach;
 
+  // The best forms of each kind by either ranking: first those that lead one, then the others, which end early where
+  // the best of their kind is out of reach. The margin is for what rounds may still change.
   struct Trial {
-    std::size_t kind, rank;
-    bool without;
+    std::size_t kind;
+    const Weighed* weighed;
+    double spread = 0.0;  ///< by the forms beside the best of a ranking, nats
   };
-  std::vector<Trial> trials;
-  for (std::size_t k = 0; k < in_reach; ++k)
-    for (const bool without : {false, true}) {
-      std::vector<const Form*> tried;
-      const std::vector<Weighed>& ranked = kinds[k].ranked[without ? 1 : 0];
-      for (std::size_t rank = 0; rank < ranked.size() && tried.size() < kFormsFitted; ++rank) {
-        if (std::ranges::find(tried, ranked[rank].form) != tried.end()) continue;
-        tried.push_back(ranked[rank].form);
-        trials.push_back({k, rank, without});
+  std::vector<Trial> leaders, others;
+  for (std::size_t k = 0; k < in_reach; ++k) {
+    for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
+      std::vector<const Form*> of_ranking;
+      for (const Weighed& weighed : ranked) {
+        if (of_ranking.size() == kFormsFitted) break;
+        if (std::ranges::find(of_ranking, weighed.form) != of_ranking.end()) continue;
+        of_ranking.push_back(weighed.form);
+        const bool leads = of_ranking.size() == 1;
+        Trial trial{k, &weighed};
+        if (leads) {
+          std::vector<double> gains;
+          for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
+          trial.spread = log_sum(gains);
+        }
+        const auto is_same = [&](const Trial& other) {
+          return other.weighed->form == weighed.form && other.weighed->scale == weighed.scale;
+        };
+        const auto leader = std::ranges::find_if(leaders, is_same);
+        if (leads && leader != leaders.end()) {
+          leader->spread = std::max(leader->spread, trial.spread);
+        } else if (leads) {
+          leaders.push_back(trial);
+        } else if (leader == leaders.end() && std::ranges::none_of(others, is_same)) {
+          others.push_back(trial);
+        }
       }
     }
-  for_each_in_parallel(trials.size(), [&](std::size_t index) {
-    const std::size_t k = trials[index].kind;
-    const std::vector<Weighed>& ranked = kinds[k].ranked[trials[index].without ? 1 : 0];
-    const Weighed& weighed = ranked[trials[index].rank];
-    const Index width = weighed.form->columns.cols();
-    MatrixXd columns(known.columns.rows(), known.columns.cols() + width);
-    columns << known.columns, weighed.form->columns;
-    VectorXd deviations(known.deviations.size() + width);
-    deviations << known.deviations, VectorXd::Constant(width, weighed.scale);
-    const EvidenceFit fit = evidence_.fit_from(now, columns, deviations);
-    for (Index c = 0; c < width; ++c)
-      if (weighed.form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
-    std::vector<double> gains;
-    for (const Weighed& other : ranked) gains.push_back(other.log_gain - weighed.log_gain);
-    const double spread = trials[index].rank == 0 ? log_sum(gains) : 0.0;  // over the forms beside the best
-    const double log_odds = fit.log_evidence + weighed.form->log_unit - now.log_evidence + spread -
-                            std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
-    EffortTerm term = weighed.form->term();
-    const std::optional<double> train = plain_fit(term);
-    if (!train) return;
-    const std::lock_guard lock(better);
-    kinds[k].fitted.push_back({log_odds, *train, std::move(term)});
-  });
+  }
+  const auto fit_trials = [&](const std::vector<Trial>& trials, const std::vector<double>& give_up) {
+    std::vector<double> reached(in_reach, -HUGE_VAL);
+    for_each_in_parallel(trials.size(), [&](std::size_t index) {
+      const auto& [k, weighed, spread] = trials[index];
+      const Index width = weighed->form->columns.cols();
+      MatrixXd columns(known.columns.rows(), known.columns.cols() + width);
+      columns << known.columns, weighed->form->columns;
+      VectorXd deviations(known.deviations.size() + width);
+      deviations << known.deviations, VectorXd::Constant(width, weighed->scale);
+      const EvidenceFit fit = evidence_.fit_from(now, columns, deviations, give_up[k] - weighed->form->log_unit);
+      for (Index c = 0; c < width; ++c)
+        if (weighed->form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
+      const double log_evidence = fit.log_evidence + weighed->form->log_unit;
+      const double log_odds = log_evidence - now.log_evidence + spread -
+                              std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
+      EffortTerm term = weighed->form->term();
+      const std::optional<double> train = plain_fit(term);
+      if (!train) return;
+      const std::lock_guard lock(better);
+      reached[k] = std::max(reached[k], log_evidence - 2.0 * kOutOfReach);
+      kinds[k].fitted.push_back({log_odds, *train, std::move(term)});
+    });
+    return reached;
+  };
+  fit_trials(others, fit_trials(leaders, std::vector<double>(in_reach, -HUGE_VAL)));
   // What was out of reach stands in the list by its approximate gain.
   for (std::size_t k = in_reach; k < kinds.size(); ++k)
     for (const std::vector<Weighed>& ranked : kinds[k].ranked) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "host/dense_solutions.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
@@ -46,7 +47,7 @@ MatrixXd hats(const VectorXd& at, const std::vector<double>& knots) {
 /// The part of the columns that others do not explain. A memory that can take what the model itself can explain hides
 /// it: M. Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
 MatrixXd beside(const MatrixXd& columns, const MatrixXd& others) {
-  return columns - others * others.colPivHouseholderQr().solve(columns);
+  return columns - others * least_squares_solution(others, columns);
 }
 
 class Builder {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/compare/chance.hpp"
+#include "host/dense_solutions.hpp"
 #include "sim/second_mass.hpp"
 
 namespace host {
@@ -142,7 +143,8 @@ VectorXd EffortRegression::solve(const MatrixXd& moments, const VectorXd& projec
     b(c) = value;
   }
   const VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * (scale.asDiagonal() * a * scale.asDiagonal()).ldlt().solve(scale.asDiagonal() * b);
+  return scale.asDiagonal() *
+         symmetric_solution(scale.asDiagonal() * a * scale.asDiagonal(), VectorXd(scale.asDiagonal() * b));
 }
 
 double EffortRegression::effective_variance(const MatrixXd& phi, const VectorXd& theta) const {

@@ -1,7 +1,7 @@
 // Least squares of the effort on the columns of effects, as far as physics leaves each factor room.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 

@@ -1,9 +1,10 @@
 #include "host/effort/effort_rows.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "host/dense_solutions.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/encoder_step.hpp"
@@ -147,7 +148,7 @@ double left_by_base(const EffortRows& rows) {
     phi.row(at) << rows.acceleration(k), rows.w(k), rows.w(k) > 0.0 ? 1.0 : 0.0, rows.w(k) > 0.0 ? 0.0 : 1.0;
     y(at++) = rows.effort(k);
   }
-  const Eigen::VectorXd theta = phi.completeOrthogonalDecomposition().solve(y);
+  const Eigen::VectorXd theta = least_norm_solution(phi, y);
   return (y - phi * theta).norm() / std::max(y.norm(), 1e-300);
 }
 

@@ -88,7 +88,7 @@ class Search {
   /// Motions that no fit has seen have the last word: they must lie nearer to a model that has the effect.
   bool is_refuted(const ScreenedModel& taken) const { return taken.validate >= screen_.best().validate; }
 
-  /// Of a group, a kind behind the first that held-back motions refute: it is no rival. Null where there is none.
+  /// Of a group, a kind behind the first that held-back motions refute: it is not a rival. Null if every kind holds.
   NextEffect* refuted_rival(const std::vector<std::string>& group, NextEffects& next) const {
     for (std::size_t k = 1; k < group.size(); ++k) {
       NextEffect& rival = effect_of(next, group[k]);
@@ -131,6 +131,22 @@ class Search {
     return next;
   }
 
+  /// What has no name is a rival as long as it predicts held-back motions better than the most probable effect does.
+  void weigh_unnamed(NextEffects& next) const {
+    const auto is_unnamed = [](const NextEffect& effect) { return effect.term.kind == kNoName; };
+    const auto unnamed = std::ranges::find_if(next.effects, is_unnamed);
+    if (unnamed == next.effects.end()) return;
+    const auto named = std::ranges::find_if_not(next.effects, is_unnamed);
+    ScreenedModel without_name, with_name;
+    const bool stands = with(unnamed->term, without_name) && is_worth_naming(without_name) &&
+                        !(named != next.effects.end() && with_closest(*named, with_name) &&
+                          with_name.validate <= without_name.validate);
+    if (stands)
+      leave_unnamed(next);
+    else
+      take_out(next, {kNoName});
+  }
+
   /// Plain least squares of a form beside what was chosen.
   std::optional<double> plain_error(const EffortTerm& term) const {
     ScreenedModel tried;
@@ -142,6 +158,7 @@ class Search {
   /// that take enough together. False where there is none.
   bool step(const EffortHypotheses& hypotheses) {
     NextEffects all = weigh(hypotheses);
+    weigh_unnamed(all);
     std::vector<ScreenedModel> list = all_of(all);
     // What is there, but takes hardly anything, is no rival of what takes much.
     std::vector<std::string> small;
@@ -335,7 +352,8 @@ class Search {
     chosen.push_back(beside->term);
     std::vector<std::string> excluded = excluded_;
     excluded.push_back(beside->term.kind);
-    const NextEffects next = next_beside(hypotheses, chosen, excluded);
+    NextEffects next = next_beside(hypotheses, chosen, excluded);
+    leave_unnamed(next);
     double probability = 0.0;
     const std::vector<std::string> group = certain_group(next, probability);
     ScreenedModel taken;

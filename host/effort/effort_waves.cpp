@@ -100,6 +100,15 @@ MatrixXd wave_columns(const EffortRows& rows, const VectorXd& weight, const Wave
   return columns;
 }
 
+MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave) {
+  const double per_radian = 2.0 * std::numbers::pi * wave.order / wave.period * rows.lead;
+  const MatrixXd of_slope = wave_columns(rows, 0.5 * per_radian * rows.w.cwiseAbs2(), wave);
+  MatrixXd columns = wave_columns(rows, rows.acceleration, wave);
+  columns.col(0) -= of_slope.col(1);
+  columns.col(1) += of_slope.col(0);
+  return columns;
+}
+
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
                      const VectorXd& weight, const Wave& wave) {
   EffortTerm term{kind, wave_columns(rows, weight, wave), {0, 0}, {}, {}};

@@ -29,6 +29,10 @@ std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows,
 /// cos and sin of a wave, times `weight`: two columns.
 Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weight, const Wave& wave);
 
+/// What an inertia asks for that varies along the travel by one wave (a crank, an arm): energy is kept, so that
+/// T = J(x) a + w^2/2 dJ/dx. Two columns, of J's cosine and sine. No effect of the catalogue.
+Eigen::MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave);
+
 /// A periodic effect of one wave. A model that has an entry of that kind and period gets one order more.
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
                      const Eigen::VectorXd& weight, const Wave& wave);

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "host/dense_solutions.hpp"
 #include "host/effort/effort_waves.hpp"
 #include "host/evidence/period_search.hpp"
 #include "host/statistics.hpp"
@@ -44,8 +45,7 @@ MatrixXd orders_of(const EffortRows& rows, double period) {
 /// Squared error on some rows of columns that were fitted to others.
 double left_elsewhere(const VectorXd& left, const MatrixXd& columns, const Mask& fitted, const Mask& judged) {
   const VectorXd use = fitted.cast<double>();
-  const VectorXd factors =
-      MatrixXd(use.asDiagonal() * columns).completeOrthogonalDecomposition().solve(VectorXd(use.cwiseProduct(left)));
+  const VectorXd factors = least_norm_solution(use.asDiagonal() * columns, use.cwiseProduct(left));
   return judged.select(left - columns * factors, 0.0).matrix().squaredNorm();
 }
 
@@ -162,7 +162,7 @@ sim::EffectEntry entry_of(std::string_view over, const std::vector<double>& knot
   sim::EffectEntry entry;
   entry.kind = "free_curve";
   entry.over = over;
-  const MatrixXd covariance = variance * information.ldlt().solve(MatrixXd::Identity(values.size(), values.size()));
+  const MatrixXd covariance = variance * symmetric_inverse(information);
   for (std::size_t n = 0; n < knots.size(); ++n) {
     const Index c = static_cast<Index>(n) % values.size();
     const std::string id = sim::numbered_id("value", static_cast<double>(n));

@@ -19,6 +19,12 @@ std::vector<std::string> certain_group(const NextEffects& next, double& probabil
   return group;
 }
 
+void leave_unnamed(NextEffects& next) {
+  for (const NextEffect& effect : next.effects)
+    if (effect.term.kind == kNoName) next.nothing += effect.probability;
+  std::erase_if(next.effects, [](const NextEffect& effect) { return effect.term.kind == kNoName; });
+}
+
 void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
   std::erase_if(next.effects,
                 [&](const NextEffect& effect) { return std::ranges::find(kinds, effect.term.kind) != kinds.end(); });

@@ -9,6 +9,9 @@
 
 namespace host {
 
+/// The kind of what the catalogue has no name for.
+inline constexpr const char* kNoName = "";
+
 /// One kind in its most probable form, given what was chosen before.
 struct NextEffect {
   EffortTerm term;
@@ -27,6 +30,9 @@ struct NextEffects {
 /// Fewest kinds that together are certain, most probable first; empty where "nothing more" is more probable than one of
 /// them, or too many are needed. `probability`: of the group.
 std::vector<std::string> certain_group(const NextEffects& next, double& probability);
+
+/// What has no name becomes "nothing of the catalogue".
+void leave_unnamed(NextEffects& next);
 
 /// Takes kinds out of what may come next; the others share their probability.
 void take_out(NextEffects& next, const std::vector<std::string>& kinds);

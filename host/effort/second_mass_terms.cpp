@@ -98,7 +98,8 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
     entry.parameters = {{"resonance", load.resonance_Hz * ratio},
                         {"damping_ratio", std::clamp(load.damping * ratio, 0.001, 1.0)},
                         {"load_fraction", share},
-                        {"load_friction", part}};
+                        {"load_friction", part},
+                        {"load_viscous", 0.0}};
     if (load.gap > 0.0) entry.parameters["gap"] = load.gap * lead;
     return append_within_bounds(fitted, std::move(entry));
   };

@@ -1,11 +1,12 @@
 #include "host/evidence/channel_shift.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/zero_phase_filter.hpp"
@@ -33,9 +34,8 @@ std::optional<double> lowest_shift(const std::vector<double>& squares) {
 
 /// Sum of squares that `target` less gain and offset times `regressors` leaves.
 double squares_left(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& target) {
-  const Eigen::MatrixXd normal = regressors.transpose() * regressors;
   const Eigen::VectorXd cross = regressors.transpose() * target;
-  return std::max(0.0, target.squaredNorm() - cross.dot(normal.ldlt().solve(cross)));
+  return std::max(0.0, target.squaredNorm() - cross.dot(symmetric_solution(gram(regressors), cross)));
 }
 
 /// Part of the effort's square that inertia and friction leave at `rows`, for each shift of the effort.
@@ -47,9 +47,8 @@ std::vector<double> rigid_squares(const Motion& motion, std::span<const std::siz
     regressors.row(row) << motion.acceleration[k], motion.speed[k], motion.speed[k] > 0.0 ? 1.0 : 0.0,
         motion.speed[k] < 0.0 ? 1.0 : 0.0;
   }
-  Eigen::MatrixXd normal = regressors.transpose() * regressors;
+  Eigen::MatrixXd normal = gram(regressors);
   normal.diagonal() *= 1.0 + 1e-9;  // a record may run one way only
-  const auto solver = normal.ldlt();
   std::vector<double> squares;
   Eigen::VectorXd effort(count);
   for (int shift = -kMostSamples; shift <= kMostSamples; ++shift) {
@@ -57,7 +56,8 @@ std::vector<double> rigid_squares(const Motion& motion, std::span<const std::siz
       effort(row) = motion.effort[static_cast<std::size_t>(
           static_cast<std::ptrdiff_t>(rows[static_cast<std::size_t>(row)]) + shift)];
     const Eigen::VectorXd cross = regressors.transpose() * effort;
-    squares.push_back(std::max(0.0, effort.squaredNorm() - cross.dot(solver.solve(cross))) / effort.squaredNorm());
+    squares.push_back(std::max(0.0, effort.squaredNorm() - cross.dot(symmetric_solution(normal, cross))) /
+                      effort.squaredNorm());
   }
   return squares;
 }

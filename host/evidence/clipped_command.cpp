@@ -1,10 +1,11 @@
 #include "host/evidence/clipped_command.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "host/dense_solutions.hpp"
 #include "host/evidence/channel_shift.hpp"
 #include "sim/drive.hpp"
 
@@ -39,7 +40,7 @@ std::optional<Eigen::Vector4d> rigid_fit(const Motion& motion, const std::vector
     total += motion.effort[k] * motion.effort[k];
   }
   if (use.size() < kFewestRows) return std::nullopt;
-  const Eigen::Matrix4d inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::Matrix4d inverse = pseudo_inverse(normal);
   const Eigen::Vector4d found = inverse * cross;
   // Below the cut-off white noise has so many independent samples.
   const double independent = static_cast<double>(use.size()) * 2.0 * motion.cutoff_Hz / motion.sample_rate_Hz;

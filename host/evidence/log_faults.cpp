@@ -41,8 +41,8 @@ void report_jumps(const Record& record, const PositionJumps& jumps, FaultList& f
   const auto times = [](std::size_t count) { return count == 1 ? std::string() : fmt::format(", {} times", count); };
   if (jumps.wraps > 0)
     faults.add(LogFaultKind::integer_wrap, &Record::x, jumps.first_wrap.t_s, jumps.first_wrap.size,
-               fmt::format("jumps by {:.6g} {} against the motion at t = {:.4g} s{}: a counter or an angle ran over "
-                           "and began again; take that out with axistool import {} --unwrap {}={:.10g} -o …",
+               fmt::format("jumps by {:.6g} {} against the motion at t = {:.4g} s{}: a counter or an angle wrapped; "
+                           "unwrap it with axistool import {} --unwrap {}={:.10g} -o …",
                            jumps.first_wrap.size, unit, jumps.first_wrap.t_s, times(jumps.wraps), file_name(record),
                            name_in_file(record, &Record::x), jumps.wrap_range));
   if (jumps.new_zeros > 0)
@@ -52,30 +52,27 @@ void report_jumps(const Record& record, const PositionJumps& jumps, FaultList& f
                     "zero (homing) or a disturbed encoder; split the record there",
                     jumps.first_new_zero.size, unit, jumps.first_new_zero.t_s, times(jumps.new_zeros)));
   if (jumps.late > 0)
-    faults.add(
-        LogFaultKind::uneven_clock, &Record::x, jumps.first_late.t_s, static_cast<double>(jumps.late),
-        fmt::format("comes late and catches up in one sample at t = {:.4g} s{}: the time stamps jitter, or stand in "
-                    "for samples that are missing; trust no acceleration from it there, and log the sampler's own "
-                    "counter",
-                    jumps.first_late.t_s, times(jumps.late)),
-        false);
+    faults.add(LogFaultKind::uneven_clock, &Record::x, jumps.first_late.t_s, static_cast<double>(jumps.late),
+               fmt::format("is late and catches up in one sample at t = {:.4g} s{}: the time stamps jitter, or samples "
+                           "are missing; its acceleration is wrong there, so log the sampler's own counter",
+                           jumps.first_late.t_s, times(jumps.late)),
+               false);
   if (jumps.dropped > 0)
     faults.add(LogFaultKind::dropped_samples, &Record::x, jumps.first_drop.t_s, static_cast<double>(jumps.dropped),
-               fmt::format("{} samples are missing or repeated though the time stamps go on, first at t = {:.4g} s: "
-                           "log the sampler's own counter and import with its times",
+               fmt::format("{} samples are missing or repeated although the time stamps continue, first at t = {:.4g} "
+                           "s: log the sampler's own counter and import with its times",
                            jumps.dropped, jumps.first_drop.t_s));
 }
 
 void find_copies(const Record& record, const sim::DataSheet& data, FaultList& faults) {
   if (speed_is_differenced(record, data))
-    faults.add(
-        LogFaultKind::derived_channel, &Record::w, record.t_s.front(), 0.0,
-        "is the difference of the position, not a measurement of its own: it tells nothing new; leave the column "
-        "out, or log the tachometer",
-        false);
+    faults.add(LogFaultKind::derived_channel, &Record::w, record.t_s.front(), 0.0,
+               "is the difference of the position, not a separate measurement, and adds no information; leave the "
+               "column out, or log the tachometer",
+               false);
   if (const std::optional<ScaledCopy> copy = scaled_copy(record))
     faults.add(LogFaultKind::scaled_copy, copy->channel, record.t_s.front(), copy->factor,
-               fmt::format("is {} times {:.6g} (plus a constant) in every row, not a measurement of its own; log the "
+               fmt::format("is {} times {:.6g} (plus a constant) in every row, not a separate measurement; log the "
                            "channel itself, or leave the column out",
                            name_in_file(record, copy->original), copy->factor),
                !copy->harmless);
@@ -83,11 +80,10 @@ void find_copies(const Record& record, const sim::DataSheet& data, FaultList& fa
 
 void find_clipping(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
   if (const std::optional<ClippedCommand> clipped = clipped_command(record, model))
-    faults.add(
-        LogFaultKind::clipped, &Record::u_V, clipped->t_s, clipped->level_V,
-        fmt::format("stands at {:.4g} V in {:.0f} % of the rows while the axis does what takes {:.0f} % more: the "
-                    "log cuts the command off; log its whole range (the converter gives {:g} V)",
-                    clipped->level_V, 100.0 * clipped->share, 100.0 * clipped->excess, model.data.dac_limit_V));
+    faults.add(LogFaultKind::clipped, &Record::u_V, clipped->t_s, clipped->level_V,
+               fmt::format("is constant at {:.4g} V in {:.0f} % of the rows while the motion needs {:.0f} % more: the "
+                           "log clips the command; log its whole range (the converter gives {:g} V)",
+                           clipped->level_V, 100.0 * clipped->share, 100.0 * clipped->excess, model.data.dac_limit_V));
 }
 
 /// Inertia and friction as this record alone shows them; empty where it is too short to say.
@@ -138,20 +134,18 @@ void find_odd_command(const Record& record, const sim::DataSheet& data, FaultLis
   const auto beyond =
       std::ranges::count_if(record.u_V, [&](double u_V) { return std::abs(u_V) > kBeyond * data.dac_limit_V; });
   if (static_cast<double>(beyond) > kMostBeyond * static_cast<double>(record.size()))
-    faults.add(
-        LogFaultKind::command_scale, &Record::u_V, record.t_s.front(), largest / data.dac_limit_V,
-        fmt::format("goes up to {:.3g} V and is beyond what the converter gives ({:g} V) in {:.0f} % of the rows: "
-                    "the column is not in volts, or the data sheet's limit is not right",
-                    largest, data.dac_limit_V,
-                    100.0 * static_cast<double>(beyond) / static_cast<double>(record.size())));
+    faults.add(LogFaultKind::command_scale, &Record::u_V, record.t_s.front(), largest / data.dac_limit_V,
+               fmt::format("reaches {:.3g} V and exceeds the converter's limit ({:g} V) in {:.0f} % of the rows: the "
+                           "column is not in volts, or the data sheet's limit is wrong",
+                           largest, data.dac_limit_V,
+                           100.0 * static_cast<double>(beyond) / static_cast<double>(record.size())));
   if (largest > kTiny * data.dac_limit_V || !(largest > 0.0)) return;
   const std::optional<Motion> motion = motion_if_long_enough(record, data, {});
   if (!motion || std::ranges::find(motion->counts, true) == motion->counts.end()) return;
-  faults.add(
-      LogFaultKind::command_scale, &Record::u_V, record.t_s.front(), largest / data.dac_limit_V,
-      fmt::format("the axis slides though the command never exceeds {:.3g} V, {:.2g} of what the converter gives: "
-                  "the column is not in volts; scale it",
-                  largest, largest / data.dac_limit_V));
+  faults.add(LogFaultKind::command_scale, &Record::u_V, record.t_s.front(), largest / data.dac_limit_V,
+             fmt::format("the axis moves although the command never exceeds {:.3g} V, {:.2g} of the converter's limit: "
+                         "the column is not in volts; scale it",
+                         largest, largest / data.dac_limit_V));
 }
 
 void find_wrong_scales(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
@@ -165,7 +159,7 @@ void find_wrong_scales(const Record& record, const sim::DriveDescription& model,
   const bool against = sure(found->inertia) && found->inertia.value < 0.0;
   if ((against || !sure(found->inertia)) && (pushes || (against && found->positive->value < found->negative->value))) {
     faults.add(LogFaultKind::command_sign, command, record.t_s.front(), -1.0,
-               "the axis accelerates against its command, and friction pushes it: turn the sign of the command or of "
+               "the axis accelerates against its command, and friction drives it: invert the sign of the command or of "
                "position and speed");
     return;
   }
@@ -181,15 +175,15 @@ void find_wrong_scales(const Record& record, const sim::DriveDescription& model,
   if (off(inertia) && alike(inertia, level)) {
     const double factor = std::sqrt(inertia * level);
     faults.add(LogFaultKind::command_scale, command, record.t_s.front(), factor,
-               fmt::format("inertia and friction both come out {:.4g} times the model's: the column is not in its unit "
-                           "(or the drive's gains in the model are not right); divide it by {:.4g}",
+               fmt::format("inertia and friction both come out {:.4g} times the model's: the column has the wrong unit "
+                           "(or the model's gains are wrong); divide it by {:.4g}",
                            factor, factor));
   } else if (record.has_position() != record.has_speed() && off(inertia) && alike(inertia, viscous) &&
              alike(level, 1.0)) {
     faults.add(LogFaultKind::position_scale, record.has_position() ? &Record::x : &Record::w, record.t_s.front(),
                1.0 / inertia,
                fmt::format("inertia and viscous friction come out {:.4g} times the model's, Coulomb friction does not: "
-                           "the column is not in its unit; multiply it by {:.4g}",
+                           "the column has the wrong unit; multiply it by {:.4g}",
                            inertia, inertia));
   }
 }
@@ -209,8 +203,8 @@ void find_time_shifts(const Record& record, const sim::DriveDescription& model, 
     faults.add(LogFaultKind::time_shift, record.u_V.empty() ? &Record::i_A : &Record::u_V, record.t_s.front(), shift_s,
                late_current
                    ? fmt::format("runs {:g} ms ({} samples) behind the motion that it causes", 1e3 * shift_s, *samples)
-                   : fmt::format("the axis answers {:g} ms ({} samples) {} its command, which no drive does: shift "
-                                 "the column",
+                   : fmt::format("the axis responds {:g} ms ({} samples) {} its command, which is physically "
+                                 "impossible: shift the column",
                                  1e3 * std::abs(shift_s), std::abs(*samples), shift_s > 0.0 ? "before" : "after"),
                !late_current);
   }
@@ -249,15 +243,14 @@ void find_wrong_sheet(const Record& record, const sim::DriveDescription& model, 
   const char* unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (!model.effects.empty() && !record.drive.empty() && !model.name.empty() && record.drive != model.name)
     faults.add(LogFaultKind::other_drive, record.has_position() ? &Record::x : &Record::w, record.t_s.front(), 0.0,
-               fmt::format("of drive '{}', and the model is of '{}'", record.drive, model.name), false);
+               fmt::format("from drive '{}', but the model is of '{}'", record.drive, model.name), false);
   if (model.data.encoder_resolution > 0.0 || !record.has_position()) return;
   if (const double step = position_grid(record); step > 0.0)
-    faults.add(
-        LogFaultKind::no_encoder, &Record::x, record.t_s.front(), step,
-        fmt::format("all positions are multiples of {0:.6g} {1}, and the data sheet knows no encoder, so that the "
-                    "noise floor is too low: add [drive.encoder] resolution_{1} = {0:.6g}",
-                    step, unit),
-        false);
+    faults.add(LogFaultKind::no_encoder, &Record::x, record.t_s.front(), step,
+               fmt::format("all positions are multiples of {0:.6g} {1}, but the data sheet has no encoder, so the "
+                           "noise floor is too low: add [drive.encoder] resolution_{1} = {0:.6g}",
+                           step, unit),
+               false);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ std::vector<LogFault> MeasurementGate::check(Record& record) const {
     const std::string column(name_in_file(record, &Record::w));
     return {{LogFaultKind::swapped, column, record.path, record.t_s.front(), 0.0,
              fmt::format("{}: the change of {} follows {}, as a position follows its speed: the two columns are "
-                         "exchanged; exchange their names",
+                         "interchanged; exchange their names",
                          file_name(record), column, name_in_file(record, &Record::x))}};
   }
   std::vector<LogFault> faults;
@@ -119,7 +119,7 @@ void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<R
         overlap.whole ? std::string("the same rows")
                       : fmt::format("{:.3g} s, from {:.4g} s on, are the same rows", common_s, overlap.begin_s),
         file_name(first));
-    message += judges                                 ? "what trained cannot judge; give a record of another motion"
+    message += judges                                 ? "training data cannot validate; give a record of another motion"
                : overlap.whole && !options_.as_logged ? "it counts once"
                                                       : "they count twice";
     faults.push_back({LogFaultKind::same_record,
@@ -164,8 +164,8 @@ void MeasurementGate::compare_roles(std::vector<Record>& training, std::vector<R
                         ? "a scale changed between the records"
                         : "another load, or another scale";
   faults.push_back({LogFaultKind::records_disagree, column, odd.path, odd.t_s.front(), disagreement->factor,
-                    fmt::format("{}, column {}: {} out {:.4g} times what the other records say: {}; record again under "
-                                "one setting, or leave the record out",
+                    fmt::format("{}, column {}: {} out {:.4g} times as large as in the other records: {}; record again "
+                                "under one setting, or leave the record out",
                                 file_name(odd), column, what, disagreement->factor, why)});
 }
 
@@ -191,8 +191,8 @@ void MeasurementGate::shift_late_currents(std::vector<Record>& training, std::ve
         own->message += "; shifted back here";
       else
         faults.push_back({LogFaultKind::time_shift, current, record.path, record.t_s.front(), shift_s,
-                          fmt::format("{}, column {}: another record of this logger has it {:g} ms late, and this one "
-                                      "does not tell; shifted back here alike",
+                          fmt::format("{}, column {}: it is {:g} ms late in another record of this logger, and this "
+                                      "record cannot show it; shifted back by the same time",
                                       file_name(record), current, 1e3 * shift_s),
                           false});
     }
@@ -207,8 +207,8 @@ void MeasurementGate::share_zero(std::vector<Record>& training, std::vector<Reco
     Record& record = *records[other.record];
     const bool rotary = drive_.data.kind == sim::DriveKind::rotary;
     std::string message = fmt::format(
-        "{}: what repeats along the travel lies {:.4g} {} from where {} has it, alike in size: the axis was homed anew "
-        "between them. What goes with the position is judged by its size alone",
+        "{}: periodic effects are shifted by {:.4g} {} from {}, with equal amplitude: the axis was homed again between "
+        "them. Effects that depend on position are compared by amplitude only",
         file_name(record), other.shift, rotary ? "mm" : "m", file_name(*records[other.reference]));
     if (!options_.as_logged) {
       for (auto* column : {&record.x, &record.x2, &record.x_ref})
@@ -235,8 +235,10 @@ Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Re
   for (LogFault& fault : faults) {
     fault.accepted = fault.fatal && is_accepted(fault);
     if (!fault.fatal || fault.accepted) continue;
-    fatal += fmt::format("{}{}\n  fault of the log: {}; --accept {} goes on all the same", fatal.empty() ? "" : "\n",
-                         fault.message, log_fault_family(fault.kind), log_fault_family(fault.kind));
+    fatal += fmt::format(
+        "{}{}\n"
+        "  fault of the log: {}; --accept {} continues anyway",
+        fatal.empty() ? "" : "\n", fault.message, log_fault_family(fault.kind), log_fault_family(fault.kind));
   }
   if (!fatal.empty()) throw FaultyLog(fatal, faults);
   return {std::move(training), std::move(validation), std::move(faults)};

@@ -1,6 +1,6 @@
 #include "host/evidence/period_search.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>

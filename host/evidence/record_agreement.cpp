@@ -1,9 +1,10 @@
 #include "host/evidence/record_agreement.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "host/dense_solutions.hpp"
 #include "host/evidence/channel_shift.hpp"
 #include "host/identify/tachometer.hpp"
 
@@ -33,7 +34,7 @@ struct RigidEquations {
   double total = 0.0;
   std::size_t rows = 0;
 
-  Eigen::Vector4d solve() const { return normal.completeOrthogonalDecomposition().solve(cross); }
+  Eigen::Vector4d solve() const { return least_norm_solution(normal, cross); }
   /// Norm of what is left over the norm of the effort.
   double left(const Eigen::Vector4d& theta) const {
     const double squares = total - 2.0 * theta.dot(cross) + theta.dot(normal * theta);
@@ -43,7 +44,7 @@ struct RigidEquations {
   double scale_of(const Eigen::Vector4d& theta) const { return theta.dot(cross) / theta.dot(normal * theta); }
   /// By how much of itself the inertia could be off if all that is left looked like acceleration.
   double doubt(const Eigen::Vector4d& theta) const {
-    const double alone = normal.completeOrthogonalDecomposition().pseudoInverse()(0, 0);
+    const double alone = pseudo_inverse(normal)(0, 0);
     return left(theta) * std::sqrt(total * alone) / std::abs(theta(0));
   }
   RigidEquations& operator+=(const RigidEquations& other) {

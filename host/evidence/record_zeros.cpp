@@ -1,6 +1,6 @@
 #include "host/evidence/record_zeros.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "host/dense_solutions.hpp"
 #include "host/evidence/channel_shift.hpp"
 #include "host/evidence/period_search.hpp"
 
@@ -90,7 +91,7 @@ std::optional<TravelResidual> travel_residual(const Record& record, const sim::D
     residual.weight[2].push_back(motion->effort[k]);
     speeds += std::abs(w);
   }
-  const Eigen::VectorXd left = effort - phi * phi.completeOrthogonalDecomposition().solve(effort);
+  const Eigen::VectorXd left = effort - phi * least_norm_solution(phi, effort);
   residual.left.assign(left.begin(), left.end());
   residual.size = left.norm();
   const auto [low, high] = std::ranges::minmax(residual.x);

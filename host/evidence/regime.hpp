@@ -17,7 +17,7 @@ inline constexpr Regime kRegimes[] = {Regime::standstill,       Regime::reversal
 /// "constant_speed", as in JSON.
 std::string_view regime_name(Regime regime);
 
-/// Travel after a reversal that counts as one, mm or m: 50 um, where elastic contacts are still winding up.
+/// Travel after a reversal that still belongs to it, mm or m: 50 um, while elastic contacts wind up.
 double reversal_travel(const sim::DataSheet& data);
 
 /// One element a sample. A saturated command comes before all others, standstill before a reversal.

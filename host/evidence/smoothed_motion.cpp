@@ -1,12 +1,12 @@
 #include "host/evidence/smoothed_motion.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/statistics.hpp"
@@ -120,8 +120,8 @@ std::vector<double> command_volts(const Record& record, const sim::DataSheet& da
                                   : 0.0;
   if (record.i_A.empty())
     throw Failure(ExitCode::bad_input, record.path +
-                                           ": no effort was recorded (u_V or i_A), which this needs; axistool compare "
-                                           "tells of the tracking error");
+                                           ": the record has no command or current (u_V or i_A), which this needs; "
+                                           "axistool compare shows the tracking error");
   if (gain_A_per_V <= 0.0)
     throw Failure(ExitCode::bad_input, record.path +
                                            ": no column u_V, and i_A needs amplifier_gain_A_per_V (a linear drive: "
@@ -144,7 +144,7 @@ MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data,
   continuous(1, 1) = -viscous / inertia;
   continuous(1, 2) = -gain;
   continuous(1, 3) = gain;
-  const Eigen::Matrix4d discrete = (continuous * period_s).exp();
+  const Eigen::Matrix4d discrete = exponential(continuous * period_s);
   A_ = discrete.topLeftCorner<3, 3>();
   B_ = discrete.topRightCorner<3, 1>();
 
@@ -215,7 +215,7 @@ void MotionSmoother::solve_gains(const std::vector<Observation>& observed, doubl
   Matrix3d smoothed = filtered[n - 1];
   for (std::size_t k = n; k-- > 0;) {
     if (k + 1 < n) {
-      gains_[k].backward = predicted[k + 1].ldlt().solve(A_ * filtered[k]).transpose();
+      gains_[k].backward = symmetric_solution_of_3(predicted[k + 1], A_ * filtered[k]).transpose();
       smoothed = filtered[k] + gains_[k].backward * (smoothed - predicted[k + 1]) * gains_[k].backward.transpose();
     }
     motion_.x_variance[k] = smoothed(0, 0);

@@ -61,8 +61,8 @@ std::optional<SpeedGap> widest_speed_gap(const std::vector<const PreparedRecord*
 
 std::string speeds_to_record(const SpeedGap& gap) {
   return fmt::format(
-      "No record holds a constant speed between {:.2g} and {:.2g} mm/s: shapes of the friction curve there cannot be "
-      "told apart. Record a few speeds in between, both ways.",
+      "No record holds a constant speed between {:.2g} and {:.2g} mm/s, so the shape of the friction curve there is "
+      "uncertain. Record a few speeds in between, in both directions.",
       gap.low_mm_s, gap.high_mm_s);
 }
 

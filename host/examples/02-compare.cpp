@@ -1,4 +1,4 @@
-// Error over floor on a record that the model has not seen: about 1 for a perfect model.
+// Error over noise floor on a held-back record: about 1 for a perfect model.
 #include <cstdio>
 #include <string>
 

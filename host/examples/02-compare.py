@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Error over floor on a record that the model has not seen: about 1 for a perfect model."""
+"""Error over noise floor on a held-back record: about 1 for a perfect model."""
 import sys
 
 import axistool

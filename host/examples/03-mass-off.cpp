@@ -1,4 +1,4 @@
-// A fifth too much inertia: where the prediction fails.
+// Inertia 20 % too high: shows where the prediction fails.
 #include <cstdio>
 #include <string>
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A fifth too much inertia: where the prediction fails."""
+"""Inertia 20 % too high: shows where the prediction fails."""
 import sys
 
 import axistool

@@ -1,5 +1,5 @@
 #!/bin/sh
-# A fifth too much inertia: where the prediction fails.
+# Inertia 20 % too high: shows where the prediction fails.
 set -eu
 drive=${1:-/usr/share/axistool/drive}
 model=$(mktemp --suffix .toml)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A machine of one's own behind the simulated board (axis-plant/1): a screw with friction that cogs, in metres, newtons
-and seconds of its own. README.md has a command to try it with."""
+"""Your own machine behind the simulated board (axis-plant/1): a screw with friction and cogging, by its own equations.
+README.md has a command to try it."""
 import math
 import random
 import sys

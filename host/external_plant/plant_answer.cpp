@@ -23,6 +23,13 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
+/// The number of the period stands first.
+bool is_period(std::string_view field, std::uint64_t k) {
+  std::uint64_t period = 0;
+  const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), period);
+  return fault == std::errc() && end == field.data() + field.size() && period == k;
+}
+
 [[noreturn]] void refuse(const std::string& what, std::uint64_t k, std::size_t axes) {
   std::string form = fmt::format("{}", k);
   for (std::size_t axis = 0; axis < axes; ++axis) form += " X W";
@@ -48,14 +55,49 @@ std::string plant_line(std::uint64_t k, std::span<const std::optional<double>> c
   return line + '\n';
 }
 
+PlantGreeting parse_plant_greeting(std::string_view line) {
+  constexpr double kMostAxes = 64.0, kLongest_s = 1.0;
+  const std::vector<std::string_view> fields = fields_of(line);
+  const auto axes = fields.size() == 3 ? parse_number(fields[1]) : std::nullopt;
+  const auto period_s = fields.size() == 3 ? parse_number(fields[2]) : std::nullopt;
+  if (!axes || !period_s || fields[0] != "axis-plant/1" || !(*axes >= 1.0 && *axes <= kMostAxes) ||
+      std::trunc(*axes) != *axes || !(*period_s > 0.0 && *period_s <= kLongest_s))
+    throw Failure(ExitCode::protocol,
+                  fmt::format("the first line is no greeting; it is \"axis-plant/1 AXES PERIOD_S\": 1 to {:g} axes, a "
+                              "period up to {:g} s",
+                              kMostAxes, kLongest_s));
+  return {static_cast<std::size_t>(*axes), *period_s};
+}
+
+std::vector<std::optional<double>> parse_plant_line(std::string_view line, std::uint64_t k, std::size_t axes) {
+  const auto wrong = [&](const std::string& what) {
+    return Failure(ExitCode::protocol,
+                   fmt::format("{}; a line is \"{} U\": a voltage or off, for each of {} axes", what, k, axes));
+  };
+  const std::vector<std::string_view> fields = fields_of(line);
+  if (fields.size() != 1 + axes) throw wrong(fmt::format("{} fields where {} belong", fields.size(), 1 + axes));
+  if (!is_period(fields[0], k)) throw wrong(fmt::format("it begins with '{}' in period {}", fields[0], k));
+  std::vector<std::optional<double>> commands_V(axes);
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    const std::string_view text = fields[1 + axis];
+    commands_V[axis] = number(text);
+    if (!commands_V[axis] && text != "off") throw wrong(fmt::format("'{}' is no voltage", text));
+  }
+  return commands_V;
+}
+
+std::string plant_answer(std::uint64_t k, std::span<const sim::ForeignReading> readings) {
+  std::string line = fmt::format("{}", k);
+  for (const sim::ForeignReading& reading : readings)
+    line += reading.w ? fmt::format(" {} {}", reading.x, *reading.w) : fmt::format(" {} -", reading.x);
+  return line + '\n';
+}
+
 std::vector<sim::ForeignReading> parse_plant_answer(std::string_view line, std::uint64_t k, std::size_t axes) {
   const std::vector<std::string_view> fields = fields_of(line);
   if (fields.size() != 1 + 2 * axes)
     refuse(fmt::format("{} fields where {} belong", fields.size(), 1 + 2 * axes), k, axes);
-  std::uint64_t period = 0;
-  const auto [end, fault] = std::from_chars(fields[0].data(), fields[0].data() + fields[0].size(), period);
-  if (fault != std::errc() || end != fields[0].data() + fields[0].size() || period != k)
-    refuse(fmt::format("it begins with '{}' in period {}", fields[0], k), k, axes);
+  if (!is_period(fields[0], k)) refuse(fmt::format("it begins with '{}' in period {}", fields[0], k), k, axes);
   std::vector<sim::ForeignReading> readings(axes);
   for (std::size_t axis = 0; axis < axes; ++axis) {
     const std::string_view position = fields[1 + 2 * axis], speed = fields[2 + 2 * axis];

@@ -42,7 +42,7 @@ std::string what_is_new(const ScenarioRun& before, const ScenarioRun& after, con
 Table table_of(const ScenarioRun& before, const ScenarioRun& after) {
   Table table;
   table.title = "Errors, µm";
-  table.headings = {"", "before", "after", "of it is left"};
+  table.headings = {"", "before", "after", "of it remains"};
   const auto add = [&table](const Measured& one) {
     table.rows.push_back({one.what, format_value(one.before), format_value(one.after),
                           one.before > 0.0 ? fmt::format("{:.0f} %", 100.0 * one.after / one.before) : "–"});
@@ -60,7 +60,7 @@ Table table_of(const ScenarioRun& before, const ScenarioRun& after) {
 TimePlot errors_over_time(const ScenarioRun& before, const ScenarioRun& after) {
   TimePlot plot;
   plot.title = "Errors over time";
-  plot.caption = "Reference less encoder; distance from the path.";
+  plot.caption = "Reference minus encoder; distance from the path.";
   plot.t_s = before.records[0].t_s;
   const auto add = [&](const std::string& what, const std::vector<double>& one, const std::vector<double>& other) {
     if (one.size() == plot.t_s.size() && other.size() == plot.t_s.size())
@@ -86,8 +86,8 @@ Report before_after_report(const Scenario& scenario, const ScenarioRun& before, 
   verdict.label = first.after < first.before ? "better" : "no better";
   verdict.tone = !after.holds() ? Tone::bad : first.after < first.before ? Tone::good : Tone::attention;
   verdict.headline = capitalised(change(first));
-  if (!after.holds()) verdict.sentences.push_back("Afterwards something that must hold does not.");
-  if (after.misses_aim()) verdict.sentences.push_back("Afterwards an aim of the scenario is still missed.");
+  if (!after.holds()) verdict.sentences.push_back("Afterwards a required condition fails.");
+  if (after.misses_aim()) verdict.sentences.push_back("Afterwards a target of the scenario is still missed.");
   if (!scenario.about.empty()) verdict.sentences.push_back(scenario.about);
   for (const ReplacedModel& model : models) verdict.sentences.push_back(what_is_new(before, after, model));
   report.verdict(verdict);

@@ -214,7 +214,7 @@ const char* reaction_name(firmware::FaultReaction reaction) {
     case firmware::FaultReaction::ramp_stop:
       return "stops along a ramp";
     case firmware::FaultReaction::sensor_stop:
-      return "slows down by the sensor that is left; drops the enable at once where there is none";
+      return "slows down with the remaining sensor; drops the enable at once if there is none";
     case firmware::FaultReaction::drop_enable:
       return "drops the enable at once";
     case firmware::FaultReaction::none:

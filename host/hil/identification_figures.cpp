@@ -19,8 +19,7 @@ constexpr double kScalings[] = {5.0, 7.5, 10.0, 12.5, 15.0};
 TimePlot prediction_plot(const Record& steps, const sim::DriveDescription& machine, std::string_view axis) {
   TimePlot plot;
   plot.title = fmt::format("Axis {}: steps, speeds and their prediction (as Figs 6 and 8)", axis);
-  plot.caption =
-      "Both models are given the command alone, from rest to the end. Simple least squares leaves friction out.";
+  plot.caption = "Both models get only the command, from rest to the end. Simple least squares ignores friction.";
   plot.t_s = steps.t_s;
   TracePanel speed{"speed", "rad/s", {{"measured", SeriesRole::measured, steps.w}}};
   TracePanel error{"prediction error", "rad/s", {}};

@@ -31,7 +31,7 @@ Verdict index_verdict(const std::vector<IndexLine>& lines) {
   for (const IndexLine& line : lines) {
     if (!line.holds) verdict.sentences.push_back(fmt::format("{} FAILS: {}.", title_of(line), line.summary));
     if (line.holds && line.misses_aim)
-      verdict.sentences.push_back(fmt::format("{} misses its aim: {}.", title_of(line), line.summary));
+      verdict.sentences.push_back(fmt::format("{} misses its target: {}.", title_of(line), line.summary));
   }
   return verdict;
 }
@@ -42,9 +42,9 @@ Report scenario_index(const std::vector<IndexLine>& lines) {
   Report report("Scenarios", fmt::format("{} runs of the firmware around simulated drives", lines.size()));
   report.verdict(index_verdict(lines));
   Table table;
-  table.headings = {"scenario", "", "what came of it", "what it is"};
+  table.headings = {"scenario", "", "result", "what it is"};
   for (const IndexLine& line : sorted) {
-    const char* outcome = !line.holds ? "FAILS" : line.misses_aim ? "misses its aim" : "holds";
+    const char* outcome = !line.holds ? "FAILS" : line.misses_aim ? "misses its target" : "holds";
     table.rows.push_back({title_of(line), outcome, line.summary, line.name});
     table.links.push_back(line.page);
   }

@@ -63,9 +63,10 @@ class ScenarioReader {
     if (name == "paper x" || name == "paper y") return *paper_drive(name.substr(6));
     const auto file = std::filesystem::path(path_).parent_path() / name;
     if (!std::filesystem::is_regular_file(file))
-      from.fail(key, fmt::format("there is no model file '{}'; name one beside the scenario, or write \"paper x\" or "
-                                 "\"paper y\"",
-                                 file.string()));
+      from.fail(
+          key,
+          fmt::format("there is no model file '{}'; give one beside the scenario, or write \"paper x\" or \"paper y\"",
+                      file.string()));
     protect_input(file.string());
     return read_model(file.string());
   }
@@ -178,7 +179,7 @@ class ScenarioReader {
       const double radius = length_mm(from, "radius_mm", 35.0);
       const double turns = from.positive("turns", 1.0);
       if (turns > 100.0 || turns != static_cast<int>(turns))
-        from.fail("turns", "a whole number from 1 to 100 belongs here");
+        from.fail("turns", "expected a whole number from 1 to 100");
       move.path = Path::circle(radius, static_cast<int>(turns));
     } else {
       const double side = length_mm(from, "side_mm", 40.0), corner = from.positive("corner_mm", 8.0);
@@ -201,7 +202,7 @@ class ScenarioReader {
     fault.injection = &injections()[from.choice("kind", kinds)];
     if (!fault.injection->of_board) fault.axis = from.choice("axis", kAxes);
     if (fault.injection->kind == "blocked" && !scenario_.axes[fault.axis].program.empty())
-      from.fail("kind", "nobody can block a machine that is another program: let the program do it");
+      from.fail("kind", "an external plant program cannot be blocked from here: let the program do it");
     if (!fault.injection->unit.empty()) fault.value = from.number("value", fault.injection->usual);
     if (std::abs(fault.value) > 1e5) from.fail("value", "it must be within 1e5");
     if (from.has("until_s")) fault.until_s = time(from, "until_s");
@@ -234,7 +235,7 @@ class ScenarioReader {
     from.refuse_rest();
     const bool bounded = expected.at_most || expected.at_least || expected.at_most_share;
     if (expected.signal.empty() == bounded)
-      from.fail(bounded ? "at_most" : "signal", "signal and at_most, at_least or at_most_share belong together");
+      from.fail(bounded ? "at_most" : "signal", "signal needs at_most, at_least or at_most_share, and vice versa");
     if (expected.signal.empty() && !expected.fault && !expected.state)
       from.fail("signal", "nothing is expected; add fault, state, or signal with a bound");
     scenario_.expectations.push_back(std::move(expected));

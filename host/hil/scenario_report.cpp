@@ -161,7 +161,7 @@ Facts figures(const Scenario& scenario, const ScenarioRun& run) {
 
 ScenarioOutcome outcome_of(const ScenarioRun& run) {
   if (!run.holds()) return {Tone::bad, "FAILS"};
-  if (run.misses_aim()) return {Tone::attention, "misses its aim"};
+  if (run.misses_aim()) return {Tone::attention, "misses its target"};
   return {Tone::good, run.expectations.empty() ? "ran" : "holds"};
 }
 

@@ -48,9 +48,8 @@ void start_programs(const Scenario& scenario, std::array<MachineAxis, hal::kAxis
   for (std::size_t i = 0; i < axes.size(); ++i)
     if (!scenario.axes[i].program.empty()) served[scenario.axes[i].program].push_back(i);
   if (!served.empty() && !scenario.programs_allowed)
-    throw Failure(ExitCode::refused,
-                  fmt::format("{}: it runs the program '{}', which nobody has agreed to: read it, then allow it",
-                              scenario.path, visible_text(served.begin()->first)));
+    throw Failure(ExitCode::refused, fmt::format("{}: it runs the program '{}' without consent: read it, then allow it",
+                                                 scenario.path, visible_text(served.begin()->first)));
   for (const auto& [command, places] : served) {
     const double period_s = axes[places.front()].drive.data.sample_period_s;
     const auto plant = std::make_shared<ExternalPlant>(command, places.size(), period_s, kPatience);

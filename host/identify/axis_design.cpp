@@ -67,17 +67,16 @@ void describe_observer(AxisDesign& design, double sample_period_s) {
   }
 }
 
-/// Gains that are numbers, and an observer that settles.
+/// Checks that gains are finite and the observer is stable.
 void require_usable(const AxisDesign& design) {
   const bool settles = std::ranges::all_of(design.observer_poles, [](const auto& z) { return std::abs(z) < 1.0; });
   if (settles && design.Kobs.allFinite() && design.Kc.allFinite()) return;
-  throw Failure(
-      ExitCode::refused,
-      fmt::format("no usable design: {}; give variances and a bandwidth that belong to one machine (--rwd {:g} "
-                  "V², --rx {:g}, --ru {:g} V², --fc {:g} Hz, --zeta {:g})",
-                  settles ? "gains that are no numbers" : "the observer would not settle",
-                  design.used.disturbance_variance, design.used.position_variance.value_or(0.0),
-                  design.used.command_variance.value_or(0.0), design.used.bandwidth_Hz, design.used.damping));
+  throw Failure(ExitCode::refused,
+                fmt::format("no usable design: {}; give variances and a bandwidth that suit this machine (--rwd {:g} "
+                            "V², --rx {:g}, --ru {:g} V², --fc {:g} Hz, --zeta {:g})",
+                            settles ? "the gains are not finite" : "the observer would be unstable",
+                            design.used.disturbance_variance, design.used.position_variance.value_or(0.0),
+                            design.used.command_variance.value_or(0.0), design.used.bandwidth_Hz, design.used.damping));
 }
 
 }  // namespace
@@ -87,14 +86,15 @@ Eigen::Matrix3d solve_estimator_dare(const Eigen::Matrix3d& A, const Eigen::Matr
   constexpr int kMaxDoublings = 60;  // each squares the error: 60 is far beyond any detectable axis
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d a = A.transpose();
-  const Eigen::MatrixXd weight = R.inverse(), weighted = C.transpose() * weight;  // named: one product compiles faster
+  const Eigen::MatrixXd weight = square_inverse(R),
+                        weighted = C.transpose() * weight;  // named: one product compiles faster
   Eigen::Matrix3d g = weighted * C;
   Eigen::Matrix3d h = Q;
   for (int k = 0; k < kMaxDoublings; ++k) {
-    const Eigen::PartialPivLU<Eigen::Matrix3d> coupling(I + g * h);
-    const Eigen::Matrix3d step = a.transpose() * h * coupling.solve(a);
-    g += a * coupling.solve(g) * a.transpose();
-    a = (a * coupling.solve(a)).eval();
+    const Eigen::Matrix3d coupling = I + g * h, next = square_solution(coupling, a);
+    const Eigen::Matrix3d step = a.transpose() * h * next;
+    g += a * square_solution(coupling, g) * a.transpose();
+    a = (a * next).eval();
     h += step;
     h = (0.5 * (h + h.transpose())).eval();
     if (!h.allFinite()) break;
@@ -112,7 +112,7 @@ Eigen::RowVector2d place_poles(const SampledAxis& axis, double natural_frequency
   const Eigen::Matrix2d polynomial = axis.Ad * axis.Ad - sum * axis.Ad + product * Eigen::Matrix2d::Identity();
   Eigen::Matrix2d controllability;
   controllability << axis.Bd, axis.Ad * axis.Bd;
-  return Eigen::RowVector2d(0.0, 1.0) * controllability.inverse() * polynomial;
+  return Eigen::RowVector2d(0.0, 1.0) * square_inverse(controllability) * polynomial;
 }
 
 AxisDesign design_axis(const sim::DriveDescription& model, const DesignOptions& options) {
@@ -130,7 +130,7 @@ AxisDesign design_axis(const sim::DriveDescription& model, const DesignOptions& 
   R(0, 0) = *design.used.position_variance;
   if (design.used.tach_variance) R(1, 1) = *design.used.tach_variance;
   const Eigen::Matrix3d P = solve_estimator_dare(design.model.A, C, Q, R);
-  const Eigen::MatrixXd CP = C * P, innovation = CP * C.transpose() + R, weight = innovation.inverse();
+  const Eigen::MatrixXd CP = C * P, innovation = CP * C.transpose() + R, weight = square_inverse(innovation);
   const Eigen::MatrixXd PC = P * C.transpose();
   design.Kobs = PC * weight;
   describe_observer(design, period_s);

@@ -9,7 +9,7 @@
 
 namespace host {
 
-/// What the design is tuned with. Defaults are the paper's: eqs. (10), (12), (47), (48) and p. 1504.
+/// Tuning parameters of the design. Defaults are the paper's: eqs. (10), (12), (47), (48) and p. 1504.
 struct DesignOptions {
   std::optional<double> tach_variance;     ///< Rw, (rad/s)^2 or (m/s)^2; default 0.05 rotary, the drive's own if linear
   double disturbance_variance = 0.01;      ///< Rwd, V^2 a sample, > 0: how lively the disturbance estimate is

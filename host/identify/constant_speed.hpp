@@ -1,4 +1,4 @@
-// Stretches of constant speed in a record: where friction can be read off without acceleration.
+// Intervals of constant speed in a record, where friction shows without acceleration.
 #pragma once
 
 #include <vector>

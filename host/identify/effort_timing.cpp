@@ -69,7 +69,7 @@ struct Step {
 };
 std::optional<Step> step_of(const Motion& motion, std::vector<Terms>& terms, const std::vector<double>& effort) {
   BlockedRegression<kTerms> regression(rows_per_block(terms.size(), 1.0 / motion.sample_rate_Hz));
-  // What a record lacks (a direction, the position) stays at zero instead of making the equations singular.
+  // Terms that a record lacks (a direction, the position) stay at zero instead of making the equations singular.
   constexpr double kNegligible = 1e-6;
   for (int term = 0; term < kTerms; ++term) regression.add(kNegligible * Terms::Unit(term), 0.0);
   std::size_t row = 0;
@@ -86,8 +86,8 @@ std::optional<Step> step_of(const Motion& motion, std::vector<Terms>& terms, con
   const Regression found = regression.solve();
   const double variance = found.covariance(kTerms - 1, kTerms - 1);
   if (!std::isfinite(found.parameters(kTerms - 1)) || !(variance > 0.0) || !std::isfinite(variance)) return {};
-  // What the terms leave is more than noise on a machine that hides something, and may go with the effort's slope: by a
-  // correlation, it is assumed, as large as its share.
+  // On a machine with a missing effect the residual is more than noise and may be correlated with the slope of the
+  // torque; the correlation is assumed to be as large as the residual's share.
   const double misled = found.relative_residual * found.relative_residual * std::sqrt(squares / slope_squares);
   return Step{found.parameters(kTerms - 1), variance + misled * misled};
 }

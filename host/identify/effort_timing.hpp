@@ -16,11 +16,11 @@ struct EffortTiming {
   double deviation = 0.0;
 };
 
-/// What is believed of a logged current before its record is looked at: it is held from its row on, as a command is,
-/// give or take a sample (loggers average over the period before, or take the current of one or two periods ago).
+/// Prior for a logged current: it is held from its row on, like a command, within about a sample (loggers average over
+/// the period before, or take the current of one or two periods ago).
 inline constexpr EffortTiming kBelievedTiming{0.5, 1.0};
 
-/// A current farther than this from the believed instant was shifted by more than a logger's habits, samples.
+/// Largest deviation from the prior, in samples, that a logger explains.
 inline constexpr double kLargestTiming = 2.5;
 
 /// Of a command: known. Of a current: what the record's header says, `# effort_timing_samples:` with
@@ -37,7 +37,7 @@ void settle_effort_timing(Record& record, const sim::DataSheet& data);
 /// first and last row hold.
 std::vector<double> acting_current(const Record& record);
 
-/// Whether when their efforts act was found from each record, so that nothing of the drive can be told from it.
+/// Whether the timing was estimated from each record, so that it gives no information on the drive.
 bool timing_explains_delays(const std::vector<const Record*>& records);
 
 /// {"samples", "ci95"} of all records together: weighed by what each tells; as uncertain as they scatter where that is

@@ -1,4 +1,4 @@
-// What to make a drive do so that it can be identified: open-loop steps for inertia, jogs for the friction curve.
+// Excitation for identification: open-loop steps for inertia, jogs for the friction curve.
 #pragma once
 
 #include <array>

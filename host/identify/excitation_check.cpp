@@ -38,14 +38,13 @@ std::string better_excitation(const ExcitationSummary& summary, const sim::DataS
                     2.0 * summary.peak_current_A);
   if (summary.peak_command_V > 0.0) {
     const double suggested = std::min(data.dac_limit_V, 2.0 * summary.peak_command_V);
-    amplitude = summary.peak_command_V < 0.99 * data.dac_limit_V
-                    ? fmt::format(
-                          "steps of about ±{:.2g} V (twice what was tried; the converter gives {:g} V), larger "
-                          "still if the axis does not break away",
-                          suggested, data.dac_limit_V)
-                    : fmt::format(
-                          "the full ±{:g} V; if the axis stands even then, check drive enable, brake and "
-                          "amplifier",
+    amplitude =
+        summary.peak_command_V < 0.99 * data.dac_limit_V
+            ? fmt::format(
+                  "steps of about ±{:.2g} V (twice what was tried; the converter gives {:g} V), larger "
+                  "still if the axis does not break away",
+                  suggested, data.dac_limit_V)
+            : fmt::format("the full ±{:g} V; if the axis still does not move, check drive enable, brake and amplifier",
                           data.dac_limit_V);
   }
   return fmt::format(
@@ -95,18 +94,17 @@ void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data
 
 void require_determined(const RigidEstimate& estimate, const ExcitationSummary& summary, const sim::DataSheet& data) {
   if (std::isfinite(estimate.condition_number) && estimate.inertia.ci95[1] < 0.0)
-    throw Failure(
-        ExitCode::refused,
-        fmt::format("the inertia comes out negative ({:.4g}): the axis accelerates against its command. The sign "
-                    "of the command or of the motion is turned, or channels are swapped",
-                    estimate.inertia.value));
+    throw Failure(ExitCode::refused,
+                  fmt::format("the inertia comes out negative ({:.4g}): the axis accelerates against its command. The "
+                              "sign of the command or of the motion is inverted, or channels are swapped",
+                              estimate.inertia.value));
   const bool determined = std::isfinite(estimate.condition_number) && estimate.inertia.ci95[0] > 0.0;
   if (determined) return;
   throw Failure(
       ExitCode::refused,
-      fmt::format("the record does not determine the inertia (condition number {:.3g}): the speed changes too "
-                  "little or too seldom. {}. Where only steady speeds can be had, write a model by hand with the "
-                  "inertia of the data sheet, held ({}_held = true): axistool diagnose fits friction beside it.",
+      fmt::format("the record does not determine the inertia (condition number {:.3g}): the speed changes too little "
+                  "or too seldom. {}. If only constant speeds are possible, write a model by hand with the data "
+                  "sheet's inertia held fixed ({}_held = true); axistool diagnose then fits the friction.",
                   estimate.condition_number, better_excitation(summary, data),
                   data.kind == sim::DriveKind::rotary ? "J_kg_m2" : "M_kg"));
 }
@@ -120,16 +118,15 @@ std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const Exc
   if (estimate.positive && estimate.negative) {
     const double friction = std::max(estimate.positive->value, -estimate.negative->value);
     if (friction > kDominantShare * summary.peak_effort) {
-      warnings.push_back(fmt::format(
-          "static friction dominates: friction takes {:.0f} % of the motor's largest effort, so the estimates are "
-          "biased. {}.",
-          100.0 * friction / summary.peak_effort, better_excitation(summary, data)));
+      warnings.push_back(
+          fmt::format("static friction dominates: friction needs {:.0f} % of the motor's largest torque or force, so "
+                      "the estimates are biased. {}.",
+                      100.0 * friction / summary.peak_effort, better_excitation(summary, data)));
     }
   }
   if (estimate.inertia.half_width() > kWideInterval * estimate.inertia.value) {
     warnings.push_back(
-        fmt::format("the inertia is known to ±{:.0f} % only: use stronger steps in both directions, or "
-                    "more records",
+        fmt::format("the inertia is known only to ±{:.0f} %: use stronger steps in both directions, or more records",
                     100.0 * estimate.inertia.half_width() / estimate.inertia.value));
   }
   if (estimate.condition_number > kPoorCondition) {

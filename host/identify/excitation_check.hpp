@@ -1,4 +1,4 @@
-// Whether an axis moved enough for an identification to mean anything.
+// Checks that an axis moved enough for an identification.
 #pragma once
 
 #include <string>
@@ -32,8 +32,8 @@ void require_motion(const ExcitationSummary& summary, const sim::DataSheet& data
 /// Throws Failure(refused) when the estimate does not determine the inertia (interval reaches zero, or not a number).
 void require_determined(const RigidEstimate& estimate, const ExcitationSummary& summary, const sim::DataSheet& data);
 
-/// Warnings about an estimate that exists but deserves doubt: static friction dominates (as at the paper's Ku = 5),
-/// regressors nearly dependent, wide interval, negative friction.
+/// Warnings about a doubtful estimate: static friction dominates (as at the paper's Ku = 5), regressors nearly
+/// dependent, wide interval, negative friction.
 std::vector<std::string> judge_estimate(const RigidEstimate& estimate, const ExcitationSummary& summary,
                                         const sim::DataSheet& data);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/dense_matrix.hpp"
 #include "host/identify/least_squares.hpp"
@@ -83,7 +84,7 @@ Range range_of(const std::vector<CurvePoint>& points) {
 }
 
 std::vector<double> weights_of(const std::vector<CurvePoint>& points, double level) {
-  // No point is known better than the law is true: a floor of 0.1 % of the largest friction.
+  // The friction law itself is not exact, so the error of each point is at least 0.1 % of the largest friction.
   std::vector<double> weights;
   for (const CurvePoint& point : points) weights.push_back(1.0 / std::hypot(point.standard_error, 1e-3 * level));
   return weights;
@@ -168,9 +169,9 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
   const Layout& layout = best.layout;
   const double degrees = std::max(1.0, static_cast<double>(points.size()) - static_cast<double>(layout.size()));
   const double excess = std::max(1.0, best.cost / degrees);  // scatter beyond the points' own errors widens
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(best.jacobian, Eigen::ComputeThinV);
-  const Eigen::VectorXd singular = svd.singularValues().cwiseMax(1e-12 * svd.singularValues()(0));
-  const Eigen::MatrixXd root = svd.matrixV() * singular.cwiseInverse().asDiagonal();
+  const RightSingular svd = right_singular(best.jacobian);
+  const Eigen::VectorXd singular = svd.values.cwiseMax(1e-12 * svd.values(0));
+  const Eigen::MatrixXd root = svd.vectors * singular.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd covariance = excess * root * root.transpose();
   const double quantile = student_t_95(degrees);
   const auto half_of = [&](const Eigen::VectorXd& gradient) {
@@ -183,7 +184,7 @@ FrictionFit describe(const Candidate& best, const std::vector<CurvePoint>& point
   };
   const Range range = range_of(points);
   const auto logarithmic = [&](Eigen::Index k) {
-    // What the points do not determine has the range of the search as its interval.
+    // The interval of an undetermined parameter is its search range.
     const double lowest = kLeastOmegaShare * range.slowest;
     const double value = std::exp(best.parameters(k)), half = half_of(unit(k));
     const double highest = kMostOmegaShare * range.top, reach = std::log(highest / lowest);
@@ -234,16 +235,16 @@ void require_speeds(const std::vector<CurvePoint>& points) {
   for (const bool forward : {true, false}) {
     const std::size_t speeds = distinct_speeds(points, forward);
     if (speeds >= 2) continue;
-    throw Failure(
-        ExitCode::refused,
-        fmt::format("only {} constant speed{} {} found; a friction curve needs at least two in each direction, "
-                    "held for 0.3 s or more. Jog at several speeds both ways, for example 0.1, 0.3, 0.5, 1, 3, "
-                    "5, 10, 25, 50, 75, 100 mm/s",
-                    speeds, speeds == 1 ? "" : "s", forward ? "forward" : "backward"));
+    throw Failure(ExitCode::refused,
+                  fmt::format("only {} constant speed{} {} found; a friction curve needs at least two in each "
+                              "direction, held for 0.3 s or more. Jog at several speeds in both directions, for "
+                              "example 0.1, 0.3, 0.5, 1, 3, 5, 10, 25, 50, 75, 100 mm/s",
+                              speeds, speeds == 1 ? "" : "s", forward ? "forward" : "backward"));
   }
 }
 
-/// Four values a direction and the common slope: below five speeds a direction the Stribeck part is anything.
+/// Four values per direction and the common slope: with fewer than five speeds per direction the Stribeck part is
+/// undetermined.
 bool can_tell_stribeck(const std::vector<CurvePoint>& points) {
   constexpr std::size_t kFewest = 5;
   const Range range = range_of(points);

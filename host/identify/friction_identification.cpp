@@ -104,15 +104,14 @@ void cross_check(FrictionIdentification& result) {
   std::string text = fmt::format("the tachometer reads {:+.2f} % ± {:.2f} % against the encoder",
                                  100.0 * (gain.value - 1.0), 100.0 * gain.half_width());
   if (result.viscous_by_disturbance) {
-    text +=
-        fmt::format("; by the Kalman disturbance B would come out as {:.4g}, by the mean control signal it is {:.4g}",
-                    result.viscous_by_disturbance->value, result.fit.viscous.value);
+    text += fmt::format("; B is {:.4g} from the Kalman disturbance and {:.4g} from the mean control signal",
+                        result.viscous_by_disturbance->value, result.fit.viscous.value);
   }
   text +=
       result.method == FrictionMethod::joint
-          ? ". The curve rests on the control signal and the encoder and is not affected; re-scale the tachometer "
-            "before it is used for control"
-          : ". The paper's procedure takes the disturbance as it is: re-scale the tachometer, or use --method joint";
+          ? ". The curve uses the control signal and the encoder and is not affected; re-scale the tachometer before "
+            "using it for control"
+          : ". The paper's procedure uses the uncorrected disturbance: re-scale the tachometer, or use --method joint";
   result.warnings.push_back(text);
 }
 
@@ -121,11 +120,11 @@ void warn_of_unequal_directions(FrictionIdentification& result) {
   constexpr double kClearlyWorse = 2.0;
   const FrictionFit free = fit_friction(by_control_signal(result.points), false);
   if (result.fit.rms < kClearlyWorse * free.rms) return;
-  result.warnings.push_back(
-      fmt::format("the model has one friction level for both directions, but the directions differ (residual {:.3g} "
-                  "against {:.3g} with a level each): a constant torque, an offset of the converter, or friction that "
-                  "differs by direction. Give positive and negative levels, or ask axistool diagnose",
-                  result.fit.rms, free.rms));
+  result.warnings.push_back(fmt::format(
+      "the model has one friction level for both directions, but the directions differ (residual {:.3g}, or {:.3g} "
+      "with one level for each): possible causes are a constant torque, an offset of the converter, or friction that "
+      "differs by direction. Give positive and negative levels, or ask axistool diagnose",
+      result.fit.rms, free.rms));
 }
 
 void warn_of_other_effects(FrictionIdentification& result) {
@@ -133,9 +132,8 @@ void warn_of_other_effects(FrictionIdentification& result) {
        {"coulomb_asymmetry", "viscous_asymmetry", "nonlinear_viscous", "constant_torque", "dac_offset"}) {
     if (result.model.find(kind) == nullptr) continue;
     result.warnings.push_back(
-        fmt::format("the model also has {}, which the points of friction contain: what it describes "
-                    "is now in the curve as well. Remove it, or fit all together with axistool "
-                    "improve",
+        fmt::format("the model also has {}, which is now included in the friction curve as well. Remove it, or fit all "
+                    "together with axistool improve",
                     kind));
   }
 }
@@ -165,9 +163,8 @@ FrictionIdentification identify_friction(const Measurements& measured, const sim
     if (observed) result.viscous_by_disturbance = fit_friction(by_disturbance(result.points, true), symmetric).viscous;
     if (!result.fit.has_stribeck) {
       result.warnings.push_back(
-          "the points show no static friction above the Coulomb level, so the model has no stribeck effect; five or "
-          "more "
-          "speeds each way, some of them far below 1 mm/s, would show it if there is any");
+          "the points show no static friction above the Coulomb level, so the model has no stribeck effect; to test "
+          "for it, jog at five or more speeds in each direction, some far below 1 mm/s");
     }
   }
   result.model = model_with(model, result.fit, symmetric, method == FrictionMethod::joint, origin_of(records));

@@ -1,4 +1,4 @@
-// Friction at constant speeds, read twice: from the mean control signal and from the Kalman filter's disturbance.
+// Friction at constant speeds, by two methods: from the mean control signal and from the Kalman filter's disturbance.
 #pragma once
 
 #include <optional>

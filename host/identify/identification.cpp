@@ -76,8 +76,8 @@ sim::DriveDescription model_from(const sim::DriveDescription& drive, const Rigid
   return model;
 }
 
-/// Mends what no model file may hold, and says so. Levels of which one pushes are an offset beyond friction: half
-/// their difference is friction.
+/// Corrects values that no model file may hold, with a warning. If one level has the wrong sign, an offset exceeds the
+/// friction: half the difference is friction.
 void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& estimate,
                          std::vector<std::string>& warnings) {
   for (sim::EffectEntry& entry : model.effects) {
@@ -88,10 +88,10 @@ void keep_to_the_physics(sim::DriveDescription& model, const RigidEstimate& esti
       const Estimate level = common_level(*estimate.positive, *estimate.negative);
       entry.parameters = {{"level", level.value}};
       entry.ci95 = {{"level", level.ci95}};
-      warnings.push_back(fmt::format(
-          "{} and {} differ too much for friction alone. The model has their mean for both "
-          "directions, {} = {:.4g}; the rest is probably weight (constant_torque) or an offset (dac_offset)",
-          key("positive"), key("negative"), key("level"), std::max(0.0, level.value)));
+      warnings.push_back(
+          fmt::format("{} and {} differ too much for friction alone. The model uses their mean for both directions, {} "
+                      "= {:.4g}; the rest is probably weight (constant_torque) or an offset (dac_offset)",
+                      key("positive"), key("negative"), key("level"), std::max(0.0, level.value)));
     }
     keep_within_bounds(entry, model.data.kind, warnings);
   }
@@ -111,7 +111,8 @@ void warn_of_tachometer(Identification& result, bool corrected) {
       "add "
       "the effects tach_gain and tach_offset",
       gain.value, gain.half_width(), offset.value, offset.half_width(),
-      corrected ? "corrected here before the estimate" : "the estimates take the record as it is and carry the error"));
+      corrected ? "corrected here before the estimate"
+                : "the estimates use the uncorrected record and carry the error"));
 }
 
 std::string dropped_effects(const sim::DriveDescription& drive) {
@@ -264,21 +265,21 @@ Identification identify_drive(const Measurements& measured, const sim::DriveDesc
   result.model = std::move(best.model);
   if (result.by_speed && positions)
     result.warnings.push_back(
-        "the motion was taken from the speed channel: the position differentiates clearly worse (time stamps that "
-        "jitter, coarse steps)");
+        "the motion was taken from the speed channel, because the differentiated position is much noisier (jitter of "
+        "the time stamps, coarse resolution)");
   if (result.tach_noise_variance && tachometer) result.model.data.tach_noise_variance = result.tach_noise_variance;
   if (result.beside_travel)
     result.warnings.push_back(
-        "most of the effort beyond inertia and friction goes with the position (gravity on an arm, a spring, cogging): "
-        "it was taken out by a curve along the travel, and is not in the model; axistool diagnose says what it is");
+        "most of the torque or force beyond inertia and friction depends on position (gravity on an arm, a spring, "
+        "cogging). A curve along the travel accounts for it in the fit, but is not in the model. axistool diagnose "
+        "finds the cause");
   std::ranges::copy(messages_of(doubts_of(result.model)), std::back_inserter(result.warnings));
   keep_to_the_physics(result.model, result.estimate, result.warnings);
   warn_of_tachometer(result, corrected);
   if (const std::string kinds = dropped_effects(drive); !kinds.empty()) {
-    result.warnings.push_back(
-        fmt::format("effects of the drive's file that are not part of this fit were not taken over: "
-                    "{}; add them again with axistool add",
-                    kinds));
+    result.warnings.push_back(fmt::format(
+        "effects of the drive's file that this fit does not include were dropped: {}; add them again with axistool add",
+        kinds));
   }
   return result;
 }

@@ -129,9 +129,11 @@ double relative_error(const sim::DriveDescription& model, const std::vector<Reco
     return relative_error(model, records, all);
   }
   if (!(total > 0.0)) {
-    throw Failure(ExitCode::bad_input, fmt::format("{}: the axis never slides faster than the dead band, so there is "
-                                                   "nothing to compare; record it in motion",
-                                                   records.empty() ? std::string("record") : records.front().path));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format(
+            "{}: the axis never moves faster than the dead band, so there is nothing to compare; record more motion",
+            records.empty() ? std::string("record") : records.front().path));
   }
   return std::sqrt(residual / total);
 }

@@ -1,4 +1,4 @@
-// The inverse model: which effort the motor must have given for a motion that was measured.
+// The inverse model: the motor torque or force needed for a measured motion.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace host {
 
-/// Whether all that acts in a drive shows in its inverse model: nothing that remembers (backlash, bristles, compliance,
-/// friction memory, dwell, a current loop's lag), limits the effort or errs at the encoder. A tachometer's errors do
-/// not matter to it.
+/// Whether a drive has a complete inverse model: no effect with memory (backlash, bristles, compliance, friction
+/// memory, dwell, lag of a current loop), no limit of the torque and no encoder error. A tachometer's errors do not
+/// matter to it.
 bool has_inverse(const sim::Drive& drive);
 
 /// Effort that the model needs for the motion, sample by sample at full rate: J dw/dt plus friction minus loads, with

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/dense_solutions.hpp"
+
 namespace host {
 
 double student_t_95(double degrees) {
@@ -40,13 +42,12 @@ Regression solve_blocks(const std::vector<NormalEquations>& blocks, Eigen::Index
   if (!(scale.minCoeff() > 0.0) || !moment.allFinite()) return result;
   const Eigen::VectorXd unscale = scale.cwiseInverse();
   const Eigen::MatrixXd scaled = unscale.asDiagonal() * moment * unscale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(scaled);
-  const double smallest = spectrum.eigenvalues()(0), largest = spectrum.eigenvalues()(p - 1);
+  const Eigen::VectorXd spectrum = symmetric_spectrum(scaled).values;
+  const double smallest = spectrum(0), largest = spectrum(p - 1);
   if (smallest <= largest * 1e-15) return result;
   result.condition_number = std::sqrt(largest / smallest);
 
-  const Eigen::MatrixXd inverse =
-      unscale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(p, p)) * unscale.asDiagonal();
+  const Eigen::MatrixXd inverse = unscale.asDiagonal() * symmetric_inverse(scaled) * unscale.asDiagonal();
   result.parameters = inverse * projection;
   result.relative_residual = std::sqrt(std::max(0.0, 1.0 - result.parameters.dot(projection) / square));
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);

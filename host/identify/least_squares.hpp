@@ -1,7 +1,7 @@
 // Linear least squares in one pass over the rows, with intervals that hold when residuals are correlated.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <vector>
 

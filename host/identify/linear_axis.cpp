@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <unsupported/Eigen/MatrixFunctions>
-
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 
 namespace host {
@@ -37,7 +36,7 @@ SampledAxis sample_axis(const RigidAxis& axis, double sample_period_s) {
   held(0, 1) = axis.lead;
   held(1, 1) = axis.pole();
   held(1, 2) = axis.gain();
-  const Eigen::Matrix3d sampled = (held * sample_period_s).exp();
+  const Eigen::Matrix3d sampled = exponential(held * sample_period_s);
   return {sampled.topLeftCorner<2, 2>(), sampled.topRightCorner<2, 1>()};
 }
 

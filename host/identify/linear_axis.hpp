@@ -1,7 +1,7 @@
-// The rigid axis without friction, continuous and sampled: what every design and every estimate starts from.
+// The rigid axis without friction, continuous and sampled: basis of every design and estimate.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "sim/drive_description.hpp"
 

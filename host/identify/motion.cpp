@@ -60,7 +60,7 @@ std::vector<bool> slides(const std::vector<double>& speed, double deadband, std:
   return counts;
 }
 
-/// Samples by which the speed channel lags behind the position: a driver computes it from positions that have been.
+/// Lag of the speed channel behind the position, in samples: a driver computes it from past positions.
 std::size_t lag_of(const std::vector<double>& speed, const std::vector<double>& by_position, double period_s) {
   constexpr double kMost_s = 0.02;
   const auto most = std::min(static_cast<std::size_t>(kMost_s / period_s), speed.size() / 4);
@@ -97,7 +97,7 @@ std::vector<double> motor_effort(const Record& record, const sim::DataSheet& dat
     if (!(per_volt > 0.0)) {
       throw Failure(
           ExitCode::bad_input,
-          fmt::format("{}: volts cannot be turned into {}; give {} in the [drive] table of --drive", record.path,
+          fmt::format("{}: volts cannot be converted to {}; give {} in the [drive] table of --drive", record.path,
                       data.kind == sim::DriveKind::rotary ? "torque" : "force",
                       data.kind == sim::DriveKind::rotary ? "amplifier_gain_A_per_V and torque_constant_Nm_per_A"
                                                           : "force_constant_N_per_V"));
@@ -106,15 +106,13 @@ std::vector<double> motor_effort(const Record& record, const sim::DataSheet& dat
     return effort;
   }
   if (record.i_A.empty())
-    throw Failure(
-        ExitCode::bad_input,
-        fmt::format("{}: no effort was recorded (u_V or i_A), which this needs; axistool compare tells of the "
-                    "tracking error",
-                    record.path));
+    throw Failure(ExitCode::bad_input, fmt::format("{}: the record has no command or current (u_V or i_A), which this "
+                                                   "needs; axistool compare shows the tracking error",
+                                                   record.path));
   if (!(data.torque_constant_Nm_per_A > 0.0)) {
     throw Failure(
         ExitCode::bad_input,
-        fmt::format("{}: only a current was logged (i_A); that needs {} in [drive], or log u_V", record.path,
+        fmt::format("{}: only the current was logged (i_A), which needs {} in [drive]; or log u_V", record.path,
                     data.kind == sim::DriveKind::rotary ? "torque_constant_Nm_per_A" : "force_constant_N_per_A"));
   }
   for (const double i : acting_current(record)) effort.push_back(data.torque_constant_Nm_per_A * i);
@@ -140,8 +138,7 @@ DeliveredEffort delivered_effort(const Record& record, const sim::DataSheet& dat
   std::vector<double>& effort = delivered.effort;
   if (command_path != nullptr && !record.u_V.empty()) {
     const double delay_s = command_path->delay_s + command_path->current_lag_s;  // a short lag acts as a delay
-    // A model that tells when a command acts means one that is held; without, published recipes take both as
-    // simultaneous.
+    // A model with a command path implies a held command; without one, published methods treat both as simultaneous.
     if (delay_s > 0.0) late = delay_s / record.sample_period_s + kHold;
   }
   if (late > 0.0) {

@@ -12,12 +12,12 @@ namespace host {
 
 /// How the signals are prepared. Two recipes, chosen by the dead band:
 /// * dead band > 0: only samples count that slide for sure, that is whose speed stays beyond the dead band as far as
-/// the
-///   filter reaches. The command is taken in the middle of its hold. No decimation.
+///   the filter reaches. The command is taken in the middle of its hold. No decimation.
 /// * dead band 0: every sample counts, as in published inverse-model identification (parallel filtering): all signals,
 ///   the sign of the speed included, pass the same steep filter and are decimated. The command counts at its sample.
 struct MotionOptions {
-  std::optional<double> deadband;         ///< rad/s or m/s; default 0.5 rad/s (the paper, p. 1499), linear 0
+  /// rad/s or m/s; default 0.5 rad/s (the paper, p. 1499), or a tenth of the top speed where that is less; linear 0
+  std::optional<double> deadband;
   std::optional<double> cutoff_Hz;        ///< default: choose_cutoff
   std::optional<std::size_t> decimation;  ///< default 1 with a dead band, else sample rate / cut-off
   /// Whose command path stands between command and motor (converter, delay, torque constant along the travel); none: a
@@ -74,8 +74,8 @@ std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& dat
 /// the acceleration itself, but not below 10 Hz (or a fiftieth of the sampling rate, if that is lower).
 double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& data, bool by_speed = false);
 
-/// A position whose time stamps jitter, or of coarse steps, differentiates badly, but a tachometer has errors of its
-/// own: the speed channel is taken where it leaves clearly less, at most this part of what the position leaves.
+/// The derivative of a position with jitter or coarse resolution is noisy, but a tachometer has its own errors. The
+/// speed channel is used if its residual is at most this share of the position's.
 inline constexpr double kClearlyBetterBySpeed = 0.8;
 
 /// Rows that prepare_motion() leaves out at each end: two differences, each of which needs both neighbours.

@@ -60,12 +60,13 @@ sim::DriveDescription drive_named_by(const Record& record, std::vector<std::stri
   if (!known)
     throw Failure(
         ExitCode::usage,
-        fmt::format("{}: which drive is this? Volts become {} only with its data sheet. Write one and "
-                    "give it with --drive DRIVE.toml, for example:\n{}",
+        fmt::format("{}: the drive is unknown. Converting volts to {} needs its data sheet. Write one and give it with "
+                    "--drive DRIVE.toml, for example:\n"
+                    "{}",
                     record.path, record.kind == sim::DriveKind::linear ? "newtons" : "torque", kDriveExample));
   warnings.push_back(
-      fmt::format("no --drive was given: taking the data sheet of the paper's drive {} (Ka = {:g} A/V, "
-                  "Kt = {:g} Nm/A), which the record names",
+      fmt::format("no --drive was given: using the data sheet of the paper's drive {} (Ka = {:g} A/V, Kt = {:g} Nm/A), "
+                  "which the record names",
                   record.drive, known->data.amplifier_gain_A_per_V, known->data.torque_constant_Nm_per_A));
   return *known;
 }

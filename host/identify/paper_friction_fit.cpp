@@ -102,12 +102,11 @@ FrictionFit fit_friction_as_paper(const std::vector<CurvePoint>& points, double 
   for (auto& side : sides) {
     const std::vector<CurvePoint> fast = fast_points(side, top);
     if (side.size() < 4 || fast.size() < 2) {
-      throw Failure(
-          ExitCode::refused,
-          fmt::format("the paper's procedure needs four or more jog speeds in each direction, two of them above "
-                      "a quarter of the top speed; found {} {} ({} fast). Jog at more speeds, for example 0.1, "
-                      "0.3, 0.5, 1, 3, 5, 10, 25, 50, 75, 100 mm/s both ways",
-                      side.size(), &side == &sides[0] ? "forward" : "backward", fast.size()));
+      throw Failure(ExitCode::refused,
+                    fmt::format("the paper's procedure needs four or more jog speeds in each direction, two of them "
+                                "above a quarter of the top speed; found {} {} ({} fast). Jog at more speeds, for "
+                                "example 0.1, 0.3, 0.5, 1, 3, 5, 10, 25, 50, 75, 100 mm/s in both directions",
+                                side.size(), &side == &sides[0] ? "forward" : "backward", fast.size()));
     }
     correction += 0.5 * (slope_of(fast) - observer_viscous);
   }

@@ -28,21 +28,21 @@ bool is_inside(double value, const sim::ParameterInfo& info) { return value >= i
 /// A sign that the physics does not fix: components of a phase, offsets.
 bool has_either_sign(const sim::ParameterInfo& info) { return info.lower < 0.0 && info.upper > 0.0; }
 
-/// A fit that ran into a bound has found the bound. Zero is no such bound: it says that there is nothing.
+/// A value on a bound of the fit is no estimate. A bound at zero is allowed: the effect is absent.
 bool is_on_bound(double value, const sim::ParameterInfo& info) {
   constexpr double kOn = 1e-3;
   const auto on = [value](double bound) { return bound != 0.0 && std::abs(value - bound) <= kOn * std::abs(bound); };
   return on(info.lower) || on(info.upper);
 }
 
-/// What a forbidden sign means, where it means something.
+/// Meaning of a forbidden sign, if any.
 std::string_view meaning_of(const sim::EffectInfo& effect, const sim::ParameterInfo& info, double value) {
   if (effect.kind == "inertia" && value <= 0.0)
-    return "no mass is negative: the sign of a channel is turned, or channels are swapped";
+    return "no mass is negative: the sign of a channel is inverted, or channels are swapped";
   const bool wrong_sign = info.lower == 0.0 ? value < 0.0 : info.upper == 0.0 && value > 0.0;
-  if (effect.stage != sim::Stage::friction || !wrong_sign) return "no drive has it";
-  return "friction that pushes, which no drive has: the sign, the scale or the time of a channel is off, or an offset "
-         "or gravity is larger than friction (effects constant_torque, dac_offset)";
+  if (effect.stage != sim::Stage::friction || !wrong_sign) return "physically impossible";
+  return "friction cannot drive the axis: the sign, scale or timing of a channel is wrong, or an offset or gravity "
+         "exceeds the friction (effects constant_torque, dac_offset)";
 }
 
 class Examiner {
@@ -75,8 +75,8 @@ class Examiner {
       const bool may_be_none = interval && (*interval)[0] <= info.upper && (*interval)[1] >= info.lower;
       if (may_be_none)
         doubt(effect.kind, true,
-              "{} = {:.4g} is outside {:g} … {:g}, though its interval is not: the records do not "
-              "determine it; more and stronger motion does",
+              "{} = {:.4g} is outside {:g} … {:g}, but its interval overlaps this range: the records do not determine "
+              "it; record more and stronger motion",
               name, value, info.lower, info.upper);
       else
         doubt(effect.kind, true, "{} = {:.4g}: {}", name, value, meaning_of(effect, info, value));
@@ -84,11 +84,10 @@ class Examiner {
     }
     const bool fitted = interval.has_value() || !entry.from.empty();
     if (fitted && is_on_bound(value, info))
-      doubt(
-          effect.kind, true,
-          "{} = {:.4g} lies on a bound of the fit ({:g} … {:g}): the fit ran into it, so this is no finding; the cause "
-          "is something else, or the records do not show it",
-          name, value, info.lower, info.upper);
+      doubt(effect.kind, true,
+            "{} = {:.4g} lies on a bound of the fit ({:g} … {:g}), so it is not a valid estimate: the cause is "
+            "something else, or the records do not show it",
+            name, value, info.lower, info.upper);
     if (!interval || has_either_sign(info) || half_width(*interval) <= std::abs(value)) return;
     const bool zero_is_allowed = info.lower == 0.0 || info.upper == 0.0;
     doubt(effect.kind, !zero_is_allowed, "{} = {:.3g} ± {:.2g}: its interval is wider than the value: {}", name, value,
@@ -109,7 +108,7 @@ class Examiner {
     }
   }
 
-  /// Friction that the motor cannot overcome has not been seen moving.
+  /// The axis cannot have moved against friction that exceeds the motor torque.
   void examine_friction_level() {
     const sim::EffectEntry* coulomb = model_.find("coulomb");
     const double most = model_.data.effort_per_volt() * model_.data.dac_limit_V;
@@ -119,8 +118,8 @@ class Examiner {
       if (coulomb->has(id)) level = std::max(level, std::abs(coulomb->at(id)));
     if (level > most)
       doubt("coulomb", true,
-            "coulomb: friction of {:.4g} {} is more than the motor gives at {:g} V ({:.4g}): the data "
-            "sheet or the unit of the command is wrong",
+            "coulomb: friction of {:.4g} {} is more than the motor gives at {:g} V ({:.4g}): the data sheet or the "
+            "unit of the command is wrong",
             level, model_.data.kind == sim::DriveKind::rotary ? "Nm" : "N", model_.data.dac_limit_V, most);
   }
 
@@ -146,7 +145,7 @@ void keep_within_bounds(sim::EffectEntry& entry, sim::DriveKind kind, std::vecto
     const double bound = std::clamp(value, parameter->lower, parameter->upper);
     if (value == bound) continue;
     warnings.push_back(
-        fmt::format("the model has {} = {:g}, the nearest that a drive can have", parameter->key(kind), bound));
+        fmt::format("the model uses {} = {:g}, the nearest possible value", parameter->key(kind), bound));
     value = bound;
     entry.ci95.erase(id);
   }
@@ -156,7 +155,7 @@ void require_plausible(const sim::DriveDescription& model, const std::vector<std
   for (const Doubt& doubt : doubts_of(model)) {
     if (!doubt.refuses || std::ranges::find(accepted, doubt.effect) != accepted.end()) continue;
     throw Failure(ExitCode::refused,
-                  fmt::format("model '{}': {}. No controller is designed from it; who knows better says --accept {}",
+                  fmt::format("model '{}': {}. No controller is designed from it; override with --accept {}",
                               model.name, doubt.message, doubt.effect));
   }
 }

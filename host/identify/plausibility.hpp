@@ -1,4 +1,4 @@
-// Whether a drive can have the values of a model: asked in one place, whoever identified or fitted them.
+// Checks that a model's values are physically possible, in one place for all identification methods.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// What no drive has, or what the records have not determined.
+/// A value that is impossible, or that the records do not determine.
 struct Doubt {
   std::string effect;   ///< kind
   std::string message;  ///< names the parameter and its value, says what it means and what to do
@@ -22,8 +22,8 @@ std::vector<Doubt> doubts_of(const sim::DriveDescription& model);
 /// Their messages, for the warnings of a command.
 std::vector<std::string> messages_of(const std::vector<Doubt>& doubts);
 
-/// Moves what lies outside its physical bounds onto them, without its interval, and says so: no reader of a model takes
-/// such a value.
+/// Clips values to their physical bounds, removes their intervals, and warns: no reader of a model accepts values
+/// outside.
 void keep_within_bounds(sim::EffectEntry& entry, sim::DriveKind kind, std::vector<std::string>& warnings);
 
 /// Throws Failure(refused) with the first doubt that refuses, unless `accepted` names its effect.

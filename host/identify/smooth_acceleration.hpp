@@ -1,4 +1,4 @@
-// Acceleration that belongs to an effort held over each sample.
+// Acceleration consistent with a torque or force held over each sample.
 #pragma once
 
 #include <vector>

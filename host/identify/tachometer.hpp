@@ -1,4 +1,4 @@
-// The tachometer against the encoder: its gain, its offset, its noise.
+// Calibration of the tachometer by the encoder: gain, offset, noise.
 #pragma once
 
 #include <optional>

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "host/dense_solutions.hpp"
+
 namespace host {
 
 using Eigen::Index;
@@ -20,7 +22,7 @@ constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
 /// Where a fit that looks for a large memory begins.
 constexpr double kLargeSize = 0.1;
 constexpr double kMostCorrelation = 0.98;
-constexpr int kMostRounds = 12, kSizesARound = 8;
+constexpr int kMostRounds = 12, kRoundsToSettle = 3, kSizesARound = 8;
 /// Nats by which a round must still gain.
 constexpr double kSettled = 0.02;
 
@@ -141,7 +143,8 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
     fit.log_evidence = log_evidence;
     fit.weights = unit_weights / square;
     fit.noise = std::sqrt(square);
-    if (std::abs(log_evidence - before) < kSettled || round + 1 == kMostRounds) break;
+    const bool is_behind = round + 1 >= kRoundsToSettle && log_evidence < start.give_up;
+    if (std::abs(log_evidence - before) < kSettled || is_behind || round + 1 == kMostRounds) break;
     before = log_evidence;
     const VectorXd left = y_ - all * factors;
     double product = 0.0, squares = 1e-300;
@@ -164,9 +167,12 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) c
   return large.log_evidence > small.log_evidence ? large : small;
 }
 
-EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations) const {
-  EvidenceFit same = fit(columns, deviations, {.correlation = before.correlation, .sizes = before.sizes});
-  EvidenceFit small = fit(columns, deviations, {.correlation = before.correlation, .sizes = no_memory()});
+EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
+                               double give_up) const {
+  EvidenceStart start{.correlation = before.correlation, .sizes = before.sizes, .give_up = give_up};
+  EvidenceFit same = fit(columns, deviations, start);
+  start.sizes = no_memory();
+  EvidenceFit small = fit(columns, deviations, start);
   return same.log_evidence > small.log_evidence ? same : small;
 }
 
@@ -181,13 +187,13 @@ VectorXd Evidence::gains(const EvidenceFit& fit, const MatrixXd& further, const 
     if (sign[static_cast<std::size_t>(c)] > 0 && pull(c) < 0.0) return VectorXd::Constant(scales.size(), -HUGE_VAL);
   // Along the axes of their own information; what lies in the span of the known columns adds nothing.
   constexpr double kOwnPart = 1e-9;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(own);
-  const VectorXd along = axes.eigenvectors().transpose() * pull;
+  const SymmetricSpectrum axes = symmetric_spectrum(own);
+  const VectorXd along = axes.vectors.transpose() * pull;
   const double least = kOwnPart * (weighed.cwiseProduct(white)).sum();
   VectorXd gains = VectorXd::Zero(scales.size());
   for (Index a = 0; a < along.size(); ++a) {
-    if (!(axes.eigenvalues()(a) > least)) continue;
-    const Eigen::ArrayXd square = scales.array().square(), grown = 1.0 + square * axes.eigenvalues()(a);
+    if (!(axes.values(a) > least)) continue;
+    const Eigen::ArrayXd square = scales.array().square(), grown = 1.0 + square * axes.values(a);
     gains.array() += 0.5 * (square * along(a) * along(a) / grown - grown.log());
   }
   return gains;

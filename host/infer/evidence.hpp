@@ -11,7 +11,8 @@
 // Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989) 881-896, whose data want 4 degrees.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,8 @@ struct EvidenceStart {
   double correlation = 0.5;
   Eigen::VectorXd sizes;
   bool hold_sizes = false;  ///< the sizes stay as they are
+  /// A fit whose log evidence lies below this after three rounds, from where rounds change little, ends there, nats.
+  double give_up = -HUGE_VAL;
 };
 
 class Evidence {
@@ -69,8 +72,8 @@ class Evidence {
 
   /// The best of fits from a large and a small memory.
   EvidenceFit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations) const;
-  EvidenceFit fit_from(const EvidenceFit& before, const Eigen::MatrixXd& columns,
-                       const Eigen::VectorXd& deviations) const;
+  EvidenceFit fit_from(const EvidenceFit& before, const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations,
+                       double give_up = -HUGE_VAL) const;
 
   /// Sizes at which there is no memory.
   Eigen::VectorXd no_memory() const;

@@ -115,8 +115,12 @@ Export export_model(const sim::DriveDescription& model, ExportTarget target, con
   }
   if (target == ExportTarget::mjcf || target == ExportTarget::urdf)
     note_levels(measured, formulas, record, exported.not_expressed);
-  const std::vector<std::string> notes = notes_of(model, exported.to, exported, record);
-  const std::string component = identifier(std::filesystem::path(path).stem().string());
+  std::vector<std::string> notes = notes_of(model, exported.to, exported, record);
+  const std::filesystem::path file(path);
+  const std::string component = identifier(file.stem().string());
+  if (target == ExportTarget::linuxcnc && file.filename() != component + ".comp")
+    notes.push_back(
+        fmt::format("halcompile takes a file that is named as its component: name this one {}.comp.", component));
   switch (target) {
     case ExportTarget::mjcf:
       exported.files.push_back({path, mjcf_joint(formulas, notes)});

@@ -1,6 +1,7 @@
 // The same formulas in four languages: friction over speed with its derivative, and torques over the travel.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <numbers>
 
@@ -200,7 +201,7 @@ std::string hal_component(const PortableModel& model, const std::string& compone
       "{}component {} \"friction, inertia and position-dependent torque as a feed-forward\";\n"
       "pin in float position \"wanted position, machine units of mm\";\npin in float velocity \"wanted speed, mm/s\";\n"
       "pin in float acceleration \"wanted acceleration, mm/s^2\";\npin out float effort \"{}\";\npin out float output "
-      "\"effort times scale: add it to the PID's output\";\n"
+      "\"effort times scale, for the PID's bias\";\n"
       "param rw float scale = {:.17g} \"units of output for one {}\";\nparam rw float deadband = {:.6g} \"speed below "
       "which friction is faded in, mm/s\";\n"
       "function _ fp;\nlicense \"GPL\";\n;;\n#include <rtapi_math.h>\n\nFUNCTION(_) {{\n  const double speed = "
@@ -213,15 +214,38 @@ std::string hal_component(const PortableModel& model, const std::string& compone
       side_text(model, 0, kPlain), side_text(model, 1, kPlain), model.inertia, per_speed, load_text(model, kPlain));
 }
 
+namespace {
+
+/// halcompile names pins with '-' for '_', and without a "hal_" in front or signs at the end.
+std::string hal_name(std::string_view component) {
+  constexpr std::string_view kFront = "hal_";
+  std::string name(component.substr(component.starts_with(kFront) ? kFront.size() : 0));
+  std::ranges::replace(name, '_', '-');
+  name.erase(name.find_last_not_of('-') + 1);
+  return name;
+}
+
+}  // namespace
+
 std::string hal_lines(const PortableModel& model, const std::string& component) {
+  constexpr std::string_view kLetters = "xyzabcuvw";  // in the order in which trivkins counts joints
+  const std::size_t known = model.name.size() == 1 ? kLetters.find(model.name.front()) : std::string_view::npos;
+  const std::size_t joint = known == std::string_view::npos ? 0 : known;
   const double per_volt = model.data.effort_per_volt();
   return fmt::format(
-      "# halcompile --install {0}.comp; then, for joint 0 whose loop is pid.x:\nloadrt {0}\naddf {0}.0 servo-thread\n"
-      "net x-pos-cmd => {0}.0.position\nnet x-vel-cmd joint.0.vel-cmd => {0}.0.velocity\nnet x-acc-cmd joint.0.acc-cmd "
-      "=> {0}.0.acceleration\n"
-      "setp {0}.0.scale {1:.9g}  # units of the amplifier's command for 1 {2}\n# add {0}.0.output to pid.x.output by a "
-      "sum2, in front of the amplifier\n",
-      component, per_volt > 0.0 ? 1.0 / per_volt : 1.0, units(model).effort);
+      "# For joint {1}, whose loop is pid.{2}: change these names where yours differ. halcompile --install {0}.comp;\n"
+      "# then, in the machine's .hal file, behind the addf of the PID (vel-cmd and acc-cmd are of the coming period):\n"
+      "#   source {0}.hal\n"
+      "# The PID adds its bias to its output. Friction and inertia come from here: set its FF1 to 0, and its FF2 to\n"
+      "# -Dgain times the servo period in s (its D takes the command one period ahead of the error's).\n"
+      "loadrt {0}\naddf {3}.0 servo-thread\n"
+      "setp {3}.0.scale {4:.9g}  # units of the amplifier's command for 1 {5}\n"
+      "net {2}-pos-cmd joint.{1}.motor-pos-cmd => {3}.0.position\n"
+      "net {2}-vel-cmd joint.{1}.vel-cmd => {3}.0.velocity\n"
+      "net {2}-acc-cmd joint.{1}.acc-cmd => {3}.0.acceleration\n"
+      "net {2}-feed-forward {3}.0.output => pid.{2}.bias\n",
+      component, joint, kLetters[joint], hal_name(component), per_volt > 0.0 ? 1.0 / per_volt : 1.0,
+      units(model).effort);
 }
 
 }  // namespace host

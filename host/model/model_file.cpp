@@ -71,15 +71,15 @@ class ModelReader {
     const toml::node* node = table.get(key);
     if (node == nullptr && !required) return {};
     if (node == nullptr) fail(line_of(table), "missing field {} at {}; add {} = \"…\"", key, where, key);
-    if (!node->is_string()) fail(line_of(*node), "{}: a text in quotes belongs here", key);
+    if (!node->is_string()) fail(line_of(*node), "{}: expected a text in quotes", key);
     return node->as_string()->get();
   }
 
   double number_of(const toml::node& node, std::string_view key) const {
     if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
     const auto* real = node.as_floating_point();
-    if (real == nullptr) fail(line_of(node), "{}: a number belongs here, without quotes", key);
-    if (!std::isfinite(real->get())) fail(line_of(node), "{}: a finite number belongs here", key);
+    if (real == nullptr) fail(line_of(node), "{}: expected a number, without quotes", key);
+    if (!std::isfinite(real->get())) fail(line_of(node), "{}: expected a finite number", key);
     return real->get();
   }
 
@@ -87,7 +87,7 @@ class ModelReader {
   const toml::table* table_at(const toml::table& parent, std::string_view key) const {
     const toml::node* node = parent.get(key);
     if (node != nullptr && !node->is_table())
-      fail(line_of(*node), "{}: a table belongs here, headed by its name in brackets", key);
+      fail(line_of(*node), "{}: expected a table, headed by its name in brackets", key);
     return node == nullptr ? nullptr : node->as_table();
   }
 
@@ -132,7 +132,7 @@ class ModelReader {
     if (is_linear && !speaks_of_force)
       missing.push_back(fmt::format("{} = … ({} for logs of the current)", kForcePerVolt, kForcePerAmpere));
     if (const toml::table* tach = table_at(drive, "tach"); tach != nullptr && !tach->contains(tach_noise_key(kind)))
-      missing.push_back(fmt::format("{} = … in [drive.tach], or no such table where the drive has no tachometer",
+      missing.push_back(fmt::format("{} = … in [drive.tach], or remove this table if the drive has no tachometer",
                                     tach_noise_key(kind)));
     if (missing.empty()) return;
     fail(line_of(drive), "missing field{} in [drive]: {}; add {} from the data sheet", missing.size() == 1 ? "" : "s",
@@ -143,7 +143,7 @@ class ModelReader {
   void take_current_alone(const toml::table& drive) {
     if (const toml::node* dac = drive.get("dac"))
       fail(line_of(*dac),
-           "[drive.dac] is about volts, but [drive] gives torque or force for the current alone; add {}, or remove "
+           "[drive.dac] is about volts, but [drive] gives torque or force only for the current; add {}, or remove "
            "[drive.dac]",
            model_.data.kind == DriveKind::rotary ? "amplifier_gain_A_per_V" : kForcePerVolt);
     know_by_current(model_.data);
@@ -179,7 +179,7 @@ class ModelReader {
     for (const DataSheetField& other : kDataSheetFields)
       if (field.presence == Presence::alternative_unit && other.value == field.value && other.key != field.key &&
           table->contains(other.key))
-        fail(line_of(*node), "{}: the same quantity stands beside it in another unit; keep one of them", field.key);
+        fail(line_of(*node), "{}: the same quantity is also given in another unit; keep one of them", field.key);
     model_.data.*field.value = positive_number(*node, field.key, field.zero_allowed) / field.divisor;
   }
 
@@ -209,7 +209,7 @@ class ModelReader {
       read_effect(*entry.as_table());
     }
     if (required && model_.find("inertia") == nullptr)
-      fail(line_of(*node), "missing effect inertia: without one nothing moves; add [[effect]] kind = \"inertia\"");
+      fail(line_of(*node), "missing effect inertia; add [[effect]] kind = \"inertia\"");
   }
 
   void require_at_most(const toml::array& list, std::size_t most, std::string_view what, std::string_view of) const {
@@ -296,12 +296,12 @@ class ModelReader {
     const std::string_view deviation_key = curve_deviation_key(model_.data.kind);
     const std::vector<double> knots = numbers_at(table, knots_key), values = numbers_at(table, values_key);
     if (knots.size() < 2 || knots.size() != values.size())
-      fail(line_of(table), "{} and {} must be two or more, and as many: {} and {}", knots_key, values_key, knots.size(),
-           values.size());
+      fail(line_of(table), "{} and {} must have the same length, two or more: {} and {}", knots_key, values_key,
+           knots.size(), values.size());
     if (!std::ranges::is_sorted(knots, std::less_equal{}))
-      fail(line_of(*table.get(knots_key)), "{}: each must lie above the one before", knots_key);
+      fail(line_of(*table.get(knots_key)), "{}: each must be above the one before", knots_key);
     if (entry.over == "phase" && values.front() != values.back())
-      fail(line_of(*table.get(values_key)), "{}: over phase the curve comes back: the last must be as the first",
+      fail(line_of(*table.get(values_key)), "{}: over phase the curve is periodic: the last value must equal the first",
            values_key);
     std::vector<double> deviations;
     if (table.contains(deviation_key)) deviations = numbers_at(table, deviation_key);
@@ -323,7 +323,7 @@ class ModelReader {
     const std::string form =
         fmt::format("{} = [ {{ order = 1, {} = …, {} = … }}, … ]", kHarmonics, cosine_key, sine_key);
     if (entry.has("cosine") || entry.has("sine"))
-      fail(line_of(*node), "{} stands beside {} or {}; keep one form", kHarmonics, cosine_key, sine_key);
+      fail(line_of(*node), "{} is given as well as {} or {}; keep one form", kHarmonics, cosine_key, sine_key);
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty()) fail(line_of(*node), "{}: write {}", kHarmonics, form);
     require_at_most(*list, kMostHarmonics, kHarmonics, "an effect");
@@ -358,7 +358,7 @@ class ModelReader {
     for (const auto& [beside, name] : {std::pair(interval, &interval_key), std::pair(held, &held_key),
                                        std::pair(deviation, &deviation_key), std::pair(given, &given_key)})
       if (node == nullptr && beside != nullptr)
-        fail(line_of(*beside), "{} stands without {}; add the value, or remove {}", *name, key, *name);
+        fail(line_of(*beside), "{} is given without {}; add the value, or remove {}", *name, key, *name);
     if (node == nullptr) return;
     const double value = number_of(*node, key);
     if (bounds_ == Bounds::enforced && (value < parameter.lower || value > parameter.upper))
@@ -372,7 +372,7 @@ class ModelReader {
       entry.believed[id] = {given == nullptr ? value : number_of(*given, given_key),
                             positive_number(*deviation, deviation_key, false)};
     else if (given != nullptr)
-      fail(line_of(*given), "{} stands without {}; add it, or remove {}", given_key, deviation_key, given_key);
+      fail(line_of(*given), "{} is given without {}; add it, or remove {}", given_key, deviation_key, given_key);
   }
 
   std::array<double, 2> interval_of(const toml::node& node, std::string_view key, double value) const {
@@ -382,8 +382,9 @@ class ModelReader {
     if (interval[0] > interval[1])
       fail(line_of(node), "{}: its low end {} is above its high end {}; swap them", key, interval[0], interval[1]);
     if (!holds(interval, value))
-      fail(line_of(node), "{}: the interval {} … {} does not hold the value {}; remove the one that is not of this fit",
-           key, interval[0], interval[1], value);
+      fail(line_of(node),
+           "{}: the interval {} … {} does not hold the value {}; remove the one that is not from this fit", key,
+           interval[0], interval[1], value);
     return interval;
   }
 

@@ -35,14 +35,18 @@ std::optional<double> lead(const SheetValues& values) {
 std::string sheet_text(const SheetValues& values) {
   const bool rotary = is_rotary(values);
   std::string text = fmt::format(
-      "# Data sheet of a drive (axis-model/1). Fill in what stands as a comment without a value: take the # away and\n"
-      "# write the number. What is not needed for logs of the {} is marked so.\n"
-      "format = \"axis-model/1\"\nname = \"{}\"\n\n[drive]\n{:<44}# a {} motor\n",
+      "# Data sheet of a drive (axis-model/1). Fill in each comment without a value: remove the # and write the\n"
+      "# number. Fields that logs of the {} do not need are marked.\n"
+      "format = \"axis-model/1\"\n"
+      "name = \"{}\"\n"
+      "\n"
+      "[drive]\n"
+      "{:<44}# a {} motor\n",
       values.by_current ? "current" : "command voltage", values.name,
       rotary ? "kind = \"rotary\"" : "kind = \"linear\"", rotary ? "turning" : "linear");
   if (rotary) {
     text += field("torque_constant_Nm_per_A", values.motor_constant);
-    // A log of the current holds what the motor got: the amplifier's gain does not enter.
+    // A log of the current gives the motor current directly: the amplifier's gain is not needed.
     if (!values.by_current) text += field("amplifier_gain_A_per_V");
     text += field("lead_mm_per_rad", lead(values));
   } else {
@@ -127,16 +131,20 @@ std::string_view kind_of(const DataSheetField& field) {
 
 std::string sheet_page() {
   std::string page =
-      "# Data sheets and models\n\n"
-      "Written by `axistool sheet --markdown` from `data_sheet_fields.hpp`.\n\n"
-      "A data sheet is a model file (TOML, `axis-model/1`) without effects: what paper says of a drive. `axistool "
-      "sheet`\n"
-      "writes one with comments, to be filled in; `identify` adds the effects. All fields that are missing are named "
-      "at\n"
-      "once.\n\n"
-      "At the top stand `format = \"axis-model/1\"` and `name`; `[drive]` begins with `kind`, \"rotary\" or "
-      "\"linear\".\n\n"
-      "| Field | In | Drive | Needed | What |\n|---|---|---|---|---|\n";
+      "# Data sheets and models\n"
+      "\n"
+      "Written by `axistool sheet --markdown` from `data_sheet_fields.hpp`.\n"
+      "\n"
+      "A data sheet is a model file (TOML, `axis-model/1`) without effects: the manufacturer's data of a drive.\n"
+      "`axistool sheet` writes one with comments to fill in; `identify` adds the effects. An error lists all missing "
+      "fields\n"
+      "at once.\n"
+      "\n"
+      "The file begins with `format = \"axis-model/1\"` and `name`; `[drive]` begins with `kind`, \"rotary\" or "
+      "\"linear\".\n"
+      "\n"
+      "| Field | In | Drive | Needed | What |\n"
+      "|---|---|---|---|---|\n";
   for (const DataSheetField& field : kDataSheetFields)
     page += fmt::format("| `{}` | `[drive{}{}]` | {} | {} | {} |\n", field.key, field.table.empty() ? "" : ".",
                         field.table, kind_of(field), need_of(field), field.meaning);

@@ -12,6 +12,7 @@
 #include "host/model/effect_forms.hpp"
 #include "host/model/model_file.hpp"
 #include "host/statistics.hpp"
+#include "host/toml_text.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"
 #include "sim/harmonic.hpp"
@@ -27,19 +28,6 @@ std::string number(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
-}
-
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    else
-      out += c;
-  }
-  return out + '"';
 }
 
 void append_data_sheet(const sim::DataSheet& data, std::string& text) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSureByUnit = 0.97, kSureByPhysics = 0.93, kAssumed = 0.6;
 
-/// Where position and speed explain less of each other than this, they are no pair.
+/// Least correlation of a matching pair of position and speed.
 constexpr double kPair = 0.95;
 
 /// The relative error of a scale found from set points: at best, and as six made machines with a loop of PI control
@@ -114,7 +114,7 @@ bool AxisStudy::looks_rotary() const {
   });
 }
 
-/// Of several logs the middle one: a sweep's amplitudes need not be those that were wanted.
+/// The median of several logs: a sweep may miss its commanded amplitudes.
 std::optional<Proportion> AxisStudy::best_follow(std::size_t measured, std::size_t reference) const {
   std::vector<Proportion> all;
   for (const Log* log : group_)
@@ -141,14 +141,14 @@ std::optional<AxisStudy::Decision> AxisStudy::position_by_unit(const NamedChanne
   if (unit.dimension == Dimension::length)
     return Decision{"x_mm", unit.factor, unit.offset, kSureByUnit, fmt::format("position in {}", text)};
   if (unit.dimension == Dimension::angle)
-    return Decision{
-        "x_mm", unit.factor * lead(), 0.0, kSureByUnit,
-        fmt::format("angle in {}; {}", text,
-                    hints_.sheet ? fmt::format("{:.6g} mm a radian by the sheet", lead()) : "1 mm stands for 1 rad")};
+    return Decision{"x_mm", unit.factor * lead(), 0.0, kSureByUnit,
+                    fmt::format("angle in {}; {}", text,
+                                hints_.sheet ? fmt::format("{:.6g} mm per radian from the data sheet", lead())
+                                             : "1 mm stands for 1 rad")};
   if (unit.dimension == Dimension::counts && hints_.sheet && hints_.sheet->encoder_resolution > 0.0) {
     const double to_mm = hints_.sheet->kind == sim::DriveKind::rotary ? 1.0 : 1e3;
     return Decision{"x_mm", hints_.sheet->encoder_resolution * to_mm, 0.0, kSureByUnit,
-                    "counts, of the sheet's encoder"};
+                    "counts of the data sheet's encoder"};
   }
   return std::nullopt;
 }
@@ -171,9 +171,9 @@ std::optional<AxisStudy::Decision> AxisStudy::scale_by_reference(const NamedChan
       if (const auto neat = in_mm ? neat_counts_per_mm(per_unit, tolerance) : neat_counts_per_rad(per_unit, tolerance))
         return Decision{
             "x_mm", (in_mm ? 1.0 : lead()) / neat->value, 0.0, sure,
-            fmt::format("{} ({:.6g} a {} by {})", neat->words, per_unit, in_mm ? "millimetre" : "radian", by)};
+            fmt::format("{} ({:.6g} per {} from {})", neat->words, per_unit, in_mm ? "millimetre" : "radian", by)};
     return Decision{"x_mm", (in_mm ? 1.0 : lead()) / per_unit, 0.0, 0.8,
-                    fmt::format("{:.6g} of its steps a {} by {}", per_unit, in_mm ? "millimetre" : "radian", by)};
+                    fmt::format("{:.6g} counts per {} from {}", per_unit, in_mm ? "millimetre" : "radian", by)};
   }
   return std::nullopt;
 }
@@ -187,15 +187,15 @@ std::optional<AxisStudy::Decision> AxisStudy::unit_by_speed(const NamedChannel& 
   if (unit.dimension == Dimension::angular_speed) {
     if (const auto neat = neat_angle(per_unit))
       return Decision{"x_mm", neat->value * lead(), 0.0, kSureByPhysics,
-                      fmt::format("{}, by the speed in {}", neat->words, speed_->name.unit_text)};
+                      fmt::format("{}, from the speed in {}", neat->words, speed_->name.unit_text)};
     if (const auto neat = neat_counts_per_rad(1.0 / per_unit, 3e-3))
       return Decision{"x_mm", lead() / neat->value, 0.0, 0.8,
-                      fmt::format("{}, by the speed in {}", neat->words, speed_->name.unit_text)};
+                      fmt::format("{}, from the speed in {}", neat->words, speed_->name.unit_text)};
   }
   if (unit.dimension == Dimension::linear_speed)
     if (const auto neat = neat_length(per_unit))
       return Decision{"x_mm", neat->value, 0.0, kSureByPhysics,
-                      fmt::format("{}, by the speed in {}", neat->words, speed_->name.unit_text)};
+                      fmt::format("{}, from the speed in {}", neat->words, speed_->name.unit_text)};
   return std::nullopt;
 }
 
@@ -211,14 +211,15 @@ void AxisStudy::settle_position() {
   const bool in_counts = position_->name.unit ? position_->name.unit->dimension == Dimension::counts
                                               : position_->name.unit_text.empty() && are_whole(values(*position_));
   if (!decision && in_counts) {
-    leave(*position_, "position in whole numbers or counts, of an encoder that the log does not tell", 0.6);
-    lack(fmt::format("what one count of {} is: give the encoder's step by --sheet, or --map x_mm={}*MM_PER_COUNT",
-                     quoted(*position_), source_text(log_.columns[position_->column].name)));
+    leave(*position_, "position in counts; the log does not state the encoder", 0.6);
+    lack(fmt::format(
+        "the size of one count of {}: give the encoder's resolution by --sheet, or --map x_mm={}*MM_PER_COUNT",
+        quoted(*position_), source_text(log_.columns[position_->column].name)));
     return;
   }
   if (!decision && !position_->name.unit_text.empty()) {
-    leave(*position_, fmt::format("position in '{}', a unit that is not known here", position_->name.unit_text), 0.4);
-    lack(fmt::format("how many mm or rad the unit '{}' of {} is; say --map", position_->name.unit_text,
+    leave(*position_, fmt::format("position in the unknown unit '{}'", position_->name.unit_text), 0.4);
+    lack(fmt::format("the size in mm or rad of the unit '{}' of {}; give --map", position_->name.unit_text,
                      quoted(*position_)));
     return;
   }
@@ -273,9 +274,9 @@ void AxisStudy::settle_speed() {
   if (change && change->r_squared < kPair) change.reset();
   const auto& unit = speed_->name.unit;
   if (unit && unit->dimension == Dimension::share) {
-    leave(*speed_, "speed as a share of a rated speed that the log does not give", 0.6);
-    lack(fmt::format("the rated speed that {} is a share of; say --map w_rad_s={}*RATED_RAD_PER_S", quoted(*speed_),
-                     quoted(*speed_)));
+    leave(*speed_, "speed relative to a rated speed that the log does not state", 0.6);
+    lack(
+        fmt::format("the rated speed for {}; give --map w_rad_s={}*RATED_RAD_PER_S", quoted(*speed_), quoted(*speed_)));
     return;
   }
   const bool position_is_angle =
@@ -288,18 +289,18 @@ void AxisStudy::settle_speed() {
     const bool to_angle = !angular && hints_.sheet && hints_.sheet->kind == sim::DriveKind::rotary;
     if (to_angle)
       decision = {"w_rad_s", unit->factor / lead(), 0.0, kSureByUnit,
-                  fmt::format("speed in {}, {:.6g} mm a radian by the sheet", speed_->name.unit_text, lead())};
+                  fmt::format("speed in {}, {:.6g} mm per radian from the data sheet", speed_->name.unit_text, lead())};
     if (change) {
       const double shown = change->factor * position_taken_->factor / unit->factor;  // mm per rad, or 1
       if (angular && position_->name.unit && position_->name.unit->dimension != Dimension::angle && !hints_.sheet) {
         found_->lead_mm_per_rad = std::abs(shown);
-        decision.why += fmt::format("; {:.6g} mm a radian by {}", std::abs(shown), quoted(*position_));
+        decision.why += fmt::format("; {:.6g} mm per radian from {}", std::abs(shown), quoted(*position_));
       } else if (!to_angle && std::abs(shown / (angular ? lead() : 1.0) - 1.0) > 0.1) {
         decision.sure = kAssumed;
         decision.why +=
             fmt::format("; but {} changes {:.4g} times as fast", quoted(*position_), shown / (angular ? lead() : 1.0));
       } else {
-        decision.why += fmt::format("; {} changes by it", quoted(*position_));
+        decision.why += fmt::format("; consistent with the change of {}", quoted(*position_));
       }
     }
     take(*speed_, decision);
@@ -310,22 +311,23 @@ void AxisStudy::settle_speed() {
     const auto neat = position_is_angle ? neat_angular_speed(to_unit) : neat_linear_speed(to_unit);
     const double sure = neat ? std::min(kSureByPhysics, position_taken_->sure) : std::min(0.7, position_taken_->sure);
     take(*speed_, {position_is_angle ? "w_rad_s" : "v_mm_s", neat ? neat->value : to_unit, 0.0, sure,
-                   fmt::format("{}, by the change of {}", neat ? neat->words : "speed of a scale of its own",
+                   fmt::format("{}, from the change of {}", neat ? neat->words : "speed with an unusual scale",
                                quoted(*position_))});
     return;
   }
   if (!speed_->name.unit_text.empty() || position_ != nullptr) {
     leave(*speed_,
           speed_->name.unit_text.empty()
-              ? fmt::format("speed without a unit; {} does not change by it",
+              ? fmt::format("speed without a unit; not consistent with {}",
                             position_ ? quoted(*position_) : "the position")
-              : fmt::format("speed in '{}', which the position does not bear out", speed_->name.unit_text),
+              : fmt::format("speed in '{}', not confirmed by the position", speed_->name.unit_text),
           0.4);
-    if (!position_taken_) lack(fmt::format("the unit of {}; say --map", quoted(*speed_)));
+    if (!position_taken_) lack(fmt::format("the unit of {}; give --map", quoted(*speed_)));
     return;
   }
-  lack(fmt::format("the unit of {} (no unit in its name, no position to compare with); say --map w_rad_s=… or v_mm_s=…",
-                   quoted(*speed_)));
+  lack(
+      fmt::format("the unit of {} (no unit in its name, no position to compare with); give --map w_rad_s=… or v_mm_s=…",
+                  quoted(*speed_)));
   leave(*speed_, "speed without a unit", 0.4);
 }
 
@@ -343,7 +345,7 @@ void AxisStudy::settle_references() {
       decision->column = "x_ref_mm";
       take(*reference, *decision);
     } else {
-      leave(*reference, "set point of the position, in a unit that the log does not tell", 0.5);
+      leave(*reference, "position reference in an unknown unit", 0.5);
     }
   }
   const NamedChannel* wanted = pick(Quantity::speed, true, false);
@@ -352,12 +354,12 @@ void AxisStudy::settle_references() {
   if (wanted->name.unit && (is_angular(wanted->name) || wanted->name.unit->dimension == Dimension::linear_speed)) {
     const bool angular = is_angular(wanted->name);
     take(*wanted, {angular ? "w_ref_rad_s" : "v_ref_mm_s", wanted->name.unit->factor, 0.0, kSureByUnit,
-                   fmt::format("wanted speed in {}", wanted->name.unit_text)});
+                   fmt::format("speed reference in {}", wanted->name.unit_text)});
   } else if (speed != nullptr && !speed->taken_as.empty() && wanted->name.unit_text == speed_->name.unit_text) {
     take(*wanted, {speed->taken_as == "w_rad_s" ? "w_ref_rad_s" : "v_ref_mm_s", speed->factor, 0.0,
-                   std::min(0.9, speed->sure), fmt::format("wanted speed, in the unit of {}", quoted(*speed_))});
+                   std::min(0.9, speed->sure), fmt::format("speed reference, in the unit of {}", quoted(*speed_))});
   } else {
-    leave(*wanted, "wanted speed, in a unit that the log does not tell", 0.5);
+    leave(*wanted, "speed reference in an unknown unit", 0.5);
   }
 }
 
@@ -365,13 +367,14 @@ std::optional<AxisStudy::Decision> AxisStudy::effort_decision(const NamedChannel
   const auto& unit = channel.name.unit;
   const bool wanted = channel.name.is_reference;
   const double constant = hints_.torque_constant.value_or(hints_.sheet ? hints_.sheet->torque_constant_Nm_per_A : 1.0);
-  const std::string said = wanted ? ", as the controller wants it" : "";
+  const std::string said = wanted ? ", the controller's set point" : "";
   const double less = wanted ? 0.15 : 0.0;
   if (unit && unit->dimension == Dimension::share) {
     leave(channel,
-          fmt::format("{} as a share of a rated one that the log does not give", quantity_name(channel.name.quantity)),
+          fmt::format("{} relative to a rated value that the log does not state", quantity_name(channel.name.quantity)),
           0.6);
-    lack(fmt::format("what 100 % of {} is; say --map i_A={}*AMPERES_PER_PERCENT", quoted(channel), quoted(channel)));
+    lack(fmt::format("the value of 100 % of {}; give --map i_A={}*AMPERES_PER_PERCENT", quoted(channel),
+                     quoted(channel)));
     return std::nullopt;
   }
   if (channel.name.quantity == Quantity::voltage) {
@@ -386,7 +389,7 @@ std::optional<AxisStudy::Decision> AxisStudy::effort_decision(const NamedChannel
                       fmt::format("current in {}{}", channel.name.unit_text, said)};
     if (unit || !channel.name.unit_text.empty()) {
       leave(channel, fmt::format("current in '{}'", channel.name.unit_text), 0.4);
-      lack(fmt::format("how many amperes one '{}' of {} is; say --map", channel.name.unit_text, quoted(channel)));
+      lack(fmt::format("the size in amperes of one '{}' of {}; give --map", channel.name.unit_text, quoted(channel)));
       return std::nullopt;
     }
     return Decision{"i_A", 1.0, 0.0, 0.75 - less, fmt::format("current without a unit, taken as A{}", said)};
@@ -397,7 +400,7 @@ std::optional<AxisStudy::Decision> AxisStudy::effort_decision(const NamedChannel
           fmt::format("{} in '{}': the sensor's scale is not in the log", quantity_name(channel.name.quantity),
                       channel.name.unit_text),
           0.5);
-    lack(fmt::format("how many {} one '{}' of {} is; say --map i_A=…",
+    lack(fmt::format("the size in {} of one '{}' of {}; give --map i_A=…",
                      channel.name.quantity == Quantity::force ? "N" : "Nm", channel.name.unit_text, quoted(channel)));
     return std::nullopt;
   }
@@ -475,7 +478,7 @@ void AxisStudy::run(std::vector<NamedChannel> channels, OpenedAxis& axis, Unders
   settle_temperature();
   leave_rest();
   if (effort_ == nullptr && axis_->missing.empty())
-    lack("the effort: no current, torque, force or command voltage was logged");
+    lack("the torque or force: no current, torque, force or command voltage was logged");
   const bool moves = std::ranges::any_of(axis_->mappings, [](const Mapping& mapping) {
     return mapping.column == "x_mm" || mapping.column == "w_rad_s" || mapping.column == "v_mm_s";
   });

@@ -1,4 +1,4 @@
-// One axis of a log: which of its channels is the position, the speed, the effort, and in what unit.
+// One axis of a log: finds the channels of position, speed and torque or current, and their units.
 #pragma once
 
 #include <optional>

@@ -154,7 +154,7 @@ unsigned sense_of(std::string_view word) {
 constexpr unsigned kQuantities =
     kTime | kPosition | kSpeed | kCurrent | kTorque | kForce | kVoltage | kTemperature | kOther;
 
-/// The one meant where a name speaks of several: "momentenbildender Strom" is a current, "position error" is neither.
+/// The main quantity of a name with several: "momentenbildender Strom" is a current, "position error" is neither.
 Quantity one_of(unsigned senses) {
   if ((senses & kOther) != 0) return Quantity::other;
   if ((senses & kTime) != 0) return Quantity::time;
@@ -192,7 +192,7 @@ bool suits(Quantity quantity, Dimension dimension) {
   }
 }
 
-/// What a unit alone tells of a channel whose name says nothing.
+/// The quantity that a unit implies if the name gives none.
 Quantity quantity_of(Dimension dimension) {
   switch (dimension) {
     case Dimension::time:

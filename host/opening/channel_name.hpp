@@ -1,4 +1,4 @@
-// What the name of a channel says: which quantity, of which axis, wanted or measured, in which unit.
+// Meaning of a channel's name: quantity, axis, reference or measured, unit.
 #pragma once
 
 #include <optional>
@@ -36,8 +36,8 @@ struct ChannelName {
   std::optional<UnitMeaning> unit;  ///< empty: none, or one that is not known here
 };
 
-/// By words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and what controllers call
-/// things. The unit comes from the column's own, from brackets, or from the end of the name.
+/// By words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and controllers' own names.
+/// The unit comes from the column's own, from brackets, or from the end of the name.
 ChannelName understand_name(const LogColumn& column);
 
 /// "position", "speed", …

@@ -1,9 +1,11 @@
 #include "host/opening/channel_physics.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "host/dense_solutions.hpp"
 
 namespace host {
 
@@ -28,12 +30,12 @@ std::optional<Fit> fit(Eigen::MatrixXd x, const Eigen::VectorXd& y) {
   const Eigen::RowVectorXd norms = x.colwise().norm();
   if (!(total > 0.0) || !std::isfinite(total) || !(norms.minCoeff() > 0.0) || !norms.allFinite()) return std::nullopt;
   x.array().rowwise() /= norms.array();
-  const Eigen::LDLT<Eigen::MatrixXd> solver(x.transpose() * x);
+  const Eigen::MatrixXd moments = gram(x);
   Fit result;
-  result.coefficients = solver.solve(x.transpose() * centred);
+  result.coefficients = symmetric_solution(moments, Eigen::VectorXd(x.transpose() * centred));
   const double rest = (centred - x * result.coefficients).squaredNorm();
   result.r_squared = 1.0 - rest / total;
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(columns, columns));
+  const Eigen::MatrixXd inverse = symmetric_inverse(moments);
   result.deviations = (inverse.diagonal().array().abs() * rest / static_cast<double>(rows - columns - 1)).sqrt();
   result.coefficients.array() /= norms.transpose().array();
   result.deviations.array() /= norms.transpose().array();

@@ -1,4 +1,4 @@
-// What channels must have to do with each other if they are what their names say.
+// Physical relations between channels, to test what their names say.
 #pragma once
 
 #include <optional>
@@ -13,21 +13,21 @@ struct Proportion {
   double deviation = 0.0;  ///< standard deviation of the factor
 };
 
-/// The factor by which the change of `position` is the time integral of `speed`, over stretches of `stretch` rows (a
-/// row's difference would drown in the encoder's steps). Empty where one of them stands still or holds gaps.
+/// The factor by which the change of `position` is the time integral of `speed`, over intervals of `stretch` rows (the
+/// encoder's resolution would mask a single row's difference). Empty if one of them does not change or has gaps.
 std::optional<Proportion> change_over_speed(const std::vector<double>& position, const std::vector<double>& speed,
                                             double period_s);
 
-/// How `measured` follows `reference` in the long run (means over a tenth of the rows): measured = factor * reference +
-/// what grows with its speed and acceleration. Empty where one of them stands still.
+/// Long-term relation of `measured` to `reference` (means over a tenth of the rows): measured = factor * reference +
+/// terms in its speed and acceleration. Empty if one of them does not change.
 std::optional<Proportion> follows(const std::vector<double>& measured, const std::vector<double>& reference);
 
 /// The share of the effort's variance that acceleration, speed and direction of a motion explain (0 to 1). `position`
 /// in any unit.
 std::optional<double> effort_by_motion(const std::vector<double>& position, const std::vector<double>& effort);
 
-/// The range after which a position begins again (a turn, 2^16 counts), in its own unit: where it jumps by more than
-/// half of what it covers, twice at least and always by nearly as much. Empty where it does not.
+/// The range at which a position wraps (a turn, 2^16 counts), in its own unit: it jumps at least twice by nearly the
+/// same amount, more than half of its span. Empty if it does not wrap.
 std::optional<double> wrap_range(const std::vector<double>& position);
 
 /// Whether all values are whole numbers over more than a few: counts, if it is a position.

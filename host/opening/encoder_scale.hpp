@@ -1,4 +1,4 @@
-// Scales that encoders, screws and loggers are made with: what a measured factor must be near to be believed.
+// Usual scales of encoders, screws and loggers, to confirm a measured factor.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// LinuxCNC: halsampler writes columns without names; the .hal file that loaded it knows them.
+// LinuxCNC: halsampler writes columns without names; the .hal file that loads it gives the names.
 #pragma once
 
 #include <string>

@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "host/opening/name_words.hpp"
+
 namespace host {
 
 namespace {
@@ -96,7 +98,7 @@ void apply(const Log& log, std::span<const ToolColumn> known, std::vector<Channe
     }
 }
 
-/// Older ODrive firmware counts: 8192 a turn leave no doubt.
+/// Older ODrive firmware uses counts, recognised by 8192 per turn.
 bool are_counts(const Log& log) {
   constexpr double kMoreThanTurns = 3000.0;
   for (const LogColumn& column : log.columns)
@@ -106,12 +108,21 @@ bool are_counts(const Log& log) {
   return false;
 }
 
-/// Pins of HAL: what a loop is given, what comes back, and what it puts out.
+/// "x-output": the letter of an axis that a signal's name begins with; empty where it does not.
+std::string axis_of_signal(std::string_view name) {
+  const std::vector<std::string> words = words_of(name);
+  const bool letter = words.size() > 1 && words.front().size() == 1 &&
+                      std::string_view("xyzabcuvw").find(words.front().front()) != std::string_view::npos;
+  return letter ? words.front() : "";
+}
+
+/// Pins of HAL: reference, feedback and output of a loop.
 void apply_hal(const Log& log, std::vector<ChannelName>& names) {
   for (std::size_t k = 0; k < log.columns.size(); ++k) {
     const std::string text = log.columns[k].name + " " + log.columns[k].kind;
     const auto says = [&](std::string_view part) { return text.find(part) != std::string::npos; };
     ChannelName& name = names[k];
+    if (name.axis.empty()) name.axis = axis_of_signal(log.columns[k].name);
     if (says(".output")) {
       name.quantity = Quantity::voltage;
       name.is_reference = name.is_weak = true;

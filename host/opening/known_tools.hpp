@@ -1,4 +1,4 @@
-// Programs whose logs give names without units, and what they mean by them.
+// Programs whose logs give names without units, with the meaning of these names.
 #pragma once
 
 #include <vector>

@@ -7,38 +7,19 @@
 
 namespace host {
 
-namespace {
-
-/// A TOML string of any text: the basic one, with what it must escape.
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      out += fmt::format("\\{}", c);
-    else if (byte < 0x20 || byte == 0x7F)
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
-    else
-      out += c;
-  }
-  return out + "\"";
-}
-
-}  // namespace
-
 std::string format_mapping_file(const std::vector<MappedAxis>& axes) {
   std::string text =
       "# How the channels of a controller's log become the columns of a record: axistool open LOG --map THIS_FILE\n"
-      "# Each line of [[axis]] is what --map says; see axistool help import.\n"
+      "# Each line of [[axis]] has the form of --map; see axistool help import.\n"
       "format = \"axis-mapping/1\"\n";
   for (const MappedAxis& axis : axes) {
     text += "\n[[axis]]\n";
-    if (!axis.name.empty()) text += fmt::format("name = {}\n", quoted(axis.name));
-    text += fmt::format("map = {}\n", quoted(axis.map));
+    if (!axis.name.empty()) text += fmt::format("name = {}\n", toml_string(axis.name));
+    text += fmt::format("map = {}\n", toml_string(axis.map));
     if (axis.resample_s)
-      text += fmt::format("resample_s = {:#}  # uneven rows are made even with this period\n", *axis.resample_s);
+      text += fmt::format("resample_s = {:#}  # uneven rows are resampled with this period\n", *axis.resample_s);
     for (std::size_t k = 0; k < axis.unwrap.size(); ++k)
-      text += fmt::format("{}{}{}", k == 0 ? "unwrap = [" : ", ", quoted(axis.unwrap[k]),
+      text += fmt::format("{}{}{}", k == 0 ? "unwrap = [" : ", ", toml_string(axis.unwrap[k]),
                           k + 1 == axis.unwrap.size() ? "]  # range at which it wraps\n" : "");
   }
   return text;

@@ -19,8 +19,7 @@ struct Recipe {
 constexpr Recipe kRecipes[] = {
     {"twincat-scope",
      "TwinCAT Scope: add the axis' ActPos, ActVelo and, from the drive's process data, the torque or current actual "
-     "value "
-     "(link 6077h or its like); sample time: the NC task's; export as CSV with one time column"},
+     "value (link 6077h or its like); sample time: that of the NC task; export as CSV with one time column"},
     {"sinumerik",
      "SINUMERIK Operate, Diagnostics, Trace: actual position of encoder 1 and torque-generating current iq (r0078) of "
      "the axis, "
@@ -55,9 +54,9 @@ std::string next_run(const Understanding& understood) {
           : "Log position or speed and the motor's current, torque or command together, with units in the "
             "headings, at 200 Hz or more";
   return fmt::format(
-      "{}{}. Move: steps both ways, jogs at several speeds over the travel, a sweep; ten seconds each.",
-      slow ? fmt::format("{:.3g} Hz are too slow for reversals and resonances (friction over speed and travel "
-                         "shows all the same). ",
+      "{}{}. Motions: steps in both directions, jogs at several speeds over the travel, a sweep; ten seconds each.",
+      slow ? fmt::format("{:.3g} Hz is too slow for reversals and resonances, but sufficient for friction over speed "
+                         "and travel. ",
                          understood.rate_Hz)
            : "",
       how);

@@ -1,4 +1,4 @@
-// What to record next, in the words of the controller that wrote a log.
+// What to record next, in the terms of the controller that wrote the log.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Empty where the log holds what a diagnosis needs: effort, motion, and 200 samples a second at least.
+/// Empty if the log suffices for a diagnosis: torque or current, motion, and at least 200 samples per second.
 std::string next_run(const Understanding& understood);
 
 }  // namespace host

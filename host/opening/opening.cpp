@@ -20,10 +20,10 @@ namespace host {
 
 namespace {
 
-/// Runs shorter than this hold nothing to identify at any of a controller's rates.
+/// Runs shorter than this cannot be identified at any controller rate.
 constexpr std::size_t kFewestRowsOfARun = 100;
 
-/// Unknown columns that go along into a record.
+/// Unknown columns to keep in a record.
 constexpr std::size_t kMostExtra = 16;
 
 /// 64 MiB: numbers of two characters take a gigabyte by the time they are understood.
@@ -33,8 +33,8 @@ void refuse_huge(const std::string& path) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   if (!unknown && size > kLargest)
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: {} MiB, and {} are read at most; cut the log", path, size >> 20U, kLargest >> 20U));
+    throw Failure(ExitCode::bad_input, fmt::format("{}: {} MiB exceeds the limit of {} MiB; cut the log", path,
+                                                   size >> 20U, kLargest >> 20U));
 }
 
 bool same_channels(const Log& a, const Log& b) {
@@ -142,7 +142,7 @@ class RecordMaker {
       if (!mapping.time_source.empty() && log.find(mapping.time_source).values == stamps) mapping.time_source.clear();
   }
 
-  /// What was not understood goes along under its own name.
+  /// Unrecognised channels keep their own names.
   void add_unknown(const Log& log, const OpenedAxis& axis, std::vector<Mapping>& mappings) const {
     if (file_.understood.axes.size() > 1) return;
     std::size_t added = 0;
@@ -169,7 +169,7 @@ class RecordMaker {
   std::string drive_;
 };
 
-/// The user's mappings in the place of what was understood.
+/// Applies the user's mappings instead of the recognised ones.
 void override_by(const std::vector<Mapping>& mappings, const Log& log, Understanding& understood) {
   if (mappings.empty()) return;
   if (understood.axes.empty()) understood.axes.emplace_back();

@@ -1,4 +1,4 @@
-// Any controller's logs in, records out: what was read, what was understood, what is missing.
+// Makes records from any controller's logs: recognised channels, and missing information.
 #pragma once
 
 #include <nlohmann/json.hpp>

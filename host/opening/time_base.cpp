@@ -131,7 +131,8 @@ Guess unit_of_stamps(double step, const std::optional<StatedPeriod>& stated) {
       return {kUnits[k], 0.97, fmt::format("its steps are the {} that the file states in {}", stated->line, kNames[k])};
     if (!is_plausible(period_s)) continue;
     if (++fitting == 1)
-      guess = {kUnits[k], 0.92, fmt::format("steps of {:.4g}: only in {} a rate of a drive's log", step, kNames[k])};
+      guess = {kUnits[k], 0.92,
+               fmt::format("steps of {:.4g}: only {} give a plausible sampling rate", step, kNames[k])};
   }
   if (fitting > 1) {
     guess.sure = 0.6;
@@ -217,7 +218,7 @@ TimeBase time_base_of(const Log& log, const LogColumn* stamps, const ChannelName
       const double mean_s = base.factor * (values.back() - values.front()) / static_cast<double>(values.size() - 1);
       if (!(mean_s > 0.0)) return {};
       const double period_s = as_set(mean_s);
-      base = by_rows(period_s, fmt::format("{}, which repeat: rows of {:.6g} s on the mean", base.why, period_s), 0.7);
+      base = by_rows(period_s, fmt::format("{}, with repeated values: mean period {:.6g} s", base.why, period_s), 0.7);
       return base;
     }
     base.run_starts = steps.backwards;
@@ -230,12 +231,12 @@ TimeBase time_base_of(const Log& log, const LogColumn* stamps, const ChannelName
   constexpr double kLoggersJitter = 0.05;
   if (base.run_starts.empty() && worst <= kLoggersJitter && follows_even_line(values, period))
     return by_rows(base.period_s,
-                   fmt::format("{}, which jitter by {:.2g} % about even steps without a loss: rows of {:.6g} s",
-                               base.why, 100.0 * worst, base.period_s),
+                   fmt::format("{}, with {:.2g} % jitter and no lost rows: period {:.6g} s", base.why, 100.0 * worst,
+                               base.period_s),
                    base.sure);
   if (worst > kJitterTolerance) {
     base.resample_s = base.period_s;
-    base.why += fmt::format(", uneven by up to {:.2g} periods: made even at {:.6g} s", worst, base.period_s);
+    base.why += fmt::format(", uneven by up to {:.2g} periods: resampled at {:.6g} s", worst, base.period_s);
   }
   return base;
 }

@@ -1,4 +1,4 @@
-// When the rows of a log were taken.
+// Time base of a log.
 #pragma once
 
 #include <optional>

@@ -52,7 +52,7 @@ class Understander {
     found_.layout = log_.layout;
     if (log_.columns.size() > kMostColumns) {
       found_.missing.push_back(
-          fmt::format("a log of at most {} channels; this one has {}", kMostColumns, log_.columns.size()));
+          fmt::format("a log may have at most {} channels; this one has {}", kMostColumns, log_.columns.size()));
       return std::move(found_);
     }
     read_names();
@@ -110,7 +110,7 @@ class Understander {
     found_.time = time_base_of(log_, stamps, name, hints_.period_s);
     if (stamps == nullptr && found_.time.source.empty()) {
       found_.missing.push_back(
-          "when the rows were taken: no column of times, and no sampling period in the file; give --period SECONDS");
+          "the time base: the file has no time column and no sampling period; give --period SECONDS");
     } else if (found_.time.source.empty()) {
       found_.missing.push_back(
           fmt::format("the unit of the times in '{}'; give --map t_s={}*…", stamps->name, source_text(stamps->name)));
@@ -156,20 +156,21 @@ class Understander {
       axes_[belongs ? names_[k].axis : ""].push_back({k, names_[k]});
     }
     if (!several) return;
-    // what no axis is named for is of one of them, or of none: it makes no record of its own
+    // a channel without an axis name belongs to one of them or to none; it gives no record of its own
     const auto rest = axes_.find("");
     if (rest == axes_.end()) return;
     for (const NamedChannel& channel : rest->second) {
       OpenedChannel& out = found_.channels[channel.column];
-      out.why = channel.name.quantity == Quantity::unknown
-                    ? "not understood; kept out"
-                    : fmt::format("{}, of no axis by its name", quantity_name(channel.name.quantity));
+      out.why =
+          channel.name.quantity == Quantity::unknown
+              ? "not understood; kept out"
+              : fmt::format("{}, but its name does not assign it to an axis", quantity_name(channel.name.quantity));
       const bool effort = channel.name.quantity == Quantity::current || channel.name.quantity == Quantity::torque ||
                           channel.name.quantity == Quantity::voltage || channel.name.quantity == Quantity::force;
       if (effort && !is_constant(log_.columns[channel.column].values))
         found_.asks.push_back(
-            fmt::format("'{}' ({}) belongs to no axis by its name: say --map with the columns of one axis", out.name,
-                        quantity_name(channel.name.quantity)));
+            fmt::format("the axis of '{}' ({}), which its name does not tell: give --map with the columns of one axis",
+                        out.name, quantity_name(channel.name.quantity)));
     }
     axes_.erase(rest);
   }
@@ -185,7 +186,7 @@ class Understander {
     found_.axes.push_back(std::move(axis));
   }
 
-  /// Columns without a name that says anything: what they may be, by how they go together.
+  /// Columns without a meaningful name: possible quantities, from their relations.
   void list_unknown() {
     constexpr std::size_t kMost = 16;
     std::vector<std::size_t> unknown;
@@ -213,10 +214,12 @@ class Understander {
       if (share && *share > 0.5)
         efforts += fmt::format("{}{} ({:.0f} %)", efforts.empty() ? "" : ", ", found_.channels[k].name, 100.0 * *share);
     }
-    found_.asks.push_back(
-        fmt::format("'{}' may be the speed of the position '{}' (its integral){}: say --map x_mm=…",
-                    found_.channels[speed].name, found_.channels[position].name,
-                    efforts.empty() ? "" : fmt::format("; the motion explains as an effort would be {}", efforts)));
+    found_.asks.push_back(fmt::format(
+        "'{}' may be the speed of the position '{}' (its integral){}: give --map x_mm=…", found_.channels[speed].name,
+        found_.channels[position].name,
+        efforts.empty()
+            ? ""
+            : fmt::format("; possible torque, force or current, by the share that the motion explains: {}", efforts)));
     found_.channels[position].why =
         fmt::format("may be a position: '{}' is its derivative", found_.channels[speed].name);
     found_.channels[speed].why = fmt::format("may be a speed: the derivative of '{}'", found_.channels[position].name);

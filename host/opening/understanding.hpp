@@ -1,4 +1,4 @@
-// What a log's channels are: by their names, their units, and what they must have to do with each other.
+// Recognises a log's channels by their names, units and physical relations.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@
 
 namespace host {
 
-/// From here on a channel is taken without a question, and below the other one not even after one.
+/// Above the first limit a channel is accepted without a question; below the second it is rejected.
 inline constexpr double kSureEnough = 0.9, kTooUnsure = 0.5;
 
-/// What is known beside the log.
+/// Information from outside the log.
 struct OpeningHints {
   std::optional<sim::DataSheet> sheet{};
   std::optional<double> torque_constant{};  ///< Nm/A or N/A

@@ -91,12 +91,11 @@ std::vector<Assignment> parse_backup(std::string_view text, std::string_view nam
   const auto fail = [&](const std::string& what) {
     throw Failure(
         ExitCode::bad_input,
-        fmt::format("{}: {}. Nothing was restored: take another copy, or give the values that are wanted with "
-                    "axistool set-params",
-                    name, what));
+        fmt::format("{}: {}. Nothing was restored: use another copy, or set the values with axistool set-params", name,
+                    what));
   };
   const std::optional<Seal> seal = seal_of(text);
-  if (seal && crc_of(seal->sealed) != seal->crc) fail("the backup was cut or changed: its CRC does not fit");
+  if (seal && crc_of(seal->sealed) != seal->crc) fail("the backup was cut or changed: its CRC does not match");
   const std::vector<Assignment> list = parse_parameter_text(text, name);
   if (seal && list.size() != seal->count)
     fail(fmt::format("the backup names {} parameters, but says {}", list.size(), seal->count));

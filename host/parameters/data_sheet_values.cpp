@@ -21,8 +21,8 @@ firmware::ParameterValues with_data_sheet(firmware::ParameterValues values, std:
   require_volts(data, firmware::kAxisNames.at(axis), "a board");
   if (!(data.encoder_resolution > 0.0) || !(data.dac_resolution_V > 0.0))
     throw Failure(ExitCode::bad_input,
-                  "the data sheet lacks the resolution of the encoder or of the converter: without them nobody knows "
-                  "what a count or a volt is ([drive.encoder], [drive.dac])");
+                  "the data sheet lacks the resolution of the encoder or of the converter: add [drive.encoder] "
+                  "resolution_mm = … and [drive.dac] resolution_V = …, limit_V = …");
   values.set(place_of(axis, "drive.lead"), static_cast<float>(data.lead));
   values.set(place_of(axis, "drive.encoder_resolution"), static_cast<float>(data.encoder_resolution));
   values.set(place_of(axis, "drive.dac_resolution"), static_cast<float>(data.dac_resolution_V));

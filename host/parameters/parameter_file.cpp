@@ -42,11 +42,12 @@ class ParameterReader {
     const toml::table root = parse_toml(text, name_);
     const auto format = root["format"].value<std::string_view>();
     if (format != kFormat)
-      fail(1, "format = \"{}\" is missing: this is no file of board parameters; `axistool design` writes one", kFormat);
+      fail(1, "format = \"{}\" is missing: this is not a file of board parameters; `axistool design` writes one",
+           kFormat);
     for (const auto& [key, node] : root) {
       if (key.str() == "format" || is_seal(key.str())) continue;
       const std::size_t line = std::max<std::size_t>(1, key.source().begin.line);
-      if (!node.is_table()) fail(line, "{}: parameters stand in tables, [x.kalman] for example", key.str());
+      if (!node.is_table()) fail(line, "{}: parameters must be in tables, for example [x.kalman]", key.str());
       read_table(*node.as_table(), std::string(board_name_of(key.str(), line)));
     }
     return std::move(list_);
@@ -85,7 +86,7 @@ class ParameterReader {
     const std::size_t place = require_place(name, fmt::format("{}: line {}: ", name_, line));
     const bool is_switch = info_at(place).type == firmware::ParameterType::toggle;
     if (is_switch != node.is_boolean() || (!is_switch && !node.is_number()))
-      fail(line, "{}: {} belongs here", name, is_switch ? "true or false" : "a number, without quotes,");
+      fail(line, "{}: expected {}", name, is_switch ? "true or false" : "a number without quotes");
     const float value = is_switch ? (**node.as_boolean() ? 1.0F : 0.0F)
                                   : static_cast<float>(node.value<double>().value_or(std::nan("")));
     const auto problem = firmware::check_value(firmware::rule_at(place), value);

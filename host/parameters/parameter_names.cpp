@@ -73,7 +73,7 @@ std::string value_text(const firmware::ParameterInfo& info, float value) {
 std::string describe(firmware::ParameterKey key, std::uint8_t set_problem_kind, float value) {
   const std::string name = full_name(key);
   const auto place = firmware::place_of(key);
-  if (!place) return fmt::format("{} is unknown to this axistool: use the version that belongs to the firmware", name);
+  if (!place) return fmt::format("{} is unknown to this axistool: use the version that matches the firmware", name);
   const firmware::ParameterInfo& info = info_at(*place);
   const std::string text = value_text(info, value);
   const auto outside = [&](const char* side, float limit) {
@@ -91,7 +91,7 @@ std::string describe(firmware::ParameterKey key, std::uint8_t set_problem_kind, 
                          info.type == firmware::ParameterType::toggle ? "true or false" : "a whole number");
     case firmware::ValueRefusal::rate_disagrees:
       return fmt::format(
-          "{} = {} s does not belong to control.rate: set control.rate = {:.6g}, or design for the board's rate", name,
+          "{} = {} s does not match control.rate: set control.rate = {:.6g}, or design for the board's rate", name,
           text, 1.0 / static_cast<double>(value));
     case firmware::ValueRefusal::refused_by_core:
       return fmt::format("{} = {} ({}) does not go with the other parameters of its axis: {}", name, text,

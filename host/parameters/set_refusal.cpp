@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <complex>
 
@@ -40,7 +40,7 @@ const char* words(PoleProblem problem) {
     case PoleProblem::none:
       break;
   }
-  return "sound here, but not as the board rounds them";
+  return "stable here, but not after the board's rounding";
 }
 
 /// As the monitor's declaration has it; empty where it has none.
@@ -87,10 +87,10 @@ std::string why_refused(const firmware::ParameterValues& values, const firmware:
       return fmt::format("with feedback.k1 and feedback.k2 the loop is {}; its poles are {}. Design the gains again",
                          words(firmware::loop_problem(p)), loop_poles_text(p));
     case Refusal::filters:
-      return "with notch and low_pass as they are the loop would not settle, or one of them is not below 0.45 of the "
-             "control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
+      return "with these notch and low_pass filters the loop would be unstable, or one of them is not below 0.45 of "
+             "the control rate; a narrower notch, a higher frequency or less bandwidth (design --fc) leaves more phase";
     case Refusal::brake_feedback:
-      return "an axis with a brake may fall, and while it stands a dead encoder shows by a tachometer alone: fit one "
+      return "an axis with a brake may fall, and at rest only a tachometer reveals a dead encoder: fit one "
              "(tachometer.fitted), or leave the brake to the amplifier (brake.fitted = false)";
     case Refusal::following_error:
       return following_error_relation(p);

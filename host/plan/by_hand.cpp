@@ -18,47 +18,41 @@ struct ByHand {
 
 constexpr std::array kByHand = {
     ByHand{"constant_torque", "dac_offset",
-           "Take the command away: with the amplifier's input shorted and its enable on, an offset of the converter is "
-           "gone, while a weight still pulls; or measure the converter's output at command 0 with a voltmeter."},
-    ByHand{
-        "constant_torque", "coulomb_asymmetry",
-        "Change the load: with a known weight added or the counterweight taken off, or the axis laid level, a constant "
-        "torque changes by as much, while friction keeps its two levels."},
-    ByHand{
-        "coulomb_asymmetry", "dac_offset",
-        "Short the amplifier's input with its enable on, or measure the converter's output at command 0: an offset of "
-        "the converter shows there; then diagnose again with dac_offset set to it."},
-    ByHand{
-        "current_loop_lag", "input_delay",
-        "Put a current clamp on the motor and step the command at standstill: a delay shifts the step, a current loop "
-        "rounds it."},
-    ByHand{
-        "dac_dead_zone", "load_dependent_friction",
-        "Put a current clamp on the motor and give small commands at standstill: a dead zone gives no current; or run "
-        "the same motion with another load, with which load-dependent friction grows."},
+           "Short the amplifier's input with its enable on: an offset of the converter disappears, a weight still "
+           "pulls. Or measure the converter's output at command 0 with a voltmeter."},
+    ByHand{"constant_torque", "coulomb_asymmetry",
+           "Change the load (add a known weight, remove the counterweight, or level the axis): a constant torque "
+           "changes by the same amount, the two friction levels do not."},
+    ByHand{"coulomb_asymmetry", "dac_offset",
+           "Short the amplifier's input with its enable on, or measure the converter's output at command 0, to find an "
+           "offset of the converter; then diagnose again with dac_offset set to it."},
+    ByHand{"current_loop_lag", "input_delay",
+           "Put a current clamp on the motor and step the command at standstill: a delay shifts the step, a current "
+           "loop rounds it."},
+    ByHand{"dac_dead_zone", "load_dependent_friction",
+           "Put a current clamp on the motor and give small commands at standstill: within a dead zone no current "
+           "flows. Or repeat the motion with another load: load-dependent friction changes with it."},
     ByHand{
         "backlash", "compliance",
         "Put a dial gauge or a second encoder on the table, hold the motor and push the table: a gap moves freely, a "
         "spring pushes back."},
     ByHand{"backlash", "presliding",
-           "Put a dial gauge on the table and turn the motor to and fro by some micrometres: behind a gap the table "
-           "stands, on bristles it follows and springs back."},
-    ByHand{
-        "compliance", "presliding",
-        "Change the table's load: a spring's resonance moves with it, bristles' deflection does not; or put a second "
-        "encoder on the table."},
-    ByHand{
-        "cogging", "torque_ripple",
-        "Run with another load, or pull the axis by hand with the amplifier off: cogging stays, ripple goes with the "
-        "current."},
+           "Put a dial gauge on the table and turn the motor back and forth by a few micrometres: with a gap the table "
+           "does not move, with presliding it follows and springs back."},
+    ByHand{"compliance", "presliding",
+           "Change the table's load: the resonance of a spring changes, presliding does not. Or put a second encoder "
+           "on the table."},
+    ByHand{"cogging", "torque_ripple",
+           "Run with another load, or pull the axis by hand with the amplifier off: cogging is unchanged, ripple "
+           "follows the current."},
     ByHand{
         "cogging", "encoder_cyclic_error",
         "Compare the encoder with a second scale or a laser: an error of the encoder shows there, cogging does not."},
     ByHand{"constant_torque", "spring_torque",
-           "Let the axis work in another part of its travel, or unhook cable chain and bellows: a spring's torque goes "
-           "with the position."},
+           "Move the axis in another part of its travel, or disconnect cable chain and bellows: a spring torque "
+           "depends on position."},
     ByHand{"tach_gain", "torque_ripple",
-           "Compare the tachometer with the encoder's travel over a long way at constant speed."},
+           "Compare the tachometer with the encoder over a long travel at constant speed."},
 };
 
 std::string own_advice(const std::vector<std::string>& kinds) {

@@ -17,7 +17,7 @@ namespace {
 /// Another motion may bring out twice the error that a good model leaves; more is another effect.
 constexpr double kFar = 2.0;
 
-/// chi^2 an observation that even the best rival leaves, at least 1.
+/// chi^2 per observation of the best rival, at least 1.
 double dispersion_of(const std::vector<Rival>& rivals, const RecordSet& both) {
   double least = HUGE_VAL;
   for (const Rival& rival : rivals) least = std::min(least, chi_square_each(rival.model, both));

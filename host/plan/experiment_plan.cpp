@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "host/parallel.hpp"
 #include "host/exit_codes.hpp"
 #include "host/known_by_current.hpp"
+#include "host/parallel.hpp"
 #include "host/plan/information.hpp"
 #include "host/plan/primitives.hpp"
 #include "host/plan/simulated_run.hpp"
@@ -305,8 +305,7 @@ Plan plan_run(const sim::DriveDescription& model, const std::vector<const Record
   require_volts(model.data, model.name, "a planned run");
   if (rivals.size() < 2)
     throw Failure(ExitCode::usage,
-                  "a run separates two rivals at least: give --rivals A,B, or records of which "
-                  "diagnose says that they leave several");
+                  "a run needs at least two rivals: give --rivals A,B, or records for which diagnose leaves several");
   return Planner(model, training, rivals, box, options, progress).make();
 }
 

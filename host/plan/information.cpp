@@ -1,8 +1,9 @@
 #include "host/plan/information.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 
+#include "host/dense_solutions.hpp"
 #include "host/diagnose/model_fit.hpp"
 
 namespace host {
@@ -23,7 +24,7 @@ double Information::least() const {
   constexpr double kLoose = 0.01;
   Eigen::MatrixXd held = curvature;
   held.diagonal().array() += kLoose;
-  return std::max(0.0, square - slope.dot(held.ldlt().solve(slope)));
+  return std::max(0.0, square - slope.dot(symmetric_solution(held, slope)));
 }
 
 Information information_of(const sim::DriveDescription& model, const RecordSet& set) {

@@ -25,7 +25,7 @@ Verdict verdict_block(const Plan& plan, const std::string& run_file) {
   block.label = plan.separable ? "a run decides" : "by hand";
   const std::string group = fmt::format("{}", fmt::join(names_of(plan.rivals), " or "));
   if (plan.separable) {
-    block.headline = fmt::format("A run of {:.3g} s tells {}: {}", plan.run.duration_s(),
+    block.headline = fmt::format("A run of {:.3g} s separates {}: {}", plan.run.duration_s(),
                                  plan.by_hand.empty() ? "which it is" : "some of them apart", group);
     block.sentences.push_back(fmt::format("Expected odds of the true one: {}.", odds_text(plan.expected_odds)));
     block.command = fmt::format("axistool excite AXIS {} -o run.csv", run_file);
@@ -59,8 +59,8 @@ void add_parting(Report& report, const Plan& plan, const PairOutlook& pair) {
   const std::string truth = rival_name(plan.rivals[pair.a].kinds), other = rival_name(plan.rivals[pair.b].kinds);
   plot.title = fmt::format("If it is {}", truth);
   plot.caption = fmt::format(
-      "What is left of the run when {} predicts it, window by window, and when {} does, its "
-      "parameters bent to it as far as the records before allow.",
+      "Residual of the run, window by window, when {} predicts it, and when {} does after refitting its parameters "
+      "within the limits of the earlier records.",
       truth, other);
   plot.t_s = run.record.t_s;
   const DriveUnits units = units_of(run.record.kind);
@@ -84,12 +84,11 @@ void add_parting(Report& report, const Plan& plan, const PairOutlook& pair) {
 void add_considered(Report& report, const Plan& plan) {
   constexpr std::size_t kShown = 12;
   BarChart chart;
-  chart.title = "Pieces that were tried";
+  chart.title = "Pieces tried";
   chart.caption =
-      "Natural logarithm of the odds that one piece alone is expected to bring, of the pair that it separates worst, "
-      "the "
-      "rivals bent by their slopes. Of the chosen ones together the odds above are what remained when they bent in "
-      "earnest.";
+      "Natural logarithm of the expected odds from one piece alone, for the pair of rivals that it separates worst, "
+      "with the rivals refitted by linearisation. The odds above are for all chosen pieces together, after a full "
+      "refit.";
   chart.series = {{"log odds", SeriesRole::model}};
   chart.reference = {"19 to 1", std::log(kDecided / (1.0 - kDecided))};
   for (std::size_t k = 0; k < std::min(kShown, plan.considered.size()); ++k)
@@ -114,7 +113,7 @@ void write_plan_report(const Plan& plan, const std::string& model_name, const st
     report.add(table);
     for (const PairOutlook& pair : plan.pairs)
       if (pair.separable) add_parting(report, plan, pair);
-    report.section("What else was tried", "");
+    report.section("Other pieces tried", "");
     add_considered(report, plan);
   }
   report.write(path);

@@ -15,7 +15,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
   throw Failure(ExitCode::bad_input,
-                fmt::format("{}: {}; give what `axistool plan` or an ambiguous `axistool diagnose` wrote with --json",
+                fmt::format("{}: {}; give the --json file of `axistool plan` or of an ambiguous `axistool diagnose`",
                             path, what));
 }
 
@@ -47,14 +47,14 @@ Beliefs read_beliefs(const std::string& path) {
                                   document.at("probabilities").at(k).get<double>()});
       beliefs.expected_odds = document.value("expected_odds", 0.0);
     } else {
-      refuse(path, fmt::format("'{}' holds no beliefs", format));
+      refuse(path, fmt::format("'{}' holds no prior odds", format));
     }
   } catch (const nlohmann::json::exception& error) {
     refuse(path, error.what());
   }
   double sum = 0.0;
   for (const Rival& rival : beliefs.rivals) sum += rival.probability;
-  if (beliefs.rivals.size() < 2 || !(sum > 0.0)) refuse(path, "it leaves nothing undecided");
+  if (beliefs.rivals.size() < 2 || !(sum > 0.0)) refuse(path, "it leaves only one explanation");
   for (Rival& rival : beliefs.rivals) rival.probability /= sum;
   return beliefs;
 }
@@ -70,10 +70,9 @@ Decision decide(const sim::DriveDescription& model, const Beliefs& beliefs, cons
   for (const Record* record : measured.validation_records()) before.push_back(record);
   if (runs.empty() || before.empty())
     throw Failure(ExitCode::usage,
-                  runs.empty()
-                      ? "none of the training records is a planned run; make it with `axistool excite AXIS "
-                        "RUN.toml -o run.csv`, and give it with the records that the plan was made from"
-                      : "all training records are planned runs; give those that the plan was made from as well");
+                  runs.empty() ? "none of the training records is a planned run; make one with `axistool excite AXIS "
+                                 "RUN.toml -o run.csv`, and give it together with the records used for the plan"
+                               : "all training records are planned runs; also give the records used for the plan");
   std::vector<std::vector<std::string>> kinds;
   for (const Rival& rival : beliefs.rivals) kinds.push_back(rival.kinds);
   std::vector<Rival> rivals = fit_rivals(model, before, kinds);
@@ -85,9 +84,8 @@ void apply(const Decision& decision, const Beliefs& beliefs, Diagnosis& diagnosi
   DiagnosisVerdict& verdict = diagnosis.verdict;
   if (!decision.explains) {
     verdict.explanation += fmt::format(
-        " The planned run decides nothing: it leaves even {} at {:.2g} times the floor, so it shows something that "
-        "none "
-        "of the rivals holds.",
+        " The planned run does not decide: even {} leaves {:.2g} times the noise floor, so the run shows something "
+        "outside all rivals.",
         rival_name(decision.rivals[decision.best].kinds), decision.error);
     return;
   }

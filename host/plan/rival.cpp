@@ -8,8 +8,8 @@
 
 #include "host/diagnose/candidate_starts.hpp"
 #include "host/diagnose/model_fit.hpp"
-#include "host/parallel.hpp"
 #include "host/exit_codes.hpp"
+#include "host/parallel.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -35,7 +35,7 @@ sim::DriveDescription best_start(const sim::EffectInfo& info, const sim::DriveDe
     if (FitResult fit = fit_model(starts[k], training, kFit); fit.robust < best.robust) best = std::move(fit);
   if (best.model.effects.empty())
     throw Failure(ExitCode::usage,
-                  fmt::format("{}: these records do not show where it would begin: no period stands out", info.kind));
+                  fmt::format("{}: these records give no starting value: no period is significant", info.kind));
   return best.model;
 }
 
@@ -45,10 +45,9 @@ sim::DriveDescription with_effect(const std::string& kind, const sim::DriveDescr
   if (info == nullptr)
     throw Failure(ExitCode::usage, fmt::format("effect '{}' is unknown; `axistool effects` lists them", kind));
   if (!is_applicable(*info, model, training))
-    throw Failure(ExitCode::usage,
-                  fmt::format("{}: cannot be added: the model has it already or in another form, excludes it, or these "
-                              "records do not hold the channel in which it shows",
-                              kind));
+    throw Failure(ExitCode::usage, fmt::format("{}: cannot be added: the model already has it (perhaps in another "
+                                               "form) or excludes it, or these records lack the channel that shows it",
+                                               kind));
   SearchEffort effort;
   effort.nominal = &nominal;
   const std::vector<Candidate> found = search_kinds({info}, model, {}, training, training, {}, effort);

@@ -52,10 +52,9 @@ Excitation design_piece(const RunPiece& piece, const ExcitationLimits& box, doub
   own.travel = box.travel - 2.0 * std::abs(offset);
   own.time_s = piece.time_s;
   if (!(own.travel > 0.0))
-    throw Failure(ExitCode::refused,
-                  fmt::format("{}: the axis stands {:g} from where the run began, at the edge of its "
-                              "box of travel = {:g}: move it back, or give more room",
-                              piece.kind, offset, box.travel));
+    throw Failure(ExitCode::refused, fmt::format("{}: the axis is {:g} from the start of the run, at the edge of its "
+                                                 "box of travel = {:g}: move it back, or widen travel",
+                                                 piece.kind, offset, box.travel));
   return design_excitation(piece.kind, piece.numbers, own, scale, piece.closed_loop, piece.seed);
 }
 
@@ -100,12 +99,12 @@ RunPlan parse_run_plan(std::string_view text, const std::string& name) {
   const toml::table table = parse_toml(text, name);
   TomlFields fields(table, name, "the run");
   if (fields.text("format") != kFormat)
-    fields.fail("format", fmt::format("this is no planned run; `axistool plan` writes {}", kFormat));
+    fields.fail("format", fmt::format("this is not a planned run; `axistool plan` writes {}", kFormat));
   RunPlan run;
   run.rivals = fields.texts("rivals");
   run.expected_odds = fields.number("expected_odds", 0.0);
   const toml::table* box = fields.sub_table("box");
-  if (box == nullptr) fields.fail("box", "nothing moves without it; add [box] with travel, speed, volts and time");
+  if (box == nullptr) fields.fail("box", "missing; add [box] with travel, speed, volts and time");
   TomlFields sides(*box, name, "[box]");
   for (auto [side, key] : {std::pair{&ExcitationLimits::travel, "travel"},
                            {&ExcitationLimits::speed, "speed"},
@@ -122,7 +121,7 @@ RunPlan parse_run_plan(std::string_view text, const std::string& name) {
     if (!(piece.time_s > 0.0)) own.fail("time_s", "it must be above 0");
     piece.closed_loop = own.optional_text("closed_loop").value_or("");
     const double seed = own.number("seed", 1.0);
-    if (!(seed >= 0.0 && seed <= 4294967295.0)) own.fail("seed", "a whole number from 0 belongs here");
+    if (!(seed >= 0.0 && seed <= 4294967295.0)) own.fail("seed", "expected a whole number from 0");
     piece.seed = static_cast<unsigned>(seed);
     piece.numbers.list = own.numbers("values");
     if (const toml::table* named = own.sub_table("numbers")) {
@@ -134,7 +133,7 @@ RunPlan parse_run_plan(std::string_view text, const std::string& name) {
   }
   sides.refuse_rest();
   fields.refuse_rest();
-  if (run.pieces.empty()) fields.fail("piece", "the run has no piece; `axistool plan` writes them as [[piece]]");
+  if (run.pieces.empty()) fields.fail("piece", "the run has no [[piece]]; `axistool plan` writes them");
   if (run.duration_s() > run.box.time_s + 1e-9)
     fields.fail("box", fmt::format("its pieces take {:g} s, more than the box's time", run.duration_s()));
   return run;

@@ -16,8 +16,8 @@ namespace host {
 
 namespace {
 
-/// Travel that proves motion, in steps of the encoder: beyond dither of a count or two at rest, and beyond the elastic
-/// travel before breakaway of a fine encoder.
+/// Least travel that counts as motion, in encoder steps: beyond dither of a count or two at rest, and beyond the
+/// elastic travel before breakaway of a fine encoder.
 constexpr double kMovedSteps = 20.0;
 /// Travel by the tachometer that any encoder on the axis must see: with 0.1 mm/rad (a fine screw) 0.05 mm.
 constexpr double kSeenTravel_rad = 0.5;
@@ -147,8 +147,8 @@ double departure_from_line(const std::vector<double>& x, double slope) {
 
 void fail_dead(const Record& record, std::vector<double> Record::*channel, const std::string& contradiction) {
   fail(record, LogFaultKind::dead_channel, channel,
-       fmt::format("{}: dead channel: constant at {} in all {} rows while {}; check the wiring and the "
-                   "channel's assignment, or leave the column out",
+       fmt::format("{}: dead channel: constant at {} in all {} rows while {}; check the wiring and the channel "
+                   "assignment, or leave the column out",
                    where(record, channel), (record.*channel)[0], record.size(), contradiction));
 }
 
@@ -195,7 +195,7 @@ void check_table_position(const Record& record) {
 
 bool axis_moves(const Record& record) { return record.has_position() ? position_moves(record) : speed_moves(record); }
 
-/// The axis' path: its position or, without one, the sum of its speed. Only its course matters, not its unit.
+/// The axis' path: its position or, without one, the sum of its speed. Only its shape matters, not its unit.
 std::vector<double> path_of(const Record& record) {
   if (record.has_position()) return record.x;
   std::vector<double> path(record.size());
@@ -204,7 +204,7 @@ std::vector<double> path_of(const Record& record) {
   return path;
 }
 
-/// The longest way up and the longest way down of a path.
+/// The largest rise and the largest fall of a path.
 struct Ways {
   double up = 0.0, down = 0.0;
 };
@@ -221,7 +221,7 @@ Ways longest_ways(const std::vector<double>& path) {
   return ways;
 }
 
-/// A constant effort moves a drive one way; without any, it only slows down.
+/// A constant torque moves a drive in one direction; without torque it only slows down.
 bool motion_contradicts_constant_effort(const Record& record, double effort) {
   const std::vector<double> path = path_of(record);
   const Ways ways = longest_ways(path);
@@ -240,14 +240,14 @@ void check_effort_alive(const Record& record) {
   const bool command_is_constant = !record.u_V.empty() && is_constant(record.u_V);
   const bool current_is_constant = !record.i_A.empty() && is_constant(record.i_A);
   if (command_is_constant && motion_contradicts_constant_effort(record, record.u_V[0]))
-    fail_dead(record, &Record::u_V, "the axis speeds up or moves both ways");
+    fail_dead(record, &Record::u_V, "the axis accelerates or moves in both directions");
   if (current_is_constant && !record.u_V.empty() && !command_is_constant)
     fail_dead(record, &Record::i_A, "u_V varies and the axis moves");
   if (current_is_constant && motion_contradicts_constant_effort(record, record.i_A[0]))
-    fail_dead(record, &Record::i_A, "the axis speeds up or moves both ways");
+    fail_dead(record, &Record::i_A, "the axis accelerates or moves in both directions");
 }
 
-/// Fails where a value lies outside what its unit can mean.
+/// Fails if a value is impossible in its unit.
 void check_range(const Record& record, std::vector<double> Record::*channel, double low, double high,
                  std::string_view suspicion) {
   const std::vector<double>& values = record.*channel;
@@ -271,12 +271,12 @@ constexpr UnitMistake kRotaryMistakes[] = {
     {180.0 / kPi, "the speed looks like deg/s; multiply it by pi/180 = 0.017453"},
     {1000.0, "the position looks like m under a name in mm (or the speed like mrad/s); multiply x by 1000"},
     {0.001, "the position looks like um under a name in mm; multiply x by 0.001"},
-    {2.0 * kPi, "the lead looks like mm/rev where mm/rad belongs (or the speed is 2 pi too large); divide by 2 pi"},
+    {2.0 * kPi, "the lead looks like mm/rev instead of mm/rad (or the speed is 2 pi too large); divide by 2 pi"},
 };
 constexpr UnitMistake kLinearMistakes[] = {
     {1000.0, "one of them is in mm and the other in m; scale the wrong one by 1000"},
     {0.001, "one of them is in mm and the other in m; scale the wrong one by 1000"},
-    {1.0 / 60.0, "the speed looks like a value a minute wrongly scaled, or x by 60; check the time unit"},
+    {1.0 / 60.0, "the speed looks like a value per minute, or x is off by 60; check the time unit"},
     {60.0, "the speed looks like m/min; divide it by 60"},
     {60000.0, "the speed looks like mm/min; divide it by 60000"},
     {1000.0 / 60.0, "the speed looks like m/min under a name in mm/s, or the like; check both units"},
@@ -287,7 +287,7 @@ std::string_view nearest_mistake(double factor, sim::DriveKind kind) {
   const auto nearest = [&](auto& mistakes) -> std::string_view {
     for (const UnitMistake& mistake : mistakes)
       if (std::abs(std::log(factor / mistake.factor)) < std::log(kNear)) return mistake.what;
-    return "no common mistake of units explains it; check both columns and the lead";
+    return "no common unit error explains it; check both columns and the lead";
   };
   return kind == sim::DriveKind::rotary ? nearest(kRotaryMistakes) : nearest(kLinearMistakes);
 }
@@ -315,10 +315,10 @@ void check_speed_against_position(const Record& record, double lead) {
   const std::string pair = fmt::format("{}, and {}", where(record, &Record::w), name_of(record, &Record::x));
   if (factor < 0.0)
     fail(record, LogFaultKind::speed_sign, &Record::w,
-         fmt::format("{}: the speed runs against the position (factor {:.4g}); turn the sign of one of them", pair,
+         fmt::format("{}: the speed runs against the position (factor {:.4g}); invert the sign of one of them", pair,
                      factor));
   fail(record, LogFaultKind::wrong_unit, &Record::w,
-       fmt::format("{}: a unit cannot be right: the speed is {:.4g} times what the position's change gives; {}", pair,
+       fmt::format("{}: a unit cannot be right: the speed is {:.4g} times the derivative of the position; {}", pair,
                    factor, nearest_mistake(factor, record.kind)));
 }
 
@@ -331,11 +331,11 @@ void scale(std::vector<double>& values, sim::DriveKind from, sim::DriveKind to) 
 
 void check_channels(const Record& record) {
   check_range(record, &Record::u_V, -kLargestCommand_V, kLargestCommand_V,
-              "D/A converters and amplifiers take less; the numbers look like counts or mV");
+              "D/A converters and amplifiers accept less; the numbers look like counts or mV");
   check_range(record, &Record::i_A, -kLargestCurrent_A, kLargestCurrent_A, "the numbers look like mA or counts");
-  check_range(record, &Record::x, -kFarthest, kFarthest, "no axis is so long; the numbers look like an overflow");
-  check_range(record, &Record::x2, -kFarthest, kFarthest, "no axis is so long; the numbers look like an overflow");
-  check_range(record, &Record::w, -kFastest, kFastest, "no drive is so fast; the numbers look like an overflow");
+  check_range(record, &Record::x, -kFarthest, kFarthest, "no axis is that long; the numbers look like an overflow");
+  check_range(record, &Record::x2, -kFarthest, kFarthest, "no axis is that long; the numbers look like an overflow");
+  check_range(record, &Record::w, -kFastest, kFastest, "no drive is that fast; the numbers look like an overflow");
   check_range(record, &Record::temp_C, kLowestTemperature_C, kHighestTemperature_C,
               "the numbers look like kelvins or counts");
   check_position_and_speed_alive(record);
@@ -356,13 +356,13 @@ void adapt_to(Record& record, const sim::DataSheet& sheet) {
   if (sheet.kind == sim::DriveKind::linear && record.u_V.empty() && !record.i_A.empty() &&
       !(sheet.torque_constant_Nm_per_A > 0.0))
     fail(record,
-         "missing column: u_V; the record holds the current i_A alone, and this drive's data sheet knows its force by "
-         "the command in volts: add force_constant_N_per_A to [drive], or log u_V");
+         "missing column: u_V; the record holds only the current i_A, but this drive's data sheet gives the force per "
+         "volt of the command: add force_constant_N_per_A to [drive], or log u_V");
   if (is_known_by_current(sheet)) {
     if (record.i_A.empty() && !record.u_V.empty())
       fail(record,
-           fmt::format("missing column: i_A; the record holds the command u_V, and this drive's data sheet gives "
-                       "torque or force for the current alone: add {} to [drive], or log i_A",
+           fmt::format("missing column: i_A; the record holds the command u_V, but this drive's data sheet gives "
+                       "torque or force only for the current: add {} to [drive], or log i_A",
                        sheet.kind == sim::DriveKind::rotary ? "amplifier_gain_A_per_V" : "force_constant_N_per_V"));
     record.u_V.clear();  // nothing is known of it
   }
@@ -377,14 +377,14 @@ void check_units(const Record& record, const sim::DataSheet& sheet) {
   constexpr double kBeyondRange = 20.0;  // a command may ask for more than the converter gives, but not for that much
   if (sheet.dac_limit_V > 0.0)
     check_range(record, &Record::u_V, -kBeyondRange * sheet.dac_limit_V, kBeyondRange * sheet.dac_limit_V,
-                "far beyond the D/A converter of the model; the numbers look like counts or mV");
+                "far beyond the range of the model's D/A converter; the numbers look like counts or mV");
   check_speed_against_position(record, sheet.lead);
   if (!(sheet.encoder_resolution > 0.0) || !position_moves(record)) return;
   const std::string_view unit = sheet.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (largest_step(record.x) < 0.5 * sheet.encoder_resolution)
     fail(record, LogFaultKind::wrong_unit, &Record::x,
-         fmt::format("{}: a unit cannot be right: the position changes by {:.3g} {} a row at most, less "
-                     "than half a step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
+         fmt::format("{}: a unit cannot be right: the position changes by at most {:.3g} {} per row, less than half a "
+                     "step of the model's encoder ({:.3g} {}); the numbers look like a larger unit",
                      where(record, &Record::x), largest_step(record.x), unit, sheet.encoder_resolution, unit));
   constexpr double kCoarse = 200.0;  // encoder steps: a unit that is 1000 times too small, and a slow start besides
   const double step = coarsest_step(record.x);

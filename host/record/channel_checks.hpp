@@ -1,4 +1,4 @@
-// Can what the channels of a record say be true together? Faults of logging are ruled out before any physics.
+// Checks the channels of a record against each other: rules out faults of logging before any physics.
 #pragma once
 
 #include <string_view>
@@ -13,7 +13,7 @@ inline constexpr double kLargestCommand_V = 1000.0;
 /// Largest motor current of a feed drive, A; beyond it the numbers are mA.
 inline constexpr double kLargestCurrent_A = 10000.0;
 /// Farthest position, mm or m, and fastest speed, rad/s or m/s: a thousand kilometres and a hundred times the fastest
-/// spindle. Beyond, sums of squares lose what they are made of.
+/// spindle. Beyond, sums of squares lose precision.
 inline constexpr double kFarthest = 1e9;
 inline constexpr double kFastest = 1e6;
 /// Absolute zero, and what no part of a feed drive survives (kelvins read as Celsius lie above it), deg C.

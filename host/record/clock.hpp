@@ -14,7 +14,7 @@ struct ClockReading {
 };
 
 /// "2026-03-04 12:34:56.789", also with T between, Z behind, / or decimal comma; "04.03.2026"; "12:34:56". Empty for
-/// what is none of these, and for days whose order with months is anybody's guess (03/04/2026).
+/// other text, and for dates with an ambiguous order of day and month (03/04/2026).
 std::optional<ClockReading> parse_clock(std::string_view field);
 
 }  // namespace host

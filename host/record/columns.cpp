@@ -33,7 +33,7 @@ std::string fault_of_pair(std::string_view first, std::string_view second) {
 
 std::string_view missing_among(std::span<const std::string_view> names) {
   if (!give(names, &Record::t_s)) return "t_s (time in seconds)";
-  // A reference serves where no effort was logged: tracking errors can be told of.
+  // Without a command or current a reference suffices, for the tracking error.
   const bool has_reference = give(names, &Record::x_ref) || give(names, &Record::w_ref);
   if (!give(names, &Record::u_V) && !give(names, &Record::i_A) && !has_reference)
     return "u_V (command in volts) or i_A (motor current)";
@@ -81,8 +81,8 @@ std::string fault_of_copies(std::span<const NamedColumn> columns) {
     for (std::size_t j = 0; j < k; ++j)
       if (columns[j].values == columns[k].values && varies(columns[k].values))
         return fmt::format(
-            "duplicated channel: columns {} and {} hold the same numbers in every row; log each quantity by itself, or "
-            "remove the copy",
+            "duplicated channel: columns {} and {} hold the same numbers in every row; log each quantity separately, "
+            "or remove the copy",
             columns[j].name, columns[k].name);
   return {};
 }

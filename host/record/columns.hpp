@@ -56,8 +56,8 @@ std::string_view column_name(std::vector<double> Record::*channel, sim::DriveKin
 /// What the file that the record came from calls a channel; column_name() where it came from none.
 std::string_view name_in_file(const Record& record, std::vector<double> Record::*channel);
 
-/// What is wrong with a set of column names: one twice, two for the same quantity or of different kinds of drive, a
-/// required one missing. Empty when nothing is.
+/// Fault of a set of column names: a duplicate, two for the same quantity or of different kinds of drive, or a required
+/// one missing. Empty if there is none.
 std::string fault_of_columns(std::span<const std::string_view> names);
 
 /// Numbers under one of the names that the format knows, in the unit of that name.

@@ -34,9 +34,7 @@ void keep(std::vector<Value>& values, std::size_t begin, std::size_t end) {
 
 void keep_rows(Record& record, std::size_t begin, std::size_t end) {
   if (end < begin + kFewestRows)
-    fail(record,
-         "{} rows would remain, and {} are the fewest that anything can be learned from; the record lasts from "
-         "{} s to {} s",
+    fail(record, "{} rows would remain, but at least {} are needed; the record lasts from {} s to {} s",
          end > begin ? end - begin : 0, kFewestRows, record.t_s.front(), record.t_s.back());
   for (const auto channel : kChannelsInFileOrder) keep(record.*channel, begin, end);
   for (ExtraChannel& extra : record.extra) {
@@ -65,10 +63,10 @@ std::vector<double>& channel_of(Record& record, std::string_view name) {
   for (ExtraChannel& extra : record.extra) {
     names.push_back(extra.name);
     if (name != extra.name) continue;
-    if (!extra.text.empty()) fail(record, "{} holds texts, which lie at no time between two rows", name);
+    if (!extra.text.empty()) fail(record, "{} holds text, which cannot be interpolated between rows", name);
     return extra.values;
   }
-  if (name == "t_s") fail(record, "t_s is what the channels are shifted against; name one of them");
+  if (name == "t_s") fail(record, "t_s itself cannot be shifted; name another channel");
   fail(record, "there is no channel {}{}; there is {}", name, did_you_mean(name, names), fmt::join(names, ", "));
 }
 
@@ -149,7 +147,7 @@ Record shift_channel(const Record& record, std::string_view name, double by_s) {
   note(shifted, "shifted",
        fmt::format("{} by {:+} s{}; {} rows at the ends cut off", name, by_s,
                    whole  ? ""
-                   : held ? ", by its mean over each period"
+                   : held ? ", by the mean over each period"
                           : ", by straight lines between samples",
                    record.size() - shifted.size()));
   return shifted;

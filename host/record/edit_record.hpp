@@ -1,5 +1,4 @@
-// What messages about records advise: a part of one, or one with a channel moved in time. The header says what was
-// done.
+// Edits that messages about records advise: cut a part, or shift a channel in time. The header records the edit.
 #pragma once
 
 #include <string>
@@ -9,9 +8,9 @@
 
 namespace host {
 
-/// The rows from `from_s` to `to_s`, both included; stamps stay as they are. Only what remains has to be a record:
-/// faults outside are what one cuts off. `text` is the file's, `name` stands for its path in messages. Throws
-/// Failure(usage) where no row remains, and as parse_record() does.
+/// The rows from `from_s` to `to_s`, both included; stamps stay as they are. Only the remaining rows must form a valid
+/// record. `text` is the file's, `name` stands for its path in messages. Throws Failure(usage) where no row remains,
+/// and as parse_record() does.
 Record cut_record(std::string_view text, const std::string& name, double from_s, double to_s);
 
 /// The channel `name` later by `by_s` (earlier where negative): row k holds what it held at t - by_s, found by straight

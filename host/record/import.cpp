@@ -48,8 +48,7 @@ class Importer {
       take_as_it_is();
     write_header();
     if (record_.size() < kFewestRows)
-      fail("the record would hold {} rows, and {} are the fewest that anything can be learned from; log for longer",
-           record_.size(), kFewestRows);
+      fail("the record would hold {} rows, but at least {} are needed; log for longer", record_.size(), kFewestRows);
     check_channels(record_);
     return std::move(record_);
   }
@@ -67,7 +66,7 @@ class Importer {
       if (!column.name.empty()) mappings_.push_back({column.name, column.name, {}, 1.0, 0.0});
     }
     if (std::ranges::none_of(mappings_, [](const Mapping& m) { return m.column == "t_s"; }))
-      fail("no column is called t_s, so say which is which: --map t_s=…,u_V=…,x_mm=…; there is {}", log_.inventory());
+      fail("no column is called t_s, so assign the columns: --map t_s=…,u_V=…,x_mm=…; there is {}", log_.inventory());
   }
 
   void check_names() const {
@@ -96,26 +95,26 @@ class Importer {
       source.raw.resize(longest());
       std::iota(source.raw.begin(), source.raw.end(), 0.0);
     }
-    if (longest() == 0) fail("the log is empty; log again");
+    if (longest() == 0) fail("the log is empty; record it again");
     time_ = &*std::ranges::find(sources_, std::string_view("t_s"), [](const Source& s) { return s.mapping->column; });
-    if (!time_->mapping->time_source.empty()) fail("t_s cannot have time stamps of its own; remove '@' behind it");
+    if (!time_->mapping->time_source.empty()) fail("t_s cannot have separate time stamps; remove the '@' after it");
     for (Source& source : sources_) stamp(source);
     for (const Unwrapping& unwrapping : options_.unwrap) unwrap(unwrapping);
   }
 
-  /// A step of more than half the range went the other way round.
+  /// A step of more than half the range is a wrap.
   void unwrap(const Unwrapping& unwrapping) {
     const auto source = std::ranges::find(sources_, std::string_view(unwrapping.column),
                                           [](const Source& s) { return std::string_view(s.mapping->column); });
     if (source == sources_.end() || unwrapping.column == "t_s")
-      throw Failure(ExitCode::usage, fmt::format("--unwrap {}: the record gets no such channel", unwrapping.column));
+      throw Failure(ExitCode::usage, fmt::format("--unwrap {}: the record has no such channel", unwrapping.column));
     std::vector<double>& values = source->stamped.values;
     const auto [low, high] = std::ranges::minmax(values);
     constexpr double kRounding = 1.001;
     if (high - low > kRounding * unwrapping.range)
       fail(
-          "--unwrap {}={}: the column covers {:.6g}, more than that, so it does not begin again there; give the range "
-          "that it has in the record's unit",
+          "--unwrap {}={}: the column covers {:.6g}, more than this range, so it does not wrap there; give its range "
+          "in the record's unit",
           unwrapping.column, unwrapping.range, high - low);
     double turns = 0.0, before = values.front();
     std::size_t wraps = 0;
@@ -153,8 +152,8 @@ class Importer {
     const std::vector<double>& stamps = own_time ? usable(source.mapping->time_source).values : time_->raw;
     if (stamps.size() != source.raw.size())
       fail(
-          "lengths differ: {} has {} values, {} has {} time stamps; name stamps of its own ({}={}@…) and --resample, "
-          "or cut them to one length",
+          "lengths differ: {} has {} values, {} has {} time stamps; name its separate time stamps ({}={}@…) and "
+          "--resample, or cut both to one length",
           source.mapping->source, source.raw.size(), own_time ? source.mapping->time_source : time_->mapping->source,
           stamps.size(), source.mapping->column, source.mapping->source);
     for (std::size_t k = 0; k < stamps.size(); ++k) {
@@ -177,14 +176,14 @@ class Importer {
   [[noreturn]] void fail_value(const Source& source, std::size_t row, double value) const {
     if (std::isnan(value) && &source != time_)
       fail(
-          "{}, {}: NaN or no value; correct it, cut the log there, or, where the channel was logged more slowly, make "
-          "even samples with --resample",
+          "{}, {}: NaN or no value; correct it, cut the log there, or use --resample if the channel was logged more "
+          "slowly",
           place(row), source.mapping->source);
     fail("{}, {}: {} is not a measured value; correct it, or cut the log there", place(row), source.mapping->source,
          value);
   }
 
-  /// One channel of the log under two names would be believed twice.
+  /// One channel of the log under two names would count twice.
   void refuse_copies() const {
     std::vector<NamedColumn> raw;
     for (const Source& source : sources_)
@@ -202,7 +201,7 @@ class Importer {
   void take_as_it_is() {
     for (const Source& source : sources_)
       if (source.stamped.t_s != time_->stamped.t_s)
-        fail("{} has time stamps of its own that differ from those of t_s; make even samples with --resample PERIOD",
+        fail("{} has separate time stamps that differ from those of t_s; resample with --resample PERIOD",
              source.mapping->column);
     record_.sample_period_s = check_time_axis(axis_of(*time_), {}, 0, log_.path);
     for (Source& source : sources_) place_values(source, source.stamped.values);
@@ -239,13 +238,15 @@ class Importer {
     state_what_was_done(period_s, start, end);
   }
 
-  /// Ten times more samples than were taken say nothing new, and a mistyped period would fill the memory.
+  /// More than ten times the logged samples add no information, and a mistyped period would fill the memory.
   void refuse_hopeless(double period_s, double length_s) const {
     constexpr double kMostPerSample = 10.0;
     const double finest = static_cast<double>(longest()) * kMostPerSample;
     if (length_s / period_s > finest)
-      fail("--resample {}: {:.3g} samples would be made of {}; give a period in seconds near that of the log, {:.3g}",
-           period_s, length_s / period_s, longest(), measure_spacing(axis_of(*time_)).period_s);
+      fail(
+          "--resample {}: this would make {:.3g} samples from {}; give a period in seconds near that of the log, "
+          "{:.3g}",
+          period_s, length_s / period_s, longest(), measure_spacing(axis_of(*time_)).period_s);
     if (period_s * static_cast<double>(kFewestRows) > length_s)
       fail("--resample {}: the log lasts {:.3g} s, which leaves fewer than {} rows; give a shorter period, in seconds",
            period_s, length_s, kFewestRows);
@@ -263,7 +264,7 @@ class Importer {
             : fmt::format("{} gap(s), {} sample(s) missing, the longest {:.6g} s; filled by interpolation",
                           spacing.gaps, spacing.dropped, longest_step());
     record_.header["resampled_by"] =
-        "straight lines between samples; u_V, held from row to row, by its mean over each new period";
+        "straight lines between samples; for u_V, which is held between rows, the mean over each new period";
     for (const Source& source : sources_)
       if (source.blanks > 0 || !source.mapping->time_source.empty())
         record_.header[fmt::format("resampled_{}", source.mapping->column)] =

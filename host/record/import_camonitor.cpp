@@ -61,7 +61,7 @@ class Collector {
 
   Log finish() {
     log_.layout = "camonitor";
-    if (skipped_ > 0) log_.header["imported_without"] = fmt::format("{} lines that hold no number", skipped_);
+    if (skipped_ > 0) log_.header["imported_without"] = fmt::format("{} lines without a number", skipped_);
     for (LogColumn& column : log_.columns)
       column.kind = fmt::format("{} {}", column.values.size(),
                                 column.time.empty() ? "times, s from the first day's midnight" : "numbers");

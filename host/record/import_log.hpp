@@ -1,4 +1,4 @@
-// Somebody else's log as it lies in a file: named or numbered columns, of whatever length.
+// A foreign log as read from a file: named or numbered columns of any length.
 #pragma once
 
 #include <limits>
@@ -53,13 +53,13 @@ Log parse_log_text(std::string_view text, std::string_view name);
 Log parse_table(std::string_view text, std::string_view name);
 
 /// A table whose header stands above the channels, key by key, with a time column in front of one channel or of several
-/// (TwinCAT 3 Scope, NI). Empty where the text is none.
+/// (TwinCAT 3 Scope, NI). Empty for any other text.
 std::optional<Log> parse_channel_blocks(std::string_view text, std::string_view name);
 
-/// One value a line: name, date, time, value (EPICS camonitor). Empty where the text is none.
+/// One value a line: name, date, time, value (EPICS camonitor). Empty for any other text.
 std::optional<Log> parse_camonitor(std::string_view text, std::string_view name);
 
-/// The trace of a SINUMERIK control (XML: dataFrame, dataSignal, rec). Empty where the text is none.
+/// The trace of a SINUMERIK control (XML: dataFrame, dataSignal, rec). Empty for any other text.
 std::optional<Log> parse_sinumerik(std::string_view text, std::string_view name);
 
 /// read_log of a NumPy array.

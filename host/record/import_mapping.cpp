@@ -67,7 +67,7 @@ class MappingParser {
     mapping_.column = take_name("the name of a column, such as x_mm");
     if (mapping_.column.find_first_of(",#\"\n\r") != std::string::npos)
       fail("'{}' cannot be the name of a column", mapping_.column);
-    if (!take('=')) fail("'=' belongs behind '{}'; {}", mapping_.column, kExample);
+    if (!take('=')) fail("expected '=' after '{}'; {}", mapping_.column, kExample);
     take_leading_column_number();
     const Linear sum = take_sum();
     if (mapping_.source.empty()) fail("'{}' has no variable or column to come from; {}", mapping_.column, kExample);
@@ -148,7 +148,7 @@ class MappingParser {
   double take_number() {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    if (error != std::errc{}) fail("a number belongs here");
+    if (error != std::errc{}) fail("expected a number");
     at_ = static_cast<std::size_t>(end - text_.data());
     return value;
   }
@@ -158,7 +158,7 @@ class MappingParser {
     if (at_ < text_.size() && (text_[at_] == '"' || text_[at_] == '\'')) return take_quoted();
     const std::size_t start = at_;
     while (at_ < text_.size() && is_name_character(text_[at_])) ++at_;
-    if (at_ == start) fail("{} belongs here; {}", what, kExample);
+    if (at_ == start) fail("expected {}; {}", what, kExample);
     take_index();
     return std::string(text_.substr(start, at_ - start));
   }
@@ -174,7 +174,7 @@ class MappingParser {
   std::string take_quoted() {
     const char quote = text_[at_];
     const std::size_t end = text_.find(quote, at_ + 1);
-    if (end == std::string_view::npos || end == at_ + 1) fail("a name in quotes belongs here");
+    if (end == std::string_view::npos || end == at_ + 1) fail("expected a name in quotes");
     std::string name(text_.substr(at_ + 1, end - at_ - 1));
     at_ = end + 1;
     return name;

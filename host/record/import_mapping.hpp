@@ -1,4 +1,4 @@
-// `--map t_s=t,x_mm=counts*0.00122+0`: how the channels of somebody else's log become the columns of a record.
+// `--map t_s=t,x_mm=counts*0.00122+0`: how the channels of a foreign log become the columns of a record.
 #pragma once
 
 #include <string>

@@ -179,10 +179,9 @@ Log read_mat(const std::string& path) {
     const std::string name = variable->name != nullptr ? variable->name : "";
     announced += announced_numbers(*variable, 0);
     if (!(announced <= static_cast<double>(kMostLogNumbers)))
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("{}: with '{}' it unpacks to more than {} numbers, the most that a log may have; save "
-                                "fewer variables or rows",
-                                path, name, kMostLogNumbers));
+      throw Failure(ExitCode::bad_input, fmt::format("{}: with '{}' it unpacks to more than {} numbers, the most that "
+                                                     "a log may have; save fewer variables or rows",
+                                                     path, name, kMostLogNumbers));
     if (matio.read_data(file.get(), variable.get()) == 0) append_variable(*variable, name, 0, log);
   }
   if (log.columns.empty())

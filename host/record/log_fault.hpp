@@ -1,4 +1,4 @@
-// What can be wrong with a log that no physics explains, and the end of a command that meets it.
+// Faults of a log that no physics explains, and the failure of a command that meets one.
 #pragma once
 
 #include <string>
@@ -53,7 +53,7 @@ struct LogFault {
   bool accepted = false;  ///< fatal, but the user knows better
 };
 
-/// A log that no answer can be drawn from: exit code 9.
+/// A log that allows no analysis: exit code 9.
 class FaultyLog : public Failure {
  public:
   FaultyLog(const std::string& message, std::vector<LogFault> found)

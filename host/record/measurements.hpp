@@ -1,4 +1,4 @@
-// Records that have passed the gate: what every analysis starts from.
+// Records that have passed the gate: the input of every analysis.
 #pragma once
 
 #include <utility>
@@ -17,7 +17,7 @@ class Measurements {
   Measurements& operator=(Measurements&&) = default;
 
   const std::vector<Record>& training() const { return training_; }
-  /// May be empty: then part of the training data has to judge.
+  /// May be empty: then a part of the training data is held back for validation.
   const std::vector<Record>& validation() const { return validation_; }
   std::vector<const Record*> training_records() const { return pointers(training_); }
   std::vector<const Record*> validation_records() const { return pointers(validation_); }

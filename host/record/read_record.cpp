@@ -62,10 +62,8 @@ class Parser {
     const TimeAxis axis{record_.t_s, stamp_resolution_s_, record_.names_line + 1};
     record_.sample_period_s = check_time_axis(axis, header_period_s_, period_line_, record_.path);
     if (record_.size() < kFewestRows)
-      fail_here(
-          "the record ends after {} rows, too short: {} are the fewest that anything can be learned from; record "
-          "for longer",
-          record_.size(), kFewestRows);
+      fail_here("the record ends after {} rows, too short: at least {} are needed; record for longer", record_.size(),
+                kFewestRows);
     check_channels(record_);
     return std::move(record_);
   }
@@ -91,7 +89,7 @@ class Parser {
           lines_.number());
     if (!record_.header.contains("format"))
       fail(
-          "line 1: there is no '# format: {}' line, so what the columns mean is unknown; add it if the file follows "
+          "line 1: there is no '# format: {}' line, so the meaning of the columns is unknown; add it if the file has "
           "that format, else convert it: axistool import {} --map t_s=…,u_V=…,x_mm=… -o record.csv",
           kFormat, name_);
   }
@@ -102,7 +100,7 @@ class Parser {
     const std::string key(trim_blanks(line_.substr(1, colon - 1)));
     const std::string value(trim_blanks(line_.substr(colon + 1)));
     if (!record_.header.emplace(key, value).second)
-      fail_here("'# {}:' stands in the header twice; keep one of them", key);
+      fail_here("'# {}:' occurs twice in the header; keep one of them", key);
     if (key == "format" && value != kFormat) fail_here("format '{}' is unknown; this program reads {}", value, kFormat);
     if (key == "drive") record_.drive = value;
     if (key == "sample_period_s") {
@@ -121,7 +119,7 @@ class Parser {
       const std::string_view name = trim_blanks(rest.substr(0, comma));
       if (name.empty()) fail_here("column {} has no name; name it, or remove the comma", columns_.size() + 1);
       if (parse_number(name))
-        fail_here("'{}' stands where column names belong; put a line such as t_s,u_V,x_mm before the rows", name);
+        fail_here("found '{}' instead of column names; put a line such as t_s,u_V,x_mm before the rows", name);
       columns_.push_back({name, find_known_column(name), {}, {}});
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
@@ -151,7 +149,7 @@ class Parser {
   }
 
   void read_row() {
-    if (line_.starts_with('#')) fail_here("a line that begins with # stands among the rows; move it to the top");
+    if (line_.starts_with('#')) fail_here("a line that begins with # is among the rows; move it to the top");
     if (trim_blanks(line_).empty()) fail_here("the line is blank; remove it, or cut the record there (axistool cut)");
     std::string_view rest = line_;
     for (std::size_t k = 0; k < columns_.size(); ++k) {

@@ -1,4 +1,4 @@
-// Measurements in (`axis-record/1`, CSV). Whatever is wrong with a file is said, and nothing is repaired in silence.
+// Measurements in (`axis-record/1`, CSV). Every fault of a file is reported; nothing is repaired silently.
 #pragma once
 
 #include <string>

@@ -61,7 +61,7 @@ Record record_of(RecordColumns given, const std::string& name) {
   for (const auto& [column, values] : given.columns) {
     names.push_back(column);
     if (values.size() != given.columns.front().second.size())
-      fail(name, "the columns of a record have one length; {} has {} rows, {} has {}", names.front(),
+      fail(name, "the columns of a record must have the same length; {} has {} rows, {} has {}", names.front(),
            given.columns.front().second.size(), column, values.size());
   }
   if (const std::string fault = fault_of_columns(names); !fault.empty()) fail(name, "{}", fault);
@@ -80,10 +80,8 @@ Record record_of(RecordColumns given, const std::string& name) {
   }
   fill_channels(std::move(known), record);
   if (record.size() < kFewestRows)
-    fail(name,
-         "the record ends after {} rows, too short: {} are the fewest that anything can be learned from; record for "
-         "longer",
-         record.size(), kFewestRows);
+    fail(name, "the record ends after {} rows, too short: at least {} are needed; record for longer", record.size(),
+         kFewestRows);
   double digit = std::numeric_limits<double>::infinity();
   for (const double t : record.t_s) digit = std::min(digit, last_digit_of(fmt::format("{}", t)));
   record.sample_period_s = check_time_axis({record.t_s, digit, 0}, period_s, 0, name);

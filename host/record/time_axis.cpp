@@ -102,19 +102,18 @@ double check_time_axis(const TimeAxis& axis, std::optional<double> header_period
   const Spacing spacing = measure_spacing(axis);
   if (header_period_s && std::abs(*header_period_s - spacing.period_s) >
                              kPeriodTolerance * *header_period_s + spacing.worst_jitter_s * 0.5)
-    fail(
-        fmt::format("{}sample_period_s: {} s contradicts t_s, which advances by {:.6g} s a row; correct whichever is "
-                    "wrong",
-                    header_line > 0 ? fmt::format("line {}: ", header_line) : "", *header_period_s, spacing.period_s));
+    fail(fmt::format(
+        "{}sample_period_s: {} s contradicts t_s, which advances by {:.6g} s per row; correct the wrong one",
+        header_line > 0 ? fmt::format("line {}: ", header_line) : "", *header_period_s, spacing.period_s));
   const std::string jitter =
       fmt::format("{:.3g} ms rms, {:.3g} ms at worst, with a period of {:.6g} ms", spacing.rms_jitter_s * 1e3,
                   spacing.worst_jitter_s * 1e3, spacing.period_s * 1e3);
   if (spacing.gaps > 0) {
     const double from_s = axis.t_s[spacing.first_gap_row - 1];
     const std::string message = fmt::format(
-        "{}: {}: dropped samples: {:.6g} s pass between two rows (first of {} gap(s), {} sample(s) missing; "
-        "steps jitter by {}); record again, cut the record at the gaps (axistool cut), or fill them knowingly with "
-        "axistool import --resample {:.6g}",
+        "{}: {}: dropped samples: {:.6g} s pass between two rows (first of {} gap(s), {} sample(s) missing; steps "
+        "jitter by {}); record again, cut the record at the gaps (axistool cut), or accept interpolation with axistool "
+        "import --resample {:.6g}",
         path, where(axis, spacing.first_gap_row), axis.t_s[spacing.first_gap_row] - from_s, spacing.gaps,
         spacing.dropped, jitter, round_period(spacing.period_s));
     throw FaultyLog(

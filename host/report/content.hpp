@@ -10,7 +10,7 @@
 
 namespace host {
 
-/// What a series stands for. It decides the colour, so that the same thing has the same colour in every figure.
+/// Meaning of a series. It determines the colour, so that the same quantity has the same colour in every figure.
 enum class SeriesRole { measured, predicted, residual, before, after, train, validate, floor, model, other };
 
 enum class Tone { good, attention, bad, neutral };
@@ -74,7 +74,7 @@ struct Axis {
   std::string unit;
 };
 
-/// Anything against anything: residual over speed, position, acceleration; friction curve; order spectrum (stems).
+/// Any quantity over another: residual over speed, position, acceleration; friction curve; order spectrum (stems).
 struct ScatterPlot {
   std::string title;
   std::string caption;

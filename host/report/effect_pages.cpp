@@ -28,7 +28,7 @@ constexpr std::array kStages = {
     StageName{sim::Stage::motor, "motor", "Motor"},
     StageName{sim::Stage::load, "load", "Torques on the shaft"},
     StageName{sim::Stage::friction, "friction", "Friction"},
-    StageName{sim::Stage::mechanics, "mechanics", "Masses and what connects them"},
+    StageName{sim::Stage::mechanics, "mechanics", "Masses and their connections"},
     StageName{sim::Stage::encoder, "encoder", "Encoder"},
     StageName{sim::Stage::tachometer, "tachometer", "Tachometer"},
     StageName{sim::Stage::table, "table", "Table, as a scale of its own sees it"},
@@ -194,11 +194,12 @@ std::string effect_page(const sim::EffectInfo& info, const Terminal& terminal) {
   append_parameters(page, info);
   append_section(page, "How it shows in the residual", info.shows, terminal);
   if (!info.along.empty())
-    append_section(page, "What its trace goes with", fmt::format("{}", fmt::join(info.along, ", ")), terminal);
+    append_section(page, "Coordinate that the residual depends on", fmt::format("{}", fmt::join(info.along, ", ")),
+                   terminal);
   append_section(page, "Confused with", fmt::format("{}", fmt::join(info.confused_with, ", ")), terminal);
-  append_section(page, "What to measure to tell them apart", info.separate_by, terminal);
-  append_section(page, "Where it comes from", info.origin, terminal);
-  append_section(page, "What can be done", info.remedy, terminal);
+  append_section(page, "How to tell them apart", info.separate_by, terminal);
+  append_section(page, "Origin", info.origin, terminal);
+  append_section(page, "Remedy", info.remedy, terminal);
   page += "\nIn the model file of a rotary drive\n";
   append_indented(page, effect_example_toml(info, sim::DriveKind::rotary));
   page += "\nIn the model file of a linear drive\n";

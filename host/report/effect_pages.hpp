@@ -1,4 +1,4 @@
-// The catalogue of effects as people and programs read it.
+// The catalogue of effects as text and as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -98,7 +98,7 @@ void Report::add(ScatterPlot plot) {
 void Report::add(HeatMap map) {
   require(map.values.size() == map.x.count * map.y.count, map.title,
           fmt::format("{} values for {} x {} cells", map.values.size(), map.x.count, map.y.count));
-  require(map.limit > 0.0, map.title, "its limit is not above 0");
+  require(map.limit > 0.0, map.title, "its limit must be above 0");
   blocks_.emplace_back(std::move(map));
 }
 

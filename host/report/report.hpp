@@ -15,7 +15,7 @@ class Report {
   /// `subtitle`: what was looked at, e.g. the model's and the records' names.
   explicit Report(std::string title, std::string subtitle = "");
 
-  /// The answer; shown on top, whenever it is given.
+  /// The verdict; always shown at the top.
   void verdict(Verdict verdict);
 
   /// Begins a section; `text` (may be empty) says what the reader should see in it.

@@ -100,7 +100,7 @@
       addElement(content, "b", "", panel.label);
       data.series.forEach(function (series, index) {
         const item = addElement(content, "span", series.isVisible ? "" : "off");
-        item.title = "Click: without it, or with it again";
+        item.title = "Click to hide or show it";
         const swatch = addElement(item, "i", "swatch" + (panel.series[index].style === "points" ? " dot" : ""));
         const colour = panel.series[index].colour;
         swatch.style.background = panel.series[index].dashed

@@ -1,5 +1,6 @@
 #include "host/response/axis_controller.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 

@@ -1,7 +1,7 @@
 // The controller that ships, as a frequency response: estimator, feedback, filters (firmware/core/axis.hpp).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <complex>
 
 #include "firmware/core/axis_parameters.hpp"

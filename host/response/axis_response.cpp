@@ -97,7 +97,7 @@ bool is_one_of_a_drive(const ResponseLine& line, const FrequencyResponse& respon
 /// Throws Failure(bad_input) naming the first entry that no measurement gives.
 void require_measured(const FrequencyResponse& response, const std::string& path) {
   const auto refuse = [&](const std::string& what) {
-    throw Failure(ExitCode::bad_input, fmt::format("{}: {}; write it anew with `axistool bode --json`", path, what));
+    throw Failure(ExitCode::bad_input, fmt::format("{}: {}; write it again with `axistool bode --json`", path, what));
   };
   constexpr double kShortest_s = 1e-6, kLongest_s = 1.0;
   if (!(response.sample_period_s >= kShortest_s && response.sample_period_s <= kLongest_s))
@@ -191,7 +191,7 @@ AxisResponse read_response(const std::string& path) {
   try {
     const json document = json::parse(read_file(path));
     if (document.at("format") != "axis-response/1")
-      throw Failure(ExitCode::bad_input, path + ": is no axis-response/1");
+      throw Failure(ExitCode::bad_input, path + ": is not axis-response/1");
     response.method =
         document.at("method") == "welch" ? FrequencyResponse::Method::welch : FrequencyResponse::Method::periodic;
     response.is_indirect = document.at("indirect");
@@ -224,7 +224,7 @@ AxisResponse read_response(const std::string& path) {
     response.odd = read_distortion(document, "odd");
   } catch (const json::exception& error) {
     throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: {}: no response that `axistool bode --json` wrote", path, error.what()));
+                  fmt::format("{}: {}: not a response that `axistool bode --json` wrote", path, error.what()));
   }
   require_measured(response, path);
   axis.fit = fit_plant(response);

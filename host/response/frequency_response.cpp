@@ -30,10 +30,11 @@ void require_comparable(const std::vector<Record>& records) {
     if (record.kind != first.kind || record.has_position() != first.has_position() ||
         record.has_speed() != first.has_speed() ||
         std::abs(record.sample_period_s - first.sample_period_s) > 1e-6 * first.sample_period_s)
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("{} and {} are of different drives, channels or sample periods: take records of one "
-                                "axis, made alike",
-                                first.path, record.path));
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format(
+              "{} and {} differ in drive, channels or sample period: give records of one axis with the same settings",
+              first.path, record.path));
   }
 }
 
@@ -45,7 +46,7 @@ std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<PeriodicR
     const std::optional<MultisineHeader> excitation = multisine_of(record);
     if (!excitation)
       throw Failure(ExitCode::bad_input,
-                    fmt::format("{} is not of a multisine, but others are: analyse them apart", record.path));
+                    fmt::format("{} is not of a multisine, but others are: analyse them separately", record.path));
     runs[{excitation->period, excitation->lines}].push_back(periodic_run(record, *excitation));
   }
   return runs;
@@ -88,8 +89,7 @@ void analyse_periodic(const std::vector<Record>& records, FrequencyResponse& res
     std::ranges::stable_sort(*lines, {}, &DistortionLine::f_Hz);
   if (response.realisations < 2)
     response.warnings.push_back(
-        "one realisation of the phases: bands tell noise, but not what a nonlinear drive leaves; repeat with other "
-        "--seed");
+        "only one realisation of the phases: the bands show noise, but not nonlinearity; repeat with another --seed");
   merge_equal_lines(response.lines);
 }
 
@@ -102,13 +102,13 @@ void analyse_arbitrary(const std::vector<Record>& records, FrequencyResponse& re
   response.lines = found.lines;
   if (response.lines.empty())
     throw Failure(ExitCode::refused,
-                  fmt::format("{}: command and answer have nothing in common beyond chance at any frequency: make a "
+                  fmt::format("{}: command and response are not significantly correlated at any frequency: make a "
                               "record with `axistool excite … multisine`, or `axistool bode AXIS`",
                               records.front().path));
   const auto has_reference = std::ranges::any_of(records, [](const Record& record) { return !record.w_ref.empty(); });
   if (!found.is_indirect && has_reference)
     response.warnings.push_back(
-        "the loop was closed and its reference stood still: what noise the controller answers is part of the estimate");
+        "the loop was closed with a constant reference: the controller's response to noise biases the estimate");
 }
 
 }  // namespace

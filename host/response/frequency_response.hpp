@@ -1,7 +1,7 @@
 // Frequency response of a drive, from the command to position and speed, as records show it.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <complex>
 #include <string>
 #include <vector>

@@ -99,9 +99,10 @@ LoopDesign design_loop(const sim::DriveDescription& model, const DesignOptions& 
       filters = choice;
     }
     if (bandwidth_Hz == 0.0)
-      throw Failure(ExitCode::refused, fmt::format("no bandwidth keeps this on the measured response: the largest "
-                                                   "modulus margin that there is is {:.3g}",
-                                                   best_modulus));
+      throw Failure(
+          ExitCode::refused,
+          fmt::format("no bandwidth reaches this on the measured response: the largest modulus margin is {:.3g}",
+                      best_modulus));
   } else if (aim.seek_notch && !measured.fit->resonances.empty()) {
     filters.notch = Notch{measured.fit->resonances.front().f_Hz.value};
   }

@@ -74,9 +74,8 @@ void put_lag(const PlantFit& fit, const std::string& from, ModelStarts& starts) 
   sim::EffectEntry& entry = entry_of(starts.model, "current_loop_lag");
   put(entry, "bandwidth", f_Hz);
   entry.from = from;
-  starts.said.push_back(
-      fmt::format("magnitude and phase fall as behind a lag of {:.3g} ms: current_loop_lag, {:.3g} Hz", 1e3 * lag.value,
-                  f_Hz.value));
+  starts.said.push_back(fmt::format("magnitude and phase fall like a lag of {:.3g} ms: current_loop_lag, {:.3g} Hz",
+                                    1e3 * lag.value, f_Hz.value));
 }
 
 }  // namespace
@@ -86,8 +85,7 @@ ModelStarts with_response(const sim::DriveDescription& model, const PlantFit& fi
   put_compliance(fit, from, starts);
   put_delay(fit, from, starts);
   put_lag(fit, from, starts);
-  if (starts.said.empty())
-    starts.said.emplace_back("no resonance, no delay and no lag stand out: the model stays as it is");
+  if (starts.said.empty()) starts.said.emplace_back("no significant resonance, delay or lag: the model is unchanged");
   return starts;
 }
 

@@ -37,7 +37,7 @@ std::vector<Number> numbers_in(const Record& record, const std::string& key) {
   for (Number number; text >> number;) numbers.push_back(number);
   if (!text.eof())
     throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: # {}: {} is no list of numbers", record.path, key, found->second));
+                  fmt::format("{}: # {}: {} is not a list of numbers", record.path, key, found->second));
   return numbers;
 }
 
@@ -155,7 +155,7 @@ std::optional<MultisineHeader> multisine_of(const Record& record) {
                         (found.phases_turns.empty() || found.phases_turns.size() == found.lines.size());
   if (!is_whole)
     throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: its header tells of a multisine, but period, lines and phases do not go together",
+                  fmt::format("{}: its header describes a multisine, but period, lines and phases are inconsistent",
                               record.path));
   found.period = period.front();
   return found;

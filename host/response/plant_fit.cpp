@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/identify/dense_matrix.hpp"
 #include "host/identify/least_squares.hpp"
@@ -162,9 +163,9 @@ Fitted solve(const Deviations& deviations, std::vector<double> value, Late late,
   if (iterations < kIterations) return found;
   ceres::CRSMatrix sparse;
   if (!problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse))
-    throw Failure(ExitCode::refused, "no drive fits the response: the fit leaves the range of numbers");
+    throw Failure(ExitCode::refused, "no drive fits the response: the fit diverges");
   const Eigen::MatrixXd jacobian = dense_matrix(sparse);
-  found.covariance = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  found.covariance = pseudo_inverse(gram(jacobian));
   return found;
 }
 
@@ -279,9 +280,8 @@ Eigen::Vector2cd PlantFit::at(double f_Hz) const {
 PlantFit fit_plant(const FrequencyResponse& response) {
   const Deviations deviations(response);
   if (response.lines.size() < 6 || deviations.count() < 12)
-    throw Failure(ExitCode::refused,
-                  fmt::format("{} lines of the response stand out of the noise: too few to fit a drive to",
-                              deviations.count() / 2));
+    throw Failure(ExitCode::refused, fmt::format("{} lines of the response exceed the noise: too few to fit a drive",
+                                                 deviations.count() / 2));
   const Fitted fitted = fitted_best(deviations);
   PlantFit fit = unpack(fitted.value.data(), fitted.modes(), fitted.late, response.sample_period_s);
   const double free = std::max(1.0, static_cast<double>(deviations.count() - fitted.value.size()));

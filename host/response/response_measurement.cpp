@@ -46,7 +46,7 @@ class Planner {
     if (!(plan.from_Hz > 0.0) || !(top_Hz_ > plan.from_Hz) || top_Hz_ >= 0.45 * scale.rate_Hz)
       throw Failure(ExitCode::usage, fmt::format("from {:g} Hz to {:g} Hz is no range below 0.45 of the control rate",
                                                  plan.from_Hz, top_Hz_));
-    if (plan.realisations < 2) throw Failure(ExitCode::usage, "two realisations of the phases are the least");
+    if (plan.realisations < 2) throw Failure(ExitCode::usage, "at least two realisations of the phases are needed");
     if (!(parameters.drive.Bd2 > 0.0F) || !(scale.lead > 0.0))
       throw Failure(ExitCode::refused, "the axis has no controller yet: `axistool design`, then `set-params`");
   }
@@ -79,9 +79,9 @@ class Planner {
   [[noreturn]] void refuse_time() const {
     throw Failure(
         ExitCode::refused,
-        fmt::format("{:g} s of motion are too little for {} realisations of periods of {:g} s: {:g} s are the "
-                    "least for one band",
-                    plan_.box.time_s, plan_.realisations, period_s_, std::ceil(least_s())));
+        fmt::format(
+            "{:g} s of motion are too short for {} realisations with periods of {:g} s: one band needs at least {:g} s",
+            plan_.box.time_s, plan_.realisations, period_s_, std::ceil(least_s())));
   }
 
   std::vector<Excitation> runs(const std::vector<std::pair<double, double>>& ranges) {
@@ -115,7 +115,7 @@ class Planner {
     ride = std::min({ride, room / run_s, static_cast<double>(parameters_.velocity_limit)});
     for (int i = 0; i < 20 && ride * run_s + stop(ride) > room; ++i) ride *= 0.95;
     if (ride * scale_.lead > 0.0 && ride * run_s >= 50.0 * scale_.encoder_resolution) return ride;
-    throw Failure(ExitCode::refused, fmt::format("travel = {:g} is too narrow to ride on for {:g} s: a wider box",
+    throw Failure(ExitCode::refused, fmt::format("travel = {:g} is too narrow for a jog of {:g} s: give a wider box",
                                                  plan_.box.travel, run_s));
   }
 

@@ -109,9 +109,7 @@ ScatterSeries distortion(const std::string& name, SeriesRole role, const std::ve
 
 void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* before) {
   const FrequencyResponse& response = axis.response;
-  report.section("Drive",
-                 "From the command in volts to what the sensors see. Bands hold the true value in 95 of 100 "
-                 "measurements.");
+  report.section("Drive", "From the command in volts to the sensors. Bands: 95 % intervals.");
   for (const Eigen::Index channel : {0, 1}) {
     if (channel == 0 ? !response.has_position : !response.has_speed) continue;
     const std::string name = channel == 0 ? "position" : "speed";
@@ -140,18 +138,16 @@ void add_plant(Report& report, const AxisResponse& axis, const AxisResponse* bef
       magnitudes.push_back(distortion("odd distortion", SeriesRole::before, response.odd));
       std::erase_if(magnitudes, [](const ScatterSeries& series) { return series.x.empty(); });
       caption =
-          "Noise: what it leaves of doubt in the estimate. Nonlinearity: by how much one run differs from the mean "
-          "of all beyond noise (friction, backlash). Distortion: what the drive answers where nobody asks, even "
-          "(friction "
-          "that falls with speed, one side stronger) and odd (backlash, stiction, saturation) apart; of noise it is "
-          "free.";
+          "Noise: its part of the estimate's uncertainty. Nonlinearity: variation between runs beyond noise (friction, "
+          "backlash). Distortion: response at frequencies without excitation, even (friction that falls with speed, "
+          "asymmetry) and odd (backlash, stiction, saturation), without noise.";
     }
     report.add(over_frequency(capitalised(name) + ", magnitude", caption,
                               {name, fmt::format("dB {}", plant_unit(response, channel))}, std::move(magnitudes)));
     report.add(over_frequency(capitalised(name) + ", phase", "", {"phase", "degrees"}, std::move(phases)));
   }
   if (response.method == FrequencyResponse::Method::welch)
-    report.add(over_frequency("Coherence", "1: all of the answer is the command's.", {"coherence", ""}, [&] {
+    report.add(over_frequency("Coherence", "1: the command explains the whole response.", {"coherence", ""}, [&] {
       ScatterSeries series{"coherence", SeriesRole::measured, SeriesStyle::line, {}, {}, {}, {}};
       for (const ResponseLine& line : response.lines) {
         series.x.push_back(line.f_Hz);
@@ -208,12 +204,13 @@ void add_loop(Report& report, const AxisResponse& axis, const AxisResponse* befo
       over_frequency("Open loop, magnitude", "It crosses 0 dB at the crossover.", {"open loop", "dB"}, magnitudes));
   report.add(over_frequency("Open loop, phase", "Its distance from -180 degrees at the crossover is the phase margin.",
                             {"phase", "degrees"}, phases));
-  report.add(over_frequency("Sensitivity",
-                            "How much of a disturbance is left: below 0 dB the loop helps, above it makes worse.",
-                            {"sensitivity", "dB"}, peaks));
+  report.add(over_frequency(
+      "Sensitivity",
+      "Gain from disturbance to error: below 0 dB the loop reduces the disturbance, above it amplifies it.",
+      {"sensitivity", "dB"}, peaks));
   ScatterPlot nyquist;
   nyquist.title = "Nyquist plot";
-  nyquist.caption = "The grey circle about -1 is as large as the modulus margin allows: the loop touches it.";
+  nyquist.caption = "The radius of the grey circle about -1 is the modulus margin: the loop touches it.";
   nyquist.x = {"real part", ""};
   nyquist.y = {"imaginary part", ""};
   nyquist.equal_scales = true;
@@ -292,7 +289,7 @@ Verdict verdict_of(const AxisResponse& axis) {
     if (axis.margins->crossover_Hz)
       verdict.headline += fmt::format(" at a crossover of {} Hz", with_interval(axis.margins->crossover_Hz));
     verdict.headline += ".";
-    verdict.sentences.push_back(fmt::format("The loop comes nearest to -1 at {} Hz; 0.5 is a usual aim.",
+    verdict.sentences.push_back(fmt::format("The loop is nearest to -1 at {} Hz; a usual target is 0.5.",
                                             format_value(axis.margins->modulus_at_Hz)));
   }
   if (axis.fit)

@@ -13,7 +13,7 @@ namespace host::workbench {
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw Failure(ExitCode::permission, "the system gives no random numbers for a token");
+    throw Failure(ExitCode::permission, "the system provides no random numbers for a token");
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
   return token;

@@ -1,4 +1,4 @@
-// Who may talk to the workbench: pages that it served itself, on this computer, to whoever holds its token.
+// Access control of the workbench: only pages that it served itself, on this computer, to a holder of its token.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace host::workbench {
 std::string random_token();
 
 /// A web page that is open in the same browser can send requests to this computer too: under another name that resolves
-/// to it (Host), or from another origin. Neither has the cookie, and neither is answered.
+/// to it (Host), or from another origin. Neither has the cookie, so both are refused.
 class Access {
  public:
   Access(std::string token, int port) : token_(std::move(token)), port_(port) {}
 
   std::string url() const;  ///< with the token: what the user opens
-  /// What keeps the token once the page is open: out of the reach of scripts and of other sites.
+  /// The cookie that keeps the token: not accessible to scripts or other sites.
   std::string cookie() const;
 
   bool is_own_host(std::string_view host) const;

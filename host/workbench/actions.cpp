@@ -134,7 +134,7 @@ nlohmann::json cut_out(const Folder& folder, const CutRequest& request) {
   };
   keep("--to", "to", request.stretch.from_s, -HUGE_VAL, request.stretch.from_s);
   keep("--from", "from", request.stretch.to_s, request.stretch.to_s, HUGE_VAL);
-  if (pieces.empty()) throw Failure(ExitCode::refused, request.record + ": nothing of it would be left");
+  if (pieces.empty()) throw Failure(ExitCode::refused, request.record + ": no rows would remain");
   return {{"pieces", pieces}, {"commands", commands}};
 }
 

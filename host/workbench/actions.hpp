@@ -1,4 +1,4 @@
-// What the page asks for, by the functions that the commands call: the same documents, to the digit.
+// The page's actions, by the same functions as the commands: the same documents, digit for digit.
 #pragma once
 
 #include <functional>

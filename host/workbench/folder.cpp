@@ -89,12 +89,12 @@ std::vector<FolderFile> Folder::files() const {
 
 std::string Folder::existing(const std::string& name) const {
   if (!is_plain_name(name))
-    throw Failure(ExitCode::usage, fmt::format("\"{}\": a name below the folder belongs here", name));
+    throw Failure(ExitCode::usage, fmt::format("\"{}\": expected a name below the folder", name));
   std::error_code missing;
   const fs::path real = fs::canonical(root_ / name, missing);
   if (missing) throw Failure(ExitCode::bad_input, name + ": there is no such file in the folder");
   if (!is_inside(real, root_)) throw Failure(ExitCode::permission, name + ": leads out of the folder");
-  if (!fs::is_regular_file(real)) throw Failure(ExitCode::bad_input, name + ": is no file");
+  if (!fs::is_regular_file(real)) throw Failure(ExitCode::bad_input, name + ": is not a file");
   return name;
 }
 
@@ -117,10 +117,11 @@ std::string Folder::own_file(const std::string& name) const {
 Upload::Upload(const Folder& folder, const std::string& name) : folder_(folder), name_(name) {
   const std::string extension = fs::path(name).extension().string();
   if (!is_plain_name(name) || name.find('/') != std::string::npos || (extension != ".toml" && !is_log(extension)))
-    throw Failure(ExitCode::usage,
-                  fmt::format("\"{}\": a model (.toml), a record or a log (.csv, .txt, .tsv, .log, .dat, .mat, .npy, "
-                              ".npz) belongs here",
-                              name));
+    throw Failure(
+        ExitCode::usage,
+        fmt::format(
+            "\"{}\": expected a model (.toml), a record or a log (.csv, .txt, .tsv, .log, .dat, .mat, .npy, .npz)",
+            name));
   static std::atomic<unsigned> count = 0;
   partial_ = folder.own_file(fmt::format("upload-{}.partial", ++count));
   file_.open(partial_, std::ios::binary | std::ios::trunc);

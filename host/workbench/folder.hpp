@@ -11,7 +11,7 @@
 
 namespace host::workbench {
 
-/// Where jobs keep their results, and the page what is chosen.
+/// Results of the jobs, and the page's selection.
 inline constexpr const char* kOwnFolder = "workbench";
 
 /// A name below the folder: no "..", no leading "/" or "-", nothing hidden, no control characters.
@@ -33,11 +33,11 @@ class Folder {
   /// Models, records and logs, sorted; at most some thousand. What lies outside is left out, links to it too.
   std::vector<FolderFile> files() const;
 
-  /// `name`, where it is a file of the folder. Throws Failure: usage for a name that is none, permission where links
+  /// `name`, where it is a file of the folder. Throws Failure: usage for any other name, permission where links
   /// lead out of the folder, bad_input where there is no such file.
   std::string existing(const std::string& name) const;
 
-  /// A name that nothing has yet: "x+cogging.toml", "x+cogging-2.toml", ...
+  /// An unused name: "x+cogging.toml", "x+cogging-2.toml", ...
   std::string free_name(const std::string& stem, const std::string& extension) const;
 
   /// Makes kOwnFolder and returns the name of a file in it. Throws Failure(permission) where links lead out of the

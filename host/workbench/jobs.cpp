@@ -87,7 +87,7 @@ int Jobs::submit(const Request& request) {
   const std::lock_guard lock(mutex_);
   const int id = jobs_.empty() ? 1 : jobs_.rbegin()->first + 1;
   if (queue_.size() >= kMostWaiting || id >= kMostJobs)
-    throw Failure(ExitCode::refused, fmt::format("{} jobs wait already", queue_.size()));
+    throw Failure(ExitCode::refused, fmt::format("{} jobs are already waiting", queue_.size()));
   auto job = std::make_unique<Job>();
   job->request = request;
   const std::string stem = fmt::format("{:04}-{}", id, task_name(request.task));

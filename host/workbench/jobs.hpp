@@ -1,4 +1,4 @@
-// Long work, one after the other, with progress and cancel. All that is known of a job lies in the folder: its state in
+// Long work, one after the other, with progress and cancel. Everything about a job is in the folder: its state in
 // workbench/0007.job.json, its results beside that, so that a reload, another page or a crash loses nothing.
 #pragma once
 
@@ -21,11 +21,11 @@ namespace host::workbench {
 
 class Jobs {
  public:
-  /// Reads what is there of earlier sessions. What was under way then is "interrupted".
+  /// Reads the jobs of earlier sessions. Unfinished ones are "interrupted".
   explicit Jobs(const Folder& folder);
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
-  /// Cancels what is under way and waits for its end.
+  /// Cancels the running job and waits for its end.
   ~Jobs();
 
   /// Throws Failure(refused) where too many wait.

@@ -30,7 +30,7 @@ nlohmann::json object_of(std::string_view text) {
   if (text.size() > kLongestRequest)
     throw Failure(ExitCode::usage, fmt::format("request: longer than {} bytes", kLongestRequest));
   nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
-  if (!document.is_object()) throw Failure(ExitCode::usage, "request: a JSON object belongs here");
+  if (!document.is_object()) throw Failure(ExitCode::usage, "request: expected a JSON object");
   return document;
 }
 
@@ -42,7 +42,7 @@ void require_known(const nlohmann::json& object, std::initializer_list<std::stri
 std::string text_of(const nlohmann::json& object, const std::string& field) {
   const auto found = object.find(field);
   if (found == object.end()) return "";
-  if (!found->is_string()) refuse(field, "a text belongs here");
+  if (!found->is_string()) refuse(field, "expected a text");
   return found->get<std::string>();
 }
 
@@ -51,24 +51,24 @@ std::string word_of(const std::string& text, const std::string& field) {
   constexpr std::size_t kLongestWord = 60;
   const bool is_word = text.size() <= kLongestWord &&
                        std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
-  if (!is_word) refuse(field, "a word of small letters and _ belongs here");
+  if (!is_word) refuse(field, "expected a word of small letters and _");
   return text;
 }
 
 std::string file_of(const std::string& name, const std::string& field) {
-  if (!is_plain_name(name)) refuse(field, "the name of a file below the folder belongs here");
+  if (!is_plain_name(name)) refuse(field, "expected the name of a file below the folder");
   return name;
 }
 
 double number_of(const nlohmann::json& value, const std::string& field) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(field, "a number belongs here");
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(field, "expected a number");
   return value.get<double>();
 }
 
 std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
   const auto found = object.find("stretch");
   if (found == object.end()) return std::nullopt;
-  if (!found->is_array() || found->size() != 2) refuse("stretch", "[FROM, TO] in seconds belongs here");
+  if (!found->is_array() || found->size() != 2) refuse("stretch", "expected [FROM, TO] in seconds");
   const TimeSpan stretch{number_of((*found)[0], "stretch"), number_of((*found)[1], "stretch")};
   if (!(stretch.from_s < stretch.to_s)) refuse("stretch", "it ends after it begins");
   return stretch;
@@ -79,7 +79,7 @@ Focus focus_of(const nlohmann::json& object) {
   if (object.contains("traces")) focus.record = file_of(text_of(object, "traces"), "traces");
   focus.stretch = stretch_of(object);
   if (object.contains("period_mm")) focus.period_mm = number_of(object["period_mm"], "period_mm");
-  if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "a length above 0 belongs here");
+  if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "expected a length above 0");
   return focus;
 }
 
@@ -88,9 +88,9 @@ std::vector<std::string> list_of(const nlohmann::json& object, const std::string
   std::vector<std::string> texts;
   const auto found = object.find(field);
   if (found == object.end()) return texts;
-  if (!found->is_array() || found->size() > kMostNames) refuse(field, "a list of names belongs here");
+  if (!found->is_array() || found->size() > kMostNames) refuse(field, "expected a list of names");
   for (const nlohmann::json& item : *found) {
-    if (!item.is_string()) refuse(field, "a list of names belongs here");
+    if (!item.is_string()) refuse(field, "expected a list of names");
     texts.push_back(check(item.get<std::string>(), field));
   }
   return texts;
@@ -117,7 +117,7 @@ Request parse_request(std::string_view text) {
   const nlohmann::json document = object_of(text);
   const std::string name = text_of(document, "do");
   const auto* const task = std::ranges::find(kTasks, name, &std::pair<const char*, Task>::first);
-  if (task == kTasks.end()) refuse("do", "compare, identify, diagnose, add or improve belongs here");
+  if (task == kTasks.end()) refuse("do", "expected compare, identify, diagnose, add or improve");
   Request request;
   request.task = task->second;
   if (request.task == Task::compare) {
@@ -135,9 +135,9 @@ Request parse_request(std::string_view text) {
     request.over = word_of(text_of(document, "over"), "over");
   }
   request.accepted = list_of(document, "accept", word_of);
-  if (request.models.empty()) refuse("models", "at least one model belongs here");
+  if (request.models.empty()) refuse("models", "expected at least one model");
   if (request.train.empty())
-    refuse(request.task == Task::compare ? "records" : "train", "at least one record belongs here");
+    refuse(request.task == Task::compare ? "records" : "train", "expected at least one record");
   if ((request.task == Task::add) == request.kind.empty()) refuse("kind", "add needs an effect, and it alone");
   if (request.task != Task::add && !request.over.empty()) refuse("over", "belongs to add");
   const bool searches = request.task == Task::diagnose || request.task == Task::improve;
@@ -150,7 +150,7 @@ CutRequest parse_cut(std::string_view text) {
   const nlohmann::json document = object_of(text);
   require_known(document, {"record", "stretch"});
   const std::optional<TimeSpan> stretch = stretch_of(document);
-  if (!stretch) refuse("stretch", "[FROM, TO] in seconds belongs here");
+  if (!stretch) refuse("stretch", "expected [FROM, TO] in seconds");
   return {file_of(text_of(document, "record"), "record"), *stretch};
 }
 
@@ -158,9 +158,9 @@ OpenRequest parse_open(std::string_view text) {
   const nlohmann::json document = object_of(text);
   require_known(document, {"logs", "yes"});
   const bool yes = document.contains("yes");
-  if (yes && !document["yes"].is_boolean()) refuse("yes", "true or false belongs here");
+  if (yes && !document["yes"].is_boolean()) refuse("yes", "expected true or false");
   OpenRequest request{list_of(document, "logs", file_of), yes && document["yes"].get<bool>()};
-  if (request.logs.empty()) refuse("logs", "at least one log belongs here");
+  if (request.logs.empty()) refuse("logs", "expected at least one log");
   return request;
 }
 
@@ -172,10 +172,10 @@ nlohmann::json parse_choice(std::string_view text) {
   choice["roles"] = nlohmann::json::object();
   const auto roles = document.find("roles");
   if (roles == document.end()) return choice;
-  if (!roles->is_object() || roles->size() > kMostNames) refuse("roles", "an object of names and roles belongs here");
+  if (!roles->is_object() || roles->size() > kMostNames) refuse("roles", "expected an object of names and roles");
   for (const auto& item : roles->items()) {
     const nlohmann::json& role = item.value();
-    if (role != "train" && role != "judge" && role != "off") refuse("roles", "train, judge or off belongs here");
+    if (role != "train" && role != "judge" && role != "off") refuse("roles", "expected train, judge or off");
     choice["roles"][file_of(item.key(), "roles")] = role;
   }
   return choice;

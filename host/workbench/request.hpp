@@ -1,4 +1,4 @@
-// What the page asks for, as JSON, and the command that does the same.
+// Requests of the page, as JSON, and the equivalent command.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -88,7 +88,7 @@ std::optional<std::string> body_of(const ContentReader& content, Response& respo
     return body.size() <= kLongestRequest && Clock::now() < until;
   });
   if (body.size() <= kLongestRequest && Clock::now() < until) return body;
-  send(response, {{"error", fmt::format("a request has {} bytes at most", kLongestRequest)}}, too_large);
+  send(response, {{"error", fmt::format("a request may have at most {} bytes", kLongestRequest)}}, too_large);
   return std::nullopt;
 }
 
@@ -161,11 +161,11 @@ struct Server::Parts {
       return !is_ending && Clock::now() < until && upload.append(data, size);
     });
     if (whole) return send(response, {{"name", upload.finish()}});
-    send(response, {{"error", fmt::format("a file has {} MiB at most", kLogSize.bytes / kMebibyte)}}, too_large);
+    send(response, {{"error", fmt::format("a file may have at most {} MiB", kLogSize.bytes / kMebibyte)}}, too_large);
   }
 
   void send_comparison(const Request& request, Response& response) {
-    if (request.task != Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare belongs here");
+    if (request.task != Task::compare) throw Failure(ExitCode::usage, "request, \"do\": expected compare");
     const std::lock_guard one_at_a_time(comparing);
     const CancelledBy scope(&is_ending);
     Comparison comparison = compare(folder, request);
@@ -179,7 +179,7 @@ struct Server::Parts {
   /// From the model that the steps began with to the one that is asked for.
   void send_story(Request request, Response& response) {
     if (request.task != Task::compare || request.models.size() != 1)
-      throw Failure(ExitCode::usage, "request, \"do\": compare of one model belongs here");
+      throw Failure(ExitCode::usage, "request, \"do\": expected compare with one model");
     const std::vector<nlohmann::json> steps = jobs.steps_to(request.models.front());
     if (!steps.empty()) request.models.insert(request.models.begin(), steps.front()["request"]["model"]);
     const std::lock_guard one_at_a_time(comparing);
@@ -188,7 +188,7 @@ struct Server::Parts {
   }
 
   void submit(const Request& request, Response& response) {
-    if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is no job");
+    if (request.task == Task::compare) throw Failure(ExitCode::usage, "request, \"do\": compare is not a job");
     send(response, {{"id", jobs.submit(request)}});
   }
 
@@ -270,8 +270,9 @@ struct Server::Parts {
     const bool is_bound = wanted_port > 0 && http.bind_to_port("127.0.0.1", wanted_port);
     port = is_bound ? wanted_port : wanted_port > 0 ? -1 : http.bind_to_any_port("127.0.0.1");
     if (port <= 0)
-      throw Failure(ExitCode::permission,
-                    fmt::format("port {} of 127.0.0.1 is taken or not allowed; name another with --port", wanted_port));
+      throw Failure(
+          ExitCode::permission,
+          fmt::format("port {} of 127.0.0.1 is in use or not allowed; give another with --port", wanted_port));
     access.emplace(random_token(), port);
   }
 };

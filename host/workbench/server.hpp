@@ -1,4 +1,4 @@
-// The workbench as a browser meets it: pages and JSON over HTTP, for this computer alone.
+// HTTP server of the workbench: pages and JSON, for this computer only.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@ namespace host::workbench {
 
 class Server {
  public:
-  /// Serves the working directory on 127.0.0.1; port 0 takes a free one. Connections wait from now on. Throws
-  /// Failure(permission) where the port is not to be had.
+  /// Serves the working directory on 127.0.0.1; port 0 takes a free one. Accepts connections from now on. Throws
+  /// Failure(permission) if the port is not available.
   explicit Server(int port);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

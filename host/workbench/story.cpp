@@ -44,7 +44,7 @@ BarChart ladder_of(const std::vector<json>& steps) {
 
 Table parameters_of(const json& parameters) {
   Table table;
-  table.title = "Parameters, as fitted last";
+  table.title = "Parameters of the last fit";
   table.headings = {"parameter", "value", "+- (95 %)"};
   for (const json& one : parameters)
     table.rows.push_back({one.at("name").get<std::string>(), format_value(one.at("value").get<double>(), 5),
@@ -59,12 +59,12 @@ std::string story_page(const Folder& folder, const Request& request, const std::
   const std::vector<ComparedModel> models = compared_models(folder, request);
   Report report = comparison_report(models, request.focus);
   try {
-    report.section("How it came about");
+    report.section("Steps");
     if (!steps.empty()) report.add(ladder_of(steps));
     if (!steps.empty() && steps.back().at("document").contains("parameters"))
       report.add(parameters_of(steps.back().at("document").at("parameters")));
     Table commands;
-    commands.title = "To do it again, in the folder";
+    commands.title = "Commands to repeat it, in the folder";
     commands.headings = {"command"};
     for (const json& step : steps) commands.rows.push_back({step.at("command").get<std::string>()});
     commands.rows.push_back({command_line(request, {})});

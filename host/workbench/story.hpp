@@ -1,4 +1,4 @@
-// What was done, on one page: from the model as it was given to the one that is worked on.
+// All steps on one page, from the given model to the present one.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@
 namespace host::workbench {
 
 /// The models of `request` (the given one first) against its records, the errors step by step, what was fitted, and the
-/// commands that do it all again. `steps`: states of the jobs that led there (Jobs::steps_to()). Throws as compare()
+/// commands that repeat it. `steps`: states of the jobs that led to the model (Jobs::steps_to()). Throws as compare()
 /// does, and Failure(bad_input) where a job's document is damaged.
 std::string story_page(const Folder& folder, const Request& request, const std::vector<nlohmann::json>& steps);
 

@@ -44,23 +44,24 @@ const EffectInfo backlash{
                    {.id = "load_fraction",
                     .rotary_key = "load_fraction",
                     .linear_key = "load_fraction",
-                    .doc = "part of the inertia behind the gap",
+                    .doc = "share of the inertia behind the gap",
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}},
-                   load_friction_parameter()},
+                   load_friction_parameter(),
+                   load_viscous_parameter()},
     .shows =
-        "After a reversal the motor runs free for a fixed travel, then hits the load: torque falls short, then peaks. "
-        "The travel is the same at any speed",
+        "After a reversal the motor moves freely over a fixed travel, then hits the load: the residual torque dips, "
+        "then peaks. The travel is the same at any speed",
     .along = {"travel_since_reversal", "current"},
     .confused_with = {"compliance", "presliding", "input_delay"},
     .separate_by =
-        "Encoders on motor and table; reversals under a bias load, which closes the gap: what then disappears was "
-        "backlash, what recovers gradually was presliding or wind-up",
+        "Encoders on motor and table. Reversals under a bias load, which closes the gap: backlash disappears, and a "
+        "gradual recovery indicates presliding or wind-up",
     .origin =
         "Worn nut, key, coupling, gear or rack: up to 20 um in a ball screw, 10 to 200 um in racks and worm gears "
         "(textbook)",
-    .remedy = "Renew or preload the nut; clamp the coupling; backlash compensation",
+    .remedy = "Replace or preload the nut; clamp the coupling; backlash compensation",
     .install = install_backlash,
 };
 

@@ -43,17 +43,17 @@ const EffectInfo cogging{
                     .starts = {0.02}},
                    period_parameter()},
     .shows =
-        "Residual torque periodic in position, of the same size at any speed and any current, and in the same sense "
-        "both ways",
+        "Residual torque is periodic in position, with the same amplitude at any speed and current and the same sign "
+        "in both directions",
     .along = {"position"},
     .confused_with = {"torque_ripple", "encoder_cyclic_error", "tach_ripple", "position_dependent_friction"},
     .separate_by =
-        "The same slow stroke with two loads: cogging keeps its size, ripple grows with the current. A sweep of "
-        "speeds: the trace of a sensor error grows with speed squared",
+        "Repeat a slow stroke with two loads: cogging is unchanged, ripple grows with the current. Sweep the speed: a "
+        "sensor error grows with speed squared",
     .origin =
-        "Magnets pulling at the slots of the motor (orders: slots, poles, their common multiples); balls passing in "
-        "the screw (orders that are no whole numbers)",
-    .remedy = "Skewed or ironless motor; cogging table over the motor angle, aligned anew after homing",
+        "Magnets and slots of the motor (orders: slots, poles, their common multiples); ball passage in the screw "
+        "(orders that are not integers)",
+    .remedy = "Skewed or ironless motor; cogging table over the motor angle, realigned after each homing",
     .install = install_cogging,
 };
 

@@ -18,11 +18,9 @@ const EffectInfo compliance{
     .kind = "compliance",
     .title = "A second mass on a spring",
     .equation =
-        "J1 dw1/dt = T - s - (1 - p) T_f, J2 dw2/dt = s - p T_f, s = k d + c dd/dt; 1: motor, 2: load behind the "
-        "spring, "
-        "d: twist, T_f: friction at the speed of its side, p: its part on the load, 1 unless given; k, c from "
-        "resonance "
-        "and damping",
+        "J1 dw1/dt = T - s - (1 - p) T_d - (1 - q) T_v, J2 dw2/dt = s - p T_d - q T_v, s = k d + c dd/dt; 1: motor, 2: "
+        "load behind the spring, d: twist, T_d, T_v: dry and viscous friction at the speed of its side, p, q: their "
+        "shares on the load, default 1 and p; k, c from resonance and damping",
     .stage = Stage::mechanics,
     .parameters = {{.id = "resonance",
                     .rotary_key = "resonance_Hz",
@@ -41,19 +39,20 @@ const EffectInfo compliance{
                    {.id = "load_fraction",
                     .rotary_key = "load_fraction",
                     .linear_key = "load_fraction",
-                    .doc = "part of the inertia behind the spring",
+                    .doc = "share of the inertia behind the spring",
                     .lower = 0.02,
                     .upper = 0.95,
                     .starts = {0.35}},
-                   load_friction_parameter()},
+                   load_friction_parameter(),
+                   load_viscous_parameter()},
     .shows =
-        "Residual rings at one frequency after each change of torque, the same at any speed. Below the resonance both "
-        "inertias act, above it the motor's alone",
+        "Residual oscillates at one frequency after each change of torque, at any speed. Both inertias act below the "
+        "resonance, only the motor's above it",
     .along = {"frequency", "acceleration"},
     .confused_with = {"backlash", "presliding", "current_loop_lag", "tach_ripple"},
     .separate_by =
-        "Swept sine with encoders on motor and table: a resonance stays at its frequency, ripple moves with speed; a "
-        "gap changes the frequency with amplitude",
+        "Swept sine with encoders on motor and table: the frequency of a resonance is constant, that of ripple follows "
+        "speed; with a gap the frequency depends on amplitude",
     .origin =
         "Coupling, screw and nut, thrust bearing, belt; the first axial mode of a screw drive lies at 30 to 300 Hz "
         "(textbook)",

@@ -28,13 +28,13 @@ const EffectInfo constant_torque{
                     .scale = Scale::coulomb,
                     .starts = {0.05, -0.05}}},
     .shows =
-        "Residual torque constant, of one sign in both directions. A released axis moves by itself where friction does "
-        "not hold it",
+        "Residual torque is constant, with the same sign in both directions. A released axis moves by itself unless "
+        "friction holds it",
     .along = {"speed"},
     .confused_with = {"coulomb_asymmetry", "dac_offset", "viscous_asymmetry", "spring_torque"},
     .separate_by =
-        "Hold the axis at rest without friction in play (coupling off); turn the axis over; read the motor current at "
-        "zero command to tell it from an offset of the electronics",
+        "Hold the axis at rest with the coupling off, so that no friction acts; turn the axis over; read the motor "
+        "current at zero command to rule out an offset of the electronics",
     .origin = "Gravity on an inclined or vertical axis, a counterweight out of balance, a cable under tension",
     .remedy = "Trim the counterweight; feed the weight forward",
     .install = install_constant_torque,

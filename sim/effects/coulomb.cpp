@@ -49,12 +49,12 @@ const EffectInfo coulomb{
                     .starts = {1},
                     .optional = true,
                     .pair_of = "positive negative"}},
-    .shows = "Residual torque constant in each direction of motion, at any speed; a jump at every reversal",
+    .shows = "Residual torque is constant in each direction at any speed and jumps at every reversal",
     .along = {"speed"},
     .confused_with = {"constant_torque", "dac_offset", "coulomb_asymmetry", "dac_dead_zone"},
     .separate_by =
-        "Constant speeds both ways: half the difference of forward and backward torque, carried on to zero speed, is "
-        "the level; half their sum belongs to offsets",
+        "Constant speeds in both directions: half the difference of forward and backward torque, extrapolated to zero "
+        "speed, is the level; half their sum is an offset",
     .origin = "Guideways, wipers, preloaded nut and bearings",
     .remedy = "Check preload, wipers and gib adjustment; feed the level forward",
     .install = install_coulomb,

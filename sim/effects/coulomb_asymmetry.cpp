@@ -19,8 +19,7 @@ const EffectInfo coulomb_asymmetry{
     .kind = "coulomb_asymmetry",
     .title = "Coulomb friction that differs by direction",
     .equation =
-        "T_coul+ = (1 + a) T_coul, T_coul- = (1 - a) T_coul, static friction by the same factors; +: forward, -: "
-        "backward",
+        "T_coul+ = (1 + a) T_coul, T_coul- = (1 - a) T_coul, static friction scales alike; +: forward, -: backward",
     .stage = Stage::friction,
     .parameters = {{.id = "asymmetry",
                     .rotary_key = "asymmetry",
@@ -30,13 +29,13 @@ const EffectInfo coulomb_asymmetry{
                     .upper = 0.9,
                     .starts = {0.05, -0.05}}},
     .shows =
-        "Residual torque constant, of one sign in both directions, while the axis moves. Where friction falls with "
-        "speed, the asymmetry fades with it and an offset does not",
+        "Residual torque is constant while the axis moves, with the same sign in both directions. Where friction falls "
+        "with speed, the asymmetry falls with it; an offset does not",
     .along = {"speed"},
     .confused_with = {"constant_torque", "dac_offset", "viscous_asymmetry"},
     .separate_by =
-        "While moving it equals a constant torque. Hold the axis at rest with the coupling off, or turn the axis over: "
-        "a constant torque acts while standing, friction only against motion",
+        "In motion it looks like a constant torque. Hold the axis at rest with the coupling off, or turn the axis "
+        "over: a constant torque also acts at rest, friction only against motion",
     .origin = "Wiper lips, one-sided preload of a double nut, tilted gibs. 2 to 20 % of the level (textbook)",
     .remedy = "Check wipers and the nut's preload in both directions; feed friction forward by direction",
     .install = install_coulomb_asymmetry,

@@ -27,12 +27,12 @@ const EffectInfo current_loop_lag{
                     .lower = 5.0,
                     .upper = 2000.0,
                     .starts = {50, 150}}},
-    .shows = "Residual torque in proportion to jerk: every step of the command is rounded off",
+    .shows = "Residual torque is proportional to jerk: every step of the command is rounded",
     .along = {"acceleration", "frequency"},
     .confused_with = {"input_delay", "tach_lag", "compliance", "inertia", "friction_lag"},
     .separate_by =
-        "Log the motor current: a step at standstill shows lag as a slope, dead time as nothing at all. A lag of 1 ms "
-        "and a delay of 1 ms look alike in motion",
+        "Log the motor current during a step at standstill: a lag rounds the rise, a dead time shifts it. In motion a "
+        "lag and a delay of 1 ms look alike",
     .origin =
         "Gains of the current loop, winding inductance, low bus voltage: time constants of 0.1 to 2 ms (textbook)",
     .remedy = "Tune the current loop; raise the bus voltage",

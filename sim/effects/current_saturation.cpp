@@ -31,13 +31,14 @@ const EffectInfo current_saturation{
                     .scale = Scale::stall_current,
                     .starts = {0.4, 0.6, 0.8}}},
     .shows =
-        "Residual only where the command is large, with a flat top: more command brings no more acceleration, in "
-        "whichever direction",
+        "Residual appears only at large commands, with a flat top: a larger command gives no more acceleration, in "
+        "either direction",
     .along = {"current"},
     .confused_with = {"voltage_limit", "nonlinear_viscous", "torque_ripple"},
-    .separate_by = "The same motion at half the amplitude; the same torque at low speed tells it from a voltage limit",
-    .origin = "Peak or thermal limit of the amplifier, a limit left in from commissioning",
-    .remedy = "Raise the limit if motor and screw bear it; else lower acceleration and jerk of the reference",
+    .separate_by =
+        "Repeat the motion at half the amplitude. If the limit also acts at low speed, it is not a voltage limit",
+    .origin = "Peak or thermal limit of the amplifier, or a limit left over from commissioning",
+    .remedy = "Raise the limit if motor and screw allow it; else lower acceleration and jerk of the reference",
     .install = install_current_saturation,
 };
 

@@ -30,12 +30,12 @@ const EffectInfo dac_dead_zone{
                     .upper = 500.0,
                     .scale = Scale::converter_range,
                     .starts = {0.005}}},
-    .shows = "Residual changes sign with the command, not with the motion; commands below the zone move nothing",
+    .shows = "Residual changes sign with the command, not with the motion; commands within the zone have no effect",
     .along = {"current"},
     .confused_with = {"load_dependent_friction", "stribeck", "coulomb", "dac_offset"},
     .separate_by =
-        "Coupling off: a slow ramp of the command through zero, both ways. A dead zone is symmetric in the command, "
-        "friction in the speed",
+        "With the coupling off, ramp the command slowly through zero in both directions. A dead zone follows the sign "
+        "of the command, friction that of the speed",
     .origin =
         "Output stage of converter or amplifier, deliberate dead band of the drive: 0.1 to 2 % of full scale "
         "(textbook)",

@@ -28,11 +28,13 @@ const EffectInfo dac_offset{
                     .scale = Scale::converter_range,
                     .starts = {0.002, -0.002}}},
     .shows =
-        "Residual torque constant, of one sign in both directions and at rest, from the electronics instead of the "
-        "mechanics",
+        "Residual torque is constant, with the same sign in both directions and at rest; its source is the "
+        "electronics, not the mechanics",
     .along = {"speed", "current"},
     .confused_with = {"constant_torque", "coulomb_asymmetry", "viscous_asymmetry"},
-    .separate_by = "Voltmeter at the converter with zero command. Motion alone never tells it from a constant torque",
+    .separate_by =
+        "Measure the converter's output at zero command with a voltmeter. Motion alone cannot tell it from a constant "
+        "torque",
     .origin = "Drift of the converter or of the amplifier's input: 0.1 to 2 % of full scale (textbook)",
     .remedy = "Trim the offset; check earth and shielding of the command line",
     .install = install_dac_offset,

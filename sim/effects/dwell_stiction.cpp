@@ -34,16 +34,16 @@ const EffectInfo dwell_stiction{
                     .upper = 1000.0,
                     .starts = {0.3, 2.0}}},
     .shows =
-        "The first breakaway after a rest needs more torque, the longer the rest the more. Starts after short stops "
-        "are not affected",
+        "The first breakaway after a rest needs more torque; the excess grows with the length of the rest. Starts "
+        "after short stops are not affected",
     .along = {"rest"},
     .confused_with = {"stribeck", "thermal_friction_drift", "presliding", "position_dependent_friction"},
     .separate_by =
-        "Rests of 0.1, 1, 10 and 100 s at one place before the same slow ramp; another ramp rate tells it from a lag",
+        "Rest 0.1, 1, 10 and 100 s at one place before the same slow ramp; change the ramp rate to rule out a lag",
     .origin = "Oil squeezed out of the contact, wipers that adhere. 5 to 50 % more, over decades of seconds (textbook)",
     .remedy =
-        "A wobble of a few micrometres during long rests; an oil impulse before the start; hydrostatic or rolling "
-        "guides",
+        "Small oscillation (a few micrometres) during long rests; lubrication pulse before the start; hydrostatic or "
+        "rolling guides",
     .install = install_dwell_stiction,
 };
 

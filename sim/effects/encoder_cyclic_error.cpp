@@ -23,13 +23,13 @@ const EffectInfo encoder_cyclic_error{
     .periodic = true,
     .parameters = {position_error_parameter(true), position_error_parameter(false), period_parameter()},
     .shows =
-        "Error of the position, periodic in position, of one size at any speed; carried into torque it grows with the "
-        "square of speed",
+        "Position error is periodic in position, with the same amplitude at any speed; the torque that it seems to "
+        "need grows with the square of speed",
     .along = {"position"},
     .confused_with = {"cogging", "tach_ripple", "torque_ripple"},
     .separate_by =
-        "Constant speeds: a fixed size in position points to the encoder, a fixed size in torque to cogging; a second "
-        "scale or a laser decides",
+        "Constant speeds: a fixed amplitude in position indicates the encoder, a fixed amplitude in torque cogging; a "
+        "second scale or a laser decides",
     .origin =
         "Eccentric disc or coupling (once a turn), interpolation of the signals (once a grating period), lead error of "
         "the screw: 1 to 50 um (textbook)",

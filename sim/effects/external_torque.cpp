@@ -1,4 +1,4 @@
-// Torque that belongs to a time.
+// Temporary external torque.
 #include <algorithm>
 
 #include "sim/drive.hpp"
@@ -22,7 +22,7 @@ void install_external_torque(const EffectEntry& entry, const DataSheet& data, Dr
 extern const EffectInfo external_torque;
 const EffectInfo external_torque{
     .kind = "external_torque",
-    .title = "Torque that belongs to a time",
+    .title = "Temporary external torque",
     .equation = "T = T_motor + T_e for t_0 <= t < t_0 + d; t: time on the clock of the record",
     .stage = Stage::load,
     .parameters = {{.id = "torque",
@@ -49,14 +49,14 @@ const EffectInfo external_torque{
                     .upper = 1e6,
                     .scale = Scale::duration,
                     .starts = {0.05}}},
-    .shows = "Residual torque inside one stretch of time, whatever the drive does there; nothing before and after",
+    .shows = "Residual torque within one interval of time, independent of the motion; none before and after",
     .along = {"time"},
     .confused_with = {"thermal_friction_drift", "position_dependent_friction"},
     .separate_by =
-        "Run the same programme again without cutting and with nobody at the machine: what does not repeat belongs to "
-        "the time",
+        "Run the same programme again without cutting and with nobody at the machine: a temporary torque does not "
+        "repeat",
     .origin = "Cutting force, a collision, a chip, somebody leaning on the table",
-    .remedy = "Leave that stretch out of the fit; never let it into a friction model",
+    .remedy = "Leave that interval out of the fit; do not let it affect a friction model",
     .install = install_external_torque,
 };
 

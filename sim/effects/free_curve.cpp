@@ -38,10 +38,10 @@ const EffectInfo free_curve{
     .kind = "free_curve",
     .title = "A curve without a formula",
     .equation =
-        "T_motor = ... + f(q), f straight between its knots and level beyond them; q: speed, position, "
+        "T_motor = ... + f(q), f linear between its knots and constant beyond them; q: speed, position, "
         "friction_along_position, travel_since_reversal, time, friction_over_time, current (the motor's torque) or "
-        "phase (the position within a period, which goes from the first knot to the last). Over speed, since a "
-        "reversal and where it is called so f is friction",
+        "phase (the position within a period, which goes from the first knot to the last). Over speed, over "
+        "travel_since_reversal and over friction_along_position or friction_over_time, f is friction",
     .stage = Stage::load,
     .curve = true,
     .parameters = {{.id = "knot",
@@ -54,22 +54,21 @@ const EffectInfo free_curve{
                    {.id = "value",
                     .rotary_key = "values_Nm",
                     .linear_key = "values_N",
-                    .doc = "f there: what the motion needs beyond the other effects",
+                    .doc = "f at the knots: torque or force beyond the other effects",
                     .lower = -1e6,
                     .upper = 1e6,
                     .scale = Scale::coulomb,
                     .starts = {0.0}}},
-    .shows = "Residual torque follows one coordinate, and no effect of the catalogue has that shape",
+    .shows = "Residual torque depends on one coordinate, and no effect of the catalogue has that shape",
     .confused_with = {"nonlinear_viscous", "cogging", "thermal_friction_drift", "presliding"},
     .separate_by =
-        "It names nothing: look at its shape, then record that coordinate alone, slowly and over its whole range. "
-        "Asked for over current it carries dac_dead_zone and current_saturation. No curve carries what two coordinates "
-        "make together (torque_ripple: phase and torque; thermal_friction_drift: time and direction), what goes with "
-        "acceleration (input_delay, current_loop_lag, compliance, backlash: a second mass in its gap), what acts at "
-        "rest and at breaking away alone (presliding, friction_lag, dwell_stiction), nor a sensor's error, which is no "
-        "effort (tach_gain, tach_offset, tach_lag, tach_ripple, encoder_cyclic_error)",
-    .origin = "Whatever the catalogue does not hold, or holds in another shape",
-    .remedy = "The curve itself serves a feed-forward, over speed and position",
+        "It gives no cause: look at its shape, then vary only that coordinate, slowly and over its whole range. A "
+        "curve over current can represent dac_dead_zone and current_saturation. No curve represents effects of two "
+        "coordinates (torque_ripple: phase and torque; thermal_friction_drift: time and direction), of acceleration "
+        "(input_delay, current_loop_lag, compliance, backlash), of rest and breakaway (presliding, friction_lag, "
+        "dwell_stiction), or of a sensor (tach_gain, tach_offset, tach_lag, tach_ripple, encoder_cyclic_error)",
+    .origin = "Anything that the catalogue does not contain, or contains with another shape",
+    .remedy = "Use the curve as a feed-forward, over speed and position",
     .install = install_free_curve,
 };
 

@@ -28,15 +28,15 @@ const EffectInfo friction_lag{
                     .upper = 0.5,
                     .starts = {0.005, 0.03}}},
     .shows =
-        "A loop of residual torque over speed while sliding at low speed, wider at higher frequency. Friction is "
-        "higher while speeding up than while slowing down",
+        "Residual torque over speed forms a loop at low sliding speed, wider at higher frequency. Friction is higher "
+        "during acceleration than during deceleration",
     .along = {"speed", "acceleration"},
     .confused_with = {"input_delay", "presliding", "stribeck", "current_loop_lag"},
     .separate_by =
-        "A sine on a bias that never reverses, at several frequencies: the loop widens in time, not in travel. Without "
-        "friction that falls with speed there is nothing to see",
-    .origin = "The lubricant film needs time to build up and to drain: 1 to 50 ms (textbook)",
-    .remedy = "Thinner oil; avoid quick changes of speed at creep",
+        "Sine on a bias speed without reversal, at several frequencies: the loop depends on time, not on travel. It is "
+        "visible only where friction falls with speed",
+    .origin = "Time for the lubricant film to build up and drain: 1 to 50 ms (textbook)",
+    .remedy = "Thinner oil; avoid rapid changes of speed at creep",
     .install = install_friction_lag,
 };
 

@@ -20,20 +20,20 @@ const EffectInfo inertia{
     .parameters = {{.id = "J",
                     .rotary_key = "J_kg_m2",
                     .linear_key = "M_kg",
-                    .doc = "inertia of everything that moves, seen at the motor",
+                    .doc = "total moving inertia, referred to the motor",
                     .lower = 1e-11,  // the rotors of the smallest motors have some 5e-10
                     .upper = 1e6,
                     .scale = Scale::inertia,
                     .starts = {1}}},
-    .shows = "Residual torque proportional to acceleration, alike in both directions; none at constant speed",
+    .shows = "Residual torque is proportional to acceleration, equal in both directions, and zero at constant speed",
     .along = {"acceleration"},
     .confused_with = {"current_loop_lag", "tach_gain", "input_delay", "load_dependent_friction"},
     .separate_by =
-        "Two acceleration levels at the same speeds: inertia keeps its ratio to acceleration, a lag follows jerk. A "
+        "Two acceleration levels at the same speeds: inertia torque is proportional to acceleration, a lag to jerk. A "
         "known mass added to the table must appear in full",
     .origin =
         "Rotor, coupling, screw, table, workpiece. A payload changes it by 1 to 30 % (textbook). A wrong torque "
-        "constant changes it together with every friction value, by the same factor",
+        "constant scales it and every friction value by the same factor",
     .remedy = "Enter the payload, or identify again after a change of workpiece or fixture",
     .install = install_inertia,
 };

@@ -21,19 +21,18 @@ const EffectInfo input_delay{
     .parameters = {{.id = "delay",
                     .rotary_key = "delay_s",
                     .linear_key = "delay_s",
-                    .doc =
-                        "d: from the command to the torque; that a sample holds its command for a period comes on top",
+                    .doc = "d: time from command to torque, without the sample-and-hold of one period",
                     .lower = 0.0,
                     .upper = 0.025,
                     .starts = {0.001, 0.003}}},
     .shows =
-        "Residual torque in proportion to jerk: everything comes late by the same time; its correlation with the "
-        "command peaks off zero",
+        "Residual torque is proportional to jerk: everything is late by the same time; the correlation with the "
+        "command peaks away from zero lag",
     .along = {"acceleration", "frequency"},
     .confused_with = {"current_loop_lag", "tach_lag", "friction_lag", "inertia"},
     .separate_by =
-        "Log the motor current: a step at standstill shows dead time as nothing at all, lag as a slope. With one "
-        "acceleration profile only, it hides in the inertia",
+        "Log the motor current during a step at standstill: a dead time shifts the rise, a lag rounds it. With a "
+        "single acceleration profile the fit takes it as inertia",
     .origin =
         "Field bus, converter cycle, time stamps of another clock: 0.1 to 2 ms (textbook); 0.9 ms was measured on a "
         "public linear axis",

@@ -16,22 +16,22 @@ extern const EffectInfo load_dependent_friction;
 const EffectInfo load_dependent_friction{
     .kind = "load_dependent_friction",
     .title = "Friction that grows with the transmitted torque",
-    .equation = "T_f = T_coul + B |w| + mu |T_motor|, against the motion; T_motor: torque that the motor gives",
+    .equation = "T_f = T_coul + B |w| + mu |T_motor|, against the motion; T_motor: motor torque",
     .stage = Stage::friction,
     .parameters = {{.id = "coefficient",
                     .rotary_key = "coefficient",
                     .linear_key = "coefficient",
-                    .doc = "mu: part of the transmitted torque that is lost",
+                    .doc = "mu: share of the transmitted torque that is lost",
                     .lower = 0.0,
                     .upper = 0.9,
                     .starts = {0.05}}},
     .shows =
-        "Residual torque in proportion to the motor torque, against the motion. Motoring loses, braking is helped: "
-        "seeming inertias differ",
+        "Residual torque is proportional to the motor torque and opposes the motion. It adds to the load when driving "
+        "and helps when braking, so the apparent inertias differ",
     .along = {"current"},
     .confused_with = {"dac_dead_zone", "inertia", "torque_ripple", "coulomb"},
     .separate_by =
-        "Two known loads at one speed; or the same profile with two accelerations, comparing speeding up with braking",
+        "Two known loads at one speed; or one profile with two accelerations, comparing acceleration with braking",
     .origin =
         "Efficiency of screw, gear or belt: 5 to 15 % of the torque in ball screws, more in strain-wave gears "
         "(textbook)",

@@ -1,4 +1,4 @@
-// Friction curve that bends at speed.
+// Nonlinear viscous friction.
 #include <algorithm>
 #include <cmath>
 
@@ -38,16 +38,15 @@ void install_nonlinear_viscous(const EffectEntry& entry, const DataSheet& data, 
 extern const EffectInfo nonlinear_viscous;
 const EffectInfo nonlinear_viscous{
     .kind = "nonlinear_viscous",
-    .title = "Friction curve that bends at speed",
+    .title = "Nonlinear viscous friction",
     .equation =
-        "T_f = T_coul + B |w| + c (|w|/w_r)^p, against the motion; reference speed w_r = 10 rad/s or 0.1 m/s. Or, "
-        "where "
-        "w_s is given instead of p: T_f = T_coul + B |w| - c exp(-|w|/w_s)",
+        "T_f = T_coul + B |w| + c (|w|/w_r)^p, against the motion; reference speed w_r = 10 rad/s or 0.1 m/s. If w_s "
+        "is given instead of p: T_f = T_coul + B |w| - c exp(-|w|/w_s)",
     .stage = Stage::friction,
     .parameters = {{.id = "coefficient",
                     .rotary_key = "coefficient_Nm",
                     .linear_key = "coefficient_N",
-                    .doc = "c: torque of the bend at the reference speed",
+                    .doc = "c: nonlinear torque at the reference speed",
                     .lower = -1e5,
                     .upper = 1e5,
                     .scale = Scale::coulomb,
@@ -63,22 +62,22 @@ const EffectInfo nonlinear_viscous{
                    {.id = "saturation",
                     .rotary_key = "saturation_rad_s",
                     .linear_key = "saturation_m_s",
-                    .doc = "w_s, instead of p: friction that reaches its level only at this speed",
+                    .doc = "w_s, instead of p: speed constant of friction that rises to its level",
                     .lower = 1e-6,
                     .upper = 1e4,
                     .scale = Scale::top_speed,
                     .starts = {0.1},
                     .optional = true}},
-    .shows = "Residual torque over speed curves at the plateaus, alike in both directions, fast or slow",
+    .shows = "Residual torque at constant speeds is a curve over speed, equal in both directions",
     .along = {"speed"},
     .confused_with = {"thermal_friction_drift", "voltage_limit", "stribeck", "viscous_asymmetry", "tach_gain"},
     .separate_by =
-        "Five constant speeds or more at one temperature, from creep to rapid traverse; slow plateaus tell a "
+        "Five or more constant speeds at one temperature, from creep to rapid traverse; slow speeds separate a "
         "flattening curve from Stribeck friction",
     .origin =
         "Churning grease, turbulent oil, fan losses (p above 1); shear-thinning grease, which flattens (on a public "
         "linear axis p of 1/3 to 1/2 was measured). 5 to 30 % at top speed (textbook)",
-    .remedy = "Less grease or a lighter grade; take the curve into the feed-forward",
+    .remedy = "Less grease or a lighter grade; include the curve in the feed-forward",
     .install = install_nonlinear_viscous,
 };
 

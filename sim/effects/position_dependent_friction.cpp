@@ -43,17 +43,17 @@ const EffectInfo position_dependent_friction{
                    {.id = "period",
                     .rotary_key = "period_mm",
                     .linear_key = "period_m",
-                    .doc = "L: much longer than a screw turn; a long one stands for a slope",
+                    .doc = "L: much longer than a screw turn; a long L represents a slope",
                     .lower = 1e-4,
                     .upper = 1e5,
                     .scale = Scale::travel,
                     .starts = {0.3, 0.6, 1.0, 2.0}}},
-    .shows = "Half the difference of forward and backward torque follows the position; half the sum does not",
+    .shows = "Half the difference of forward and backward torque depends on position; half the sum does not",
     .along = {"position"},
     .confused_with = {"thermal_friction_drift", "spring_torque", "cogging", "load_dependent_friction"},
     .separate_by =
-        "Constant speed over the full stroke, both ways, twice: a repeat at the same place is position, a drift from "
-        "pass to pass is temperature",
+        "Constant speed over the full stroke, twice in each direction: a pattern that repeats at the same place "
+        "depends on position, a drift from pass to pass on temperature",
     .origin =
         "Guideway wear in the middle of the stroke, gib or rail misalignment, bent screw. 10 to 30 % of the level "
         "(textbook)",

@@ -37,17 +37,17 @@ const EffectInfo presliding{
                     .scale = Scale::bristle_damping,
                     .starts = {1}}},
     .shows =
-        "Residual torque follows the travel since the last reversal and fades within micrometres, however fast they "
-        "are passed. The axis springs back when the torque is let go",
+        "Residual torque depends on the travel since the last reversal and fades within micrometres at any speed. The "
+        "axis springs back when the torque is removed",
     .along = {"travel_since_reversal"},
     .confused_with = {"backlash", "compliance", "stribeck", "friction_lag"},
     .separate_by =
-        "Triangles of a few micrometres at two rates and two amplitudes: a loop that depends on travel, not on time, "
-        "is presliding; a gap shows as free travel without torque",
+        "Triangular motion of a few micrometres at two rates and two amplitudes: presliding gives a loop that depends "
+        "on travel, not on time; a gap gives free travel without torque",
     .origin =
         "Rolling guides, preloaded balls, seals that roll before they slip. Breakaway after 5 to 100 um on rolling "
         "guides (textbook)",
-    .remedy = "Reversal compensation that knows the breakaway distance; less preload",
+    .remedy = "Reversal compensation over the breakaway distance; less preload",
     .install = install_presliding,
 };
 

@@ -30,18 +30,19 @@ const EffectInfo spring_torque{
                    {.id = "centre",
                     .rotary_key = "centre_mm",
                     .linear_key = "centre_m",
-                    .doc = "x0: where the spring is at rest",
+                    .doc = "x0: position at which the spring is relaxed",
                     .lower = -1e5,
                     .upper = 1e5,
                     .scale = Scale::travel,
                     .starts = {0.0}}},
-    .shows = "The mean of forward and backward residual torque is a straight line over the position",
+    .shows = "The mean of forward and backward residual torque is linear in position",
     .along = {"position"},
     .confused_with = {"position_dependent_friction", "constant_torque", "coulomb_asymmetry"},
     .separate_by =
-        "Slow strokes over the full travel, both ways, with the cable chain or bellows disconnected and connected",
+        "Slow strokes over the full travel in both directions, with the cable chain or bellows connected and "
+        "disconnected",
     .origin = "Cable chain, bellows, hoses: 5 to 50 N at the table (textbook)",
-    .remedy = "Relieve the cable chain; feed the slope forward",
+    .remedy = "Relieve the cable chain; include the slope in the feed-forward",
     .install = install_spring_torque,
 };
 

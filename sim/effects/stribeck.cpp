@@ -56,7 +56,7 @@ const EffectInfo stribeck{
                    {.id = "omega1_positive",
                     .rotary_key = "omega1_positive_rad_s",
                     .linear_key = "omega1_positive_m_s",
-                    .doc = "speed over which the static part fades, forward",
+                    .doc = "speed constant of the falling static part, forward",
                     .lower = 0.0,
                     .upper = 1e3,
                     .scale = Scale::speed,
@@ -84,7 +84,7 @@ const EffectInfo stribeck{
                    {.id = "omega2_positive",
                     .rotary_key = "omega2_positive_rad_s",
                     .linear_key = "omega2_positive_m_s",
-                    .doc = "speed over which the Coulomb part rises, forward",
+                    .doc = "speed constant of the rising Coulomb part, forward",
                     .lower = 0.0,
                     .upper = 1e3,
                     .scale = Scale::speed,
@@ -110,13 +110,13 @@ const EffectInfo stribeck{
                     .optional = true,
                     .pair_of = "omega2_positive omega2_negative"}},
     .shows =
-        "Residual torque rises towards zero speed, the same while speeding up and braking. Starts come late and jerk; "
-        "slow motion sticks and slips",
+        "Residual torque rises towards zero speed, equally in acceleration and braking. Starts are late and jerky; "
+        "slow motion shows stick-slip",
     .along = {"speed"},
     .confused_with = {"presliding", "friction_lag", "dwell_stiction", "nonlinear_viscous", "dac_dead_zone"},
     .separate_by =
-        "Constant speeds, log-spaced from 0.05 to 10 rad/s, both ways, without acceleration; a slow command ramp from "
-        "rest for the static level",
+        "Constant speeds, log-spaced from 0.05 to 10 rad/s, in both directions; a slow command ramp from rest for the "
+        "static level",
     .origin =
         "Boundary lubrication of guideways and seals at low speed. Static over Coulomb friction: 1.0 to 1.2 on "
         "rolling, 1.3 to 2 on plain guides; it fades over 0.5 to 10 mm/s (textbook)",

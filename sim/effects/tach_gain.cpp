@@ -26,14 +26,14 @@ const EffectInfo tach_gain{
                     .upper = 2.0,
                     .starts = {0.98, 1.02}}},
     .shows =
-        "The integral of the measured speed leaves the encoder in proportion to the travel; in torque nothing shows, "
-        "because inertia and viscous friction take it up",
+        "The integral of the measured speed departs from the encoder in proportion to travel; the torque shows "
+        "nothing, because inertia and viscous friction absorb the error",
     .along = {"speed"},
     .confused_with = {"viscous", "inertia"},
     .separate_by =
-        "Integrate the tachometer over a long stroke and compare with the encoder; forth and back, so that an offset "
-        "cancels",
-    .origin = "Ageing magnets, a potentiometer out of trim, the wrong scale: 0.5 to 2 % (textbook)",
+        "Integrate the tachometer over a long stroke and compare with the encoder, in both directions, so that an "
+        "offset cancels",
+    .origin = "Ageing magnets, a misadjusted potentiometer, a wrong scale: 0.5 to 2 % (textbook)",
     .remedy = "Calibrate against the encoder",
     .install = install_tach_gain,
 };

@@ -28,13 +28,13 @@ const EffectInfo tach_lag{
                     .upper = 2000.0,
                     .starts = {50, 150}}},
     .shows =
-        "The measured speed trails the derivative of the position, in proportion to acceleration; the position itself "
-        "is on time",
+        "The measured speed lags the derivative of the position, in proportion to acceleration; the position has no "
+        "lag",
     .along = {"acceleration"},
     .confused_with = {"current_loop_lag", "input_delay", "friction_lag"},
     .separate_by =
-        "Compare the tachometer with the differentiated encoder during a hard acceleration: a lag of the sensor leaves "
-        "the encoder alone, a lag of the drive delays both",
+        "Compare the tachometer with the differentiated encoder during a hard acceleration: a lag of the sensor does "
+        "not affect the encoder, a lag of the drive delays both",
     .origin = "Ripple filter behind the tachometer, slow A/D conversion",
     .remedy = "A faster filter, or model it in the observer",
     .install = install_tach_lag,

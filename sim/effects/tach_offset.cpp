@@ -26,8 +26,7 @@ const EffectInfo tach_offset{
                     .upper = 100.0,
                     .scale = Scale::speed,
                     .starts = {0.1, -0.1}}},
-    .shows =
-        "The tachometer reads a speed while the axis stands; its integral leaves the encoder in proportion to time",
+    .shows = "The tachometer reads a speed at standstill; its integral departs from the encoder in proportion to time",
     .along = {"time", "speed"},
     .confused_with = {"viscous_asymmetry", "constant_torque", "dac_offset"},
     .separate_by = "Read the tachometer at standstill, before and after a run",

@@ -39,7 +39,7 @@ const EffectInfo tach_ripple{
                     .starts = {0.01}},
                    period_parameter()},
     .shows =
-        "Error of the measured speed, periodic in position and in proportion to speed; the encoder does not show it",
+        "Error of the measured speed is periodic in position and proportional to speed; the encoder does not show it",
     .along = {"position"},
     .confused_with = {"cogging", "torque_ripple", "encoder_cyclic_error", "compliance"},
     .separate_by =

@@ -42,16 +42,16 @@ const EffectInfo torque_ripple{
                     .starts = {0.02}},
                    period_parameter()},
     .shows =
-        "Residual torque periodic in position, in proportion to the current: strong in accelerations, weak while "
-        "coasting",
+        "Residual torque is periodic in position and proportional to the current: strong during acceleration, weak "
+        "while coasting",
     .along = {"position"},
     .confused_with = {"cogging", "tach_ripple", "encoder_cyclic_error", "load_dependent_friction"},
     .separate_by =
-        "The same stroke with two loads, or constant speed against hard acceleration over the same places: cogging "
-        "keeps its size, ripple grows with the current",
+        "Repeat a stroke with two loads, or compare constant speed with hard acceleration over the same travel: "
+        "cogging is unchanged, ripple grows with the current",
     .origin =
-        "Commutation, back-EMF that is no sine (sixth order of the pole pair), current sensors out of balance (first "
-        "and second order)",
+        "Commutation, non-sinusoidal back-EMF (sixth order of the pole pair), unbalanced current sensors (first and "
+        "second order)",
     .remedy = "Calibrate the current sensors' offsets and gains; ripple table over the motor angle",
     .install = install_torque_ripple,
 };

@@ -27,12 +27,12 @@ const EffectInfo viscous{
                     .upper = 1e6,
                     .scale = Scale::viscous,
                     .starts = {1}}},
-    .shows = "Residual torque proportional to speed, of opposite sign in the two directions",
+    .shows = "Residual torque is proportional to speed, with opposite sign in the two directions",
     .along = {"speed"},
     .confused_with = {"nonlinear_viscous", "viscous_asymmetry", "tach_gain", "voltage_limit", "thermal_friction_drift"},
     .separate_by =
-        "Five constant speeds or more, both ways, at one temperature; check the tachometer against the encoder first, "
-        "because a gain error of 1 % can move B by tens of per cent",
+        "Five or more constant speeds in both directions at one temperature; first check the tachometer against the "
+        "encoder, because a gain error of 1 % can change B by tens of per cent",
     .origin =
         "Lubricant in guideways, nut and bearings; eddy currents and iron losses in the motor. Falls by 30 to 60 % as "
         "the drive warms up (textbook)",

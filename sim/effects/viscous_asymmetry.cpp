@@ -27,15 +27,15 @@ const EffectInfo viscous_asymmetry{
                     .lower = -0.95,
                     .upper = 0.95,
                     .starts = {0.1, -0.1}}},
-    .shows = "The mean of forward and backward residual torque grows with speed, and vanishes at rest",
+    .shows = "The mean of forward and backward residual torque grows with speed and is zero at rest",
     .along = {"speed"},
     .confused_with = {"coulomb_asymmetry", "constant_torque", "dac_offset", "tach_offset", "nonlinear_viscous"},
     .separate_by =
-        "Three constant speeds or more each way: an offset or unequal Coulomb levels keep their size, this grows in "
-        "proportion to speed",
+        "Three or more constant speeds in each direction: an offset or unequal Coulomb levels are constant, this "
+        "effect is proportional to speed",
     .origin =
-        "Oil pumped one way by screw or seals; amplifier or sensor gain that differs by sign. On a public linear axis "
-        "18 % was measured, which a fit without it took for an offset",
+        "Oil pumped in one direction by screw or seals; amplifier or sensor gain that differs by sign. 18 % was "
+        "measured on a public linear axis, where a fit without this effect gave an offset",
     .remedy = "Check seals, screw cover and amplifier balance; compensate by direction",
     .install = install_viscous_asymmetry,
 };

@@ -8,7 +8,8 @@ cd "$project"
 bad=0
 complain() { echo "$1" >&2; bad=1; }
 
-pages=(README.md .github/CONTRIBUTING.md host/examples/README.md host/examples/from-log-to-model.md)
+pages=(README.md .github/CONTRIBUTING.md host/examples/README.md host/examples/from-log-to-model.md
+       host/examples/linuxcnc/README.md)
 while IFS= read -r line; do
   read -ra words <<< "${line%%#*}"
   command=${words[0]:-}

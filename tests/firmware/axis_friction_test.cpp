@@ -23,8 +23,8 @@ using firmware_test::PaperAxis;
 using hal::pc::SimulatedAxis;
 
 /// A plant, a board and a control law, switched on.
-struct ClosedLoop {
-  ClosedLoop(const PaperAxis& paper, const AxisParameters<float>& parameters)
+struct PaperLoop {
+  PaperLoop(const PaperAxis& paper, const AxisParameters<float>& parameters)
       : plant(firmware_test::friction_drive(paper), 1), board(plant), axis(board) {
     EXPECT_EQ(axis.configure(parameters), firmware::Refusal::none);
     axis.step();
@@ -67,7 +67,7 @@ double friction_V(const PaperAxis& axis, double velocity_rad_s) {
 }
 
 TEST_P(FrictionLoop, JogRunsAtTheSpeedAskedForAndTheObserverSeesTheFriction) {
-  ClosedLoop loop(*GetParam(), parameters);
+  PaperLoop loop(*GetParam(), parameters);
   for (const double speed_mm_s : {50.0, -50.0, 10.0, -100.0}) {
     ASSERT_TRUE(loop.axis.jog(static_cast<float>(speed_mm_s)));
     for (int k = 0; k < 400; ++k) loop.step();
@@ -87,7 +87,7 @@ struct MoveErrors {
 };
 
 MoveErrors move_there_and_back(const PaperAxis& paper, const AxisParameters<float>& parameters) {
-  ClosedLoop loop(paper, parameters);
+  PaperLoop loop(paper, parameters);
   MoveErrors errors;
   for (const std::int64_t target : {8192, 0}) {
     EXPECT_TRUE(loop.axis.start(loop.axis.plan_move_to(CountPosition::at(target)).plan));
@@ -121,7 +121,7 @@ TEST_P(FrictionLoop, EachFeedforwardLowersTheTrackingErrorOfAMove) {
 TEST_P(FrictionLoop, StepSettlesInsideTheBandThatStaticFrictionHolds) {
   for (const bool cancellation : {false, true}) {
     parameters.disturbance_cancellation_on = cancellation;
-    ClosedLoop loop(*GetParam(), parameters);
+    PaperLoop loop(*GetParam(), parameters);
     const double step_mm = 0.25;
     const std::int64_t step_counts = std::llround(step_mm / firmware_test::kEncoderResolution_mm);
     double highest_mm = 0.0;
@@ -165,8 +165,8 @@ ContourErrors run_circle(bool friction_feedforward, bool disturbance_cancellatio
     p.disturbance_cancellation_on = disturbance_cancellation;
     return p;
   };
-  ClosedLoop x(kPaperX, parameters_for(kPaperX));
-  ClosedLoop y(kPaperY, parameters_for(kPaperY));
+  PaperLoop x(kPaperX, parameters_for(kPaperX));
+  PaperLoop y(kPaperY, parameters_for(kPaperY));
   const auto limits = firmware::motion_limits(parameters_for(kPaperX));
   const double turn_mm = 2.0 * std::numbers::pi * 35.0;
   const auto planned =
@@ -185,7 +185,7 @@ ContourErrors run_circle(bool friction_feedforward, bool disturbance_cancellatio
     const auto arc_mm = [](const CountPosition& p) {
       return firmware::counts_from<double>(0, p) * firmware_test::kEncoderResolution_mm;
     };
-    for (ClosedLoop* loop : {&x, &y}) {
+    for (PaperLoop* loop : {&x, &y}) {
       const bool is_x = loop == &x;
       const CountPosition change = circle_reference(arc_mm(arc), is_x) - circle_reference(arc_mm(last), is_x);
       loop->axis.step_with(change.counts * firmware::kOneCount + change.fraction);
@@ -223,8 +223,8 @@ TEST(Circle, DisturbanceCancellationHelpsAloneAndRemovesTheStandingError) {
 
 /// Everything the converter was given during a jog and a move, with every switch on and an output limit that is
 /// reached.
-std::vector<std::int32_t> words_of(const AxisParameters<float>& parameters) {
-  ClosedLoop loop(kPaperX, parameters);
+std::vector<std::int32_t> words_until_rest(const AxisParameters<float>& parameters) {
+  PaperLoop loop(kPaperX, parameters);
   std::vector<std::int32_t> words;
   loop.axis.jog(-30.0f);
   for (int k = 0; k < 1500; ++k) {
@@ -240,12 +240,12 @@ TEST(AxisParameters, EachOneChangesWhatTheAxisDoes) {
   good.friction_feedforward_on = good.disturbance_cancellation_on = good.zero_phase_feedforward_on = true;
   good.dac_limit_V = 2.5f;
   good.velocity_limit = 100.0f;
-  const auto words = words_of(good);
-  ASSERT_EQ(words_of(good), words) << "a run can be repeated";
+  const auto words = words_until_rest(good);
+  ASSERT_EQ(words_until_rest(good), words) << "a run can be repeated";
   const auto expect_change = [&](const char* name, auto change) {
     auto changed = good;
     change(changed);
-    EXPECT_TRUE(words_of(changed) != words) << name;
+    EXPECT_TRUE(words_until_rest(changed) != words) << name;
   };
   const auto expect_scaling = [&](const char* name, auto member) {
     expect_change(name, [&](auto& p) { member(p) *= 0.9f; });

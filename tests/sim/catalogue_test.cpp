@@ -137,9 +137,9 @@ TEST_P(EveryEffect, HasParametersWithNamesBoundsAndStarts) {
 
 TEST_P(EveryEffect, HasKeysThatEndInAUnitOrAreRatios) {
   using testing::EndsWith;
-  const std::set<std::string_view> ratios = {"asymmetry",     "exponent",       "gain",          "coefficient",
-                                             "damping_ratio", "load_fraction",  "load_friction", "cosine",
-                                             "sine",          "viscous_change", "coulomb_change"};
+  const std::set<std::string_view> ratios = {"asymmetry",     "exponent",      "gain",           "coefficient",
+                                             "damping_ratio", "load_fraction", "load_friction",  "load_viscous",
+                                             "cosine",        "sine",          "viscous_change", "coulomb_change"};
   const auto rotary_unit =
       testing::AnyOf(EndsWith("_Nm"), EndsWith("_kg_m2"), EndsWith("_Nm_s_per_rad"), EndsWith("_rad_s"),
                      EndsWith("_mm"), EndsWith("_Nm_per_rad"), EndsWith("_Nm_per_mm"), EndsWith("_A"), EndsWith("_V"),

@@ -16,12 +16,11 @@ using sim_test::kCoulomb;
 using sim_test::kInertia;
 using sim_test::kLead;
 using sim_test::kNmPerAmpere;
+using sim_test::kRate;
 using sim_test::kViscous;
 using sim_test::run;
 using sim_test::viscous_drive;
 using sim_test::with;
-
-constexpr double kRate = kViscous / kInertia;  // 1/s
 
 /// Speed of the viscous drive under an effort that was `effort` from `start_s` on, at `t_s`, from rest.
 double step_response(double effort, double start_s, double t_s) {

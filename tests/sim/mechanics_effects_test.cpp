@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "tests/sim/small_drive.hpp"
@@ -85,6 +87,23 @@ TEST(Compliance, AStuckTableTwistsTheSpringOnly) {
   const double stiffness = reduced * std::pow(2.0 * M_PI * 60.0, 2);
   EXPECT_NEAR(state.x - state.load_x, kLead * 0.9 * kCoulomb / stiffness, 1e-6);
   EXPECT_EQ(drive.encoder(state), state.x) << "the encoder sits on the motor";
+}
+
+/// At an even speed the spring carries the load's own friction: dry and viscous in parts of their own.
+TEST(Compliance, CarriesTheLoadsPartOfEachFriction) {
+  const double torque = 3.0 * kCoulomb, dry = 0.5, viscous = 0.2;
+  const auto twist_with = [&](std::map<std::string, double> parts) {
+    parts.insert({{"resonance", 60.0}, {"damping_ratio", 0.3}, {"load_fraction", kLoadFraction}});
+    const Drive drive(with(coulomb_drive(), "compliance", parts));
+    const DriveState state = run(drive, drive.at(0.0, 0.0), torque, 20000, 0.001);
+    EXPECT_NEAR(state.w, (torque - kCoulomb) / sim_test::kViscous, 1e-3);
+    return (state.x - state.load_x) / kLead;
+  };
+  const double stiffness = kInertia * kLoadFraction * (1.0 - kLoadFraction) * std::pow(2.0 * M_PI * 60.0, 2);
+  const double fluid = torque - kCoulomb;
+  EXPECT_NEAR(twist_with({{"load_friction", dry}, {"load_viscous", viscous}}) * stiffness,
+              dry * kCoulomb + viscous * fluid, 1e-3);
+  EXPECT_NEAR(twist_with({{"load_friction", dry}}) * stiffness, dry * torque, 1e-3) << "one part for both";
 }
 
 sim::DriveDescription with_gap(sim::DriveDescription drive, double gap_mm) {

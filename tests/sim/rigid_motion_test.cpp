@@ -18,14 +18,13 @@ using sim_test::kCoulomb;
 using sim_test::kInertia;
 using sim_test::kLead;
 using sim_test::kOmega;
+using sim_test::kRate;
 using sim_test::kStatic;
 using sim_test::kViscous;
 using sim_test::run;
 using sim_test::stribeck_drive;
 using sim_test::viscous_drive;
 using sim_test::with;
-
-constexpr double kRate = kViscous / kInertia;  // 1/s
 
 TEST(LinearDrive, StepResponseIsExactForAnyStep) {
   const Drive drive(viscous_drive());

@@ -9,13 +9,14 @@
 
 namespace sim_test {
 
-inline constexpr double kInertia = 0.01;     // kg m^2
-inline constexpr double kViscous = 0.05;     // Nm s/rad
-inline constexpr double kCoulomb = 0.4;      // Nm
-inline constexpr double kStatic = 0.7;       // Nm
-inline constexpr double kOmega = 2.0;        // rad/s
-inline constexpr double kLead = 1.5;         // mm/rad
-inline constexpr double kNmPerAmpere = 0.5;  // so that 2 A/V make 1 Nm/V
+inline constexpr double kInertia = 0.01;              // kg m^2
+inline constexpr double kViscous = 0.05;              // Nm s/rad
+inline constexpr double kRate = kViscous / kInertia;  // 1/s
+inline constexpr double kCoulomb = 0.4;               // Nm
+inline constexpr double kStatic = 0.7;                // Nm
+inline constexpr double kOmega = 2.0;                 // rad/s
+inline constexpr double kLead = 1.5;                  // mm/rad
+inline constexpr double kNmPerAmpere = 0.5;           // so that 2 A/V make 1 Nm/V
 
 inline sim::EffectEntry entry(std::string kind, std::map<std::string, double> parameters) {
   return {std::move(kind), std::move(parameters), {}, {}};

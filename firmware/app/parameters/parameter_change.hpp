@@ -8,7 +8,7 @@
 
 namespace firmware {
 
-/// Of sets of one size: the place of the first value that changes and may not while an axis is enabled; size() when
+/// For sets of equal size: index of the first changed value that must not change while an axis is enabled; size() if
 /// there is none.
 constexpr std::size_t change_that_needs_standstill(const ParameterValues& from, const ParameterValues& to) {
   for (std::size_t place = 0; place < from.size(); ++place) {

@@ -110,7 +110,7 @@ class ProtocolServer {
     return rule.in_motion || !app_.is_in_motion() ? Status::ok : Status::drive_enabled;
   }
 
-  /// A capture is its client's as long as that one is heard now and then.
+  /// A capture belongs to its client until that client falls silent.
   bool is_others(const ClientClaim& claim, ClientToken client) {
     constexpr std::uint32_t kPatience_s = 2;
     const auto patience = kPatience_s * static_cast<std::uint32_t>(app_.active().template get<"control.rate">());

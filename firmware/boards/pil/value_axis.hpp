@@ -1,4 +1,4 @@
-// The hardware interface of one axis as plain values: somebody else brings readings and takes the converter's words.
+// The hardware interface of one axis as plain values: the caller supplies readings and takes the converter's words.
 #pragma once
 
 #include <cstdint>

@@ -9,8 +9,8 @@ namespace firmware {
 
 inline constexpr std::size_t kMostPitchPoints = 256;
 
-/// Deviations as ISO 230-2 has them: the table's actual position less the one that was wanted, when it came there in
-/// the positive and in the negative direction. In 2^-16 counts; as they lie in flash.
+/// Deviations as ISO 230-2 has them: actual minus commanded position of the table, for approach in the positive and in
+/// the negative direction. In 2^-16 counts; as they lie in flash.
 struct PitchPoint {
   std::int32_t counts = 0;  ///< from home
   std::int32_t forward = 0, backward = 0;

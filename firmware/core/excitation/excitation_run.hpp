@@ -28,16 +28,13 @@ enum class ExcitationEnd : std::uint8_t {
   blind = 8,      ///< the tachometer shows motion that the encoder does not
 };
 
-/// Before each step it is asked what goes into that step. The box is judged by the encoder's raw counts, and by the
-/// tachometer where its scale is known, so it needs neither model nor estimate.
-///
-/// In an open loop the axis is stopped by the command that accelerated it, turned round: which way a command
-/// accelerates the drive shows in the excitation itself, as the sign of the sum of command times change of speed. The
-/// command falls to 0 when the axis turns back, when it has slowed to the encoder's resolution, or when braking makes
-/// it faster. A closed loop stops as its reference does.
-///
-/// A train turns round in time: a drive that took a way to reach its speed needs no longer way, under the command
-/// turned round, to lose it again; friction helps it. The half more is for levels of unequal size.
+/// It gives the input of each step before that step. The box is judged by the encoder's raw counts, and by the
+/// tachometer where its scale is known, so it needs neither model nor estimate. In an open loop the axis is stopped by
+/// the command that accelerated it, turned round: which way a command accelerates the drive shows in the excitation
+/// itself, as the sign of the sum of command times change of speed. The command falls to 0 when the axis turns back,
+/// when it has slowed to the encoder's resolution, or when braking makes it faster. A closed loop stops as its
+/// reference does. A train turns round in time: a drive that took a way to reach its speed needs no longer way, under
+/// the command turned round, to lose it again; friction helps it. The half more is for levels of unequal size.
 template <typename Scalar>
 class ExcitationRun {
  public:

@@ -8,9 +8,8 @@
 
 namespace firmware {
 
-/// A look at the index forgets the pulses that it tells of, so there is one a control period at most, and everybody is
-/// shown what it saw. The monitor alone looks every kSamples: index pulses are whole turns apart however seldom they
-/// are asked for.
+/// Reading the index clears its pulses, so it is read at most once per control period, and all users get that reading.
+/// The monitor alone looks every kSamples: index pulses are whole turns apart however seldom they are asked for.
 class AxisIndex {
  public:
   /// `spacing`: as of IndexMonitor.
@@ -23,7 +22,7 @@ class AxisIndex {
   /// Once a control period in which nobody else has looked.
   constexpr bool is_due() { return --until_ <= 0; }
 
-  /// What has passed since the last look; `counter`: the encoder's, now.
+  /// Pulses since the last reading; `counter`: the encoder's, now.
   template <hal::IndexedEncoder Encoder>
   constexpr AxisFault look(Encoder& encoder, std::uint32_t counter) {
     until_ = monitor_.is_on() ? kSamples : std::numeric_limits<std::int32_t>::max();

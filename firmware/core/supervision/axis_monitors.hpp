@@ -90,7 +90,7 @@ class AxisMonitors {
     return tachometer_fitted_ && tachometer < encoder ? tachometer : encoder;
   }
 
-  /// While the loop is open there is nothing to follow, and no control signal that a broken state would show in.
+  /// With the loop open there is no reference to follow, and no control signal that would show a broken state.
   constexpr AxisFault watch_rest(const AxisTelemetry<Scalar>& seen) {
     restart_motion();
     travel_.restart();

@@ -8,8 +8,8 @@ namespace firmware {
 enum class FaultReaction : std::uint8_t {
   none,       ///< nothing to stop: the axis is not let go
   ramp_stop,  ///< the control still works: slow down within the limits of references, then drop the enable
-  /// One sensor has failed, or the loop has lost the drive, while a sensor still shows its speed: slow down by that
-  /// one, then drop the enable. At once where there is none.
+  /// One sensor has failed, or the loop has lost the drive, but another sensor still shows the speed: slow down with
+  /// that one, then drop the enable. Without one, drop the enable at once.
   sensor_stop,
   drop_enable,  ///< the control cannot be trusted, or has lost the drive: 0 V and enable off in the same sample
 };

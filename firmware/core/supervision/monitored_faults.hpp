@@ -39,10 +39,10 @@ struct FollowingError {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::following_error,
        .name = "following_error",
-       .cause = "the axis is farther from its reference than it may be at this speed: blocked, overloaded, or its "
-                "drive is weak",
-       .remedy = "free the axis; check load and amplifier; lower acceleration; raise the limit only if the high-water "
-                 "mark of sound moves is near it",
+       .cause = "the following error exceeds its limit at this speed: the axis is blocked or overloaded, or its drive "
+                "is weak",
+       .remedy = "free the axis; check load and amplifier; lower acceleration; raise the limit only if the largest "
+                 "error of normal moves is near it",
        .reaction = FaultReaction::sensor_stop},
   });
   template <typename Scalar>
@@ -66,7 +66,7 @@ struct FollowingError {
                                                                  .minimum = 0,
                                                                  .maximum = 1e3F,
                                                                  .initial = 0.005F,
-                                                                 .doc = "what the speed of the reference adds to it"}));
+                                                                 .doc = "increase of it per speed of the reference"}));
 
   template <typename Scalar>
   static constexpr bool protects(const AxisParameters<Scalar>& p, const ceilings::Scaled<Scalar>& scaled) {
@@ -86,8 +86,8 @@ struct Disagreement {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::encoder_tachometer_disagreement,
        .name = "encoder_tachometer_disagreement",
-       .cause = "encoder and tachometer report different speeds: one is dead, reversed, offset, or its wires are "
-                "swapped",
+       .cause = "encoder and tachometer report different speeds: one is dead, reversed, has an offset, or its wires "
+                "are swapped",
        .remedy = "turn the shaft by hand and compare both readings; calibrate the tachometer; check coupling and wires",
        .reaction = FaultReaction::sensor_stop,
        .loses_position = true},
@@ -120,7 +120,7 @@ struct Disagreement {
                                                                       .minimum = 0,
                                                                       .maximum = 1,
                                                                       .initial = 0.1F,
-                                                                      .doc = "share of the speed that is added to it"}),
+                                                                      .doc = "share of the speed added to it"}),
                       threshold(&Limits<Scalar>::encoder_jump, {.id = 148,
                                                                 .name = "monitor.encoder_jump",
                                                                 .quantity = Quantity::velocity,
@@ -173,14 +173,14 @@ struct CommandEffect {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::feedback_polarity,
        .name = "feedback_polarity",
-       .cause = "the drive accelerates against its command: motor or both sensors the wrong way round, the D/A output "
-                "stuck, or a load that is stronger than the drive",
+       .cause = "the drive accelerates against its command: motor or both sensors reversed, the D/A output stuck, or a "
+                "load stronger than the drive",
        .remedy = "swap the motor's leads, or the sign of encoder and tachometer",
        .reaction = FaultReaction::drop_enable},
       {.fault = AxisFault::command_without_motion,
        .name = "command_without_motion",
-       .cause = "the command should long have moved the axis, and the encoder does not show it: a dead encoder, an "
-                "axis that is blocked, a motor without current or with the wrong one",
+       .cause = "the encoder shows no motion although the command should have moved the axis: a dead encoder, a "
+                "blocked axis, or a motor with no or wrong current",
        .remedy = "turn the shaft by hand and watch the position; free the axis; check the motor's leads and the "
                  "encoder's coupling",
        .reaction = FaultReaction::drop_enable,
@@ -198,7 +198,7 @@ struct CommandEffect {
                                             .minimum = 1e-3F,
                                             .maximum = 1e3F,
                                             .initial = 3,
-                                            .doc = "command beyond any friction: it must accelerate the drive"}));
+                                            .doc = "command above any friction: it must accelerate the drive"}));
 
   template <typename Scalar>
   static constexpr bool protects(const AxisParameters<Scalar>& p, const ceilings::Scaled<Scalar>&) {
@@ -211,10 +211,9 @@ struct Oscillation {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::limit_cycle,
        .name = "limit_cycle",
-       .cause = "the feedback swings the command to and fro without motion that asks for it: the loop is unstable or "
-                "nearly so",
+       .cause = "the command oscillates without commanded motion: the loop is unstable or nearly so",
        .remedy = "design the gains again with less bandwidth; check inertia, delay and resonances; raise the limit "
-                 "only if the tachometer's noise is what swings",
+                 "only if the tachometer's noise is the cause",
        .reaction = FaultReaction::drop_enable},
   });
   template <typename Scalar>
@@ -230,7 +229,7 @@ struct Oscillation {
                                  .minimum = 1e-3F,
                                  .maximum = 1e3F,
                                  .initial = 2.5F,
-                                 .doc = "rms that the feedback's command may swing by while no motion asks for it"}));
+                                 .doc = "largest rms oscillation of the feedback's command without commanded motion"}));
 
   template <typename Scalar>
   static constexpr bool protects(const AxisParameters<Scalar>& p, const ceilings::Scaled<Scalar>&) {
@@ -280,8 +279,8 @@ struct IndexSpacing {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::index_mismatch,
        .name = "index_mismatch",
-       .cause = "the counts between two index pulses are no whole turns, or a turn passed without a pulse: counts lost "
-                "or gained, or a dead index line",
+       .cause = "the counts between two index pulses are not whole turns, or a turn passed without a pulse: counts "
+                "lost or gained, or a dead index line",
        .remedy = "check shield and earth, the encoder's frequency limit and the index wires; check "
                  "encoder.index_spacing",
        .reaction = FaultReaction::drop_enable,
@@ -300,7 +299,7 @@ struct IndexSpacing {
                  .minimum = 0,
                  .maximum = 1e6F,
                  .initial = 0,
-                 .doc = "counts from one index pulse to the next, which then are watched; 0: no index is wired"}));
+                 .doc = "counts between two index pulses, which are then monitored; 0: no index is wired"}));
 
   template <typename Scalar>
   static constexpr bool protects(const AxisParameters<Scalar>& p, const ceilings::Scaled<Scalar>&) {
@@ -312,7 +311,7 @@ struct Saturation {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::saturation_too_long,
        .name = "saturation_too_long",
-       .cause = "the D/A converter stayed at its limit: blocked axis, weak drive, or limits that ask too much",
+       .cause = "the D/A converter stayed at its limit: blocked axis, weak drive, or limits set too high",
        .remedy = "free the axis; lower acceleration or the gains",
        .reaction = FaultReaction::drop_enable},
   });
@@ -358,9 +357,8 @@ struct ConverterState {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::converter_not_as_set,
        .name = "converter_not_as_set",
-       .cause =
-           "the D/A converter, read back, is not as it was set: its supply broke down, an output is shorted, it is "
-           "too hot, or a wire to it is broken",
+       .cause = "the D/A converter's read-back differs from its setting: its supply failed, an output is shorted, it "
+                "is too hot, or a wire to it is broken",
        .remedy = "look at the report on the service port; check the converter's supplies, the cable to the amplifier "
                  "and its load",
        .reaction = FaultReaction::drop_enable},

@@ -81,7 +81,7 @@ inline constexpr std::array<SupervisorTransition, 19> kTransitions{{
     {SupervisorState::fault, SupervisorEvent::clear_request, SupervisorState::self_test},
 }};
 
-/// `fault_latched`: a stop that a fault began ends in the state fault.
+/// `fault_latched`: a stop caused by a fault ends in the state fault.
 constexpr SupervisorState next_state(SupervisorState state, SupervisorEvents events, bool fault_latched) {
   for (const SupervisorTransition& row : kTransitions) {
     if (row.from != state || !contains(events, row.event)) continue;

@@ -119,7 +119,7 @@ function modelRow(name) {
     },
   });
   const chosen = el("input", { type: "radio", name: "model", checked: name === choice.model, onchange: () => workOn(name) });
-  return el("li", {}, el("label", { className: "name" }, chosen, el("span", {}, name)), el("label", { className: "beside", title: "Draw it beside the model that is worked on" }, beside, "beside"));
+  return el("li", {}, el("label", { className: "name" }, chosen, el("span", {}, name)), el("label", { className: "beside", title: "Plot it beside the selected model" }, beside, "beside"));
 }
 
 const kRoles = [["train", "train"], ["judge", "held back"], ["off", "leave out"]];
@@ -163,8 +163,8 @@ function render() {
   const logs = namesOf("log"), sheets = namesOf("sheet");
   place.replaceChildren(
     drop,
-    group("Models", namesOf("model").map(modelRow), "None yet: drop one (.toml), or identify it from records and a data sheet."),
-    group("Records", namesOf("record").map(recordRow), "None yet: drop some, or logs of any controller."),
+    group("Models", namesOf("model").map(modelRow), "None yet: drop one (.toml), or identify one from records and a data sheet."),
+    group("Records", namesOf("record").map(recordRow), "None yet: drop some, or any controller's logs."),
     ...(sheets.length ? [group("Data sheets", sheets.map(sheetRow), "")] : []),
     ...(logs.length ? [group("Other logs", [...logs.map(logRow), ...(logs.length > 1 ? [el("li", {}, el("span", { className: "name soft" }, "of one controller"), el("a", { href: openAddress(logs), className: "button small" }, "Open all"))] : [])], "")] : [])
   );

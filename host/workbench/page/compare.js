@@ -78,7 +78,7 @@ function zoomTools(traces, again) {
       const first = plots().unpack(plot.panels[0].x);
       if (from <= first[0] && to >= first.at(-1)) return;
       const stretch = [from, to].map((value) => Number(value.toPrecision(6)));
-      actions.push([short(from) + " to " + short(to) + " s of " + traces], ["Light it in all plots", () => ((focus = { ...focus, traces, stretch }), again())], ["Leave it out", () => leaveOut(traces, stretch)]);
+      actions.push([short(from) + " to " + short(to) + " s of " + traces], ["Highlight it in all plots", () => ((focus = { ...focus, traces, stretch }), again())], ["Leave it out", () => leaveOut(traces, stretch)]);
     } else if (plot.xLabel === "position [mm]" && !isReset) {
       const period = Number((to - from).toPrecision(4));
       actions.push(["A period of " + period + " mm?"], ["Fold by it", () => ((focus = { ...focus, period_mm: period }), again())]);
@@ -97,7 +97,7 @@ export async function showCompare(place) {
   const head = el("div", { className: "row head" }, el("h1", {}, "Compare"), setButtons(again));
   if (!choice.model || !records.length) {
     forgetPlots();
-    place.replaceChildren(head, el("p", { className: "lead" }, choice.model ? "Choose records on the left, or drop them anywhere." : "A model is needed to compare with: drop one (.toml), or identify one from training records and a data sheet on the left."));
+    place.replaceChildren(head, el("p", { className: "lead" }, choice.model ? "Choose records on the left, or drop them anywhere." : "A comparison needs a model: drop one (.toml), or identify one from training records and a data sheet on the left."));
     return;
   }
   place.classList.add("waiting");
@@ -110,7 +110,7 @@ export async function showCompare(place) {
     forgetPlots();
     options.onZoom = zoomTools(told.traces, again);
     place.replaceChildren(head, told.traces ? focusTools(records, told.traces, again) : "", body);
-    head.append(el("a", { className: "button primary", href: "#effects/find" }, "Find what is missing"));
+    head.append(el("a", { className: "button primary", href: "#effects/find" }, "Find the missing effect"));
     show();
     window.scrollTo(0, scrolled);
   } catch (error) {

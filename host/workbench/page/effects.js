@@ -69,7 +69,7 @@ export async function follow(ended) {
     if (job.state !== "done" || !job.model || (job.request.do !== "identify" && job.request.model !== choice.model)) continue;
     if ((await documentOf(job)).kept === "given") {
       next = [];
-      notice("Held-back records would be predicted worse: the model stays as it was.");
+      notice("The addition predicts held-back records worse, so the model is unchanged.");
       continue;
     }
     await loadFolder();
@@ -101,10 +101,10 @@ async function ladder(place, steps) {
     else for (const step of told.ladder.filter((one) => one.added.length)) rows.push(row("+ " + titleOf(step.added), step.error));
   }
   const last = steps.at(-1), told = await documentOf(last);
-  place.append(el("div", { className: "row" }, el("h2", {}, "The ladder so far"),
+  place.append(el("div", { className: "row" }, el("h2", {}, "Steps so far"),
     el("button", { type: "button", id: "undo", title: "Key U", onclick: undo }, "Undo: back to " + last.request.model),
     el("button", { type: "button", id: "story", onclick: saveStory }, "Save the story")));
-  if (told.kept === "given") place.append(el("p", { className: "lead" }, "The last step predicts held-back records worse: " + last.model + " holds the model as it was."));
+  if (told.kept === "given") place.append(el("p", { className: "lead" }, "The last step predicts the held-back records worse: " + last.model + " holds the unchanged model."));
   const rotary = "x_mm" in told.error.after.train.channels || "w_rad_s" in told.error.after.train.channels;
   place.append(el("div", { className: "pair" }, el("div", {}, errorBars(rows), errorTable(told.error.given, told.error.after)), ...(told.parameters ? [parameterTable(told.parameters, catalogue, rotary)] : [])));
   place.append(commandLine(last.command));
@@ -135,12 +135,12 @@ function cards(told) {
   const rest = told.candidates.filter((one) => !useful.includes(one));
   const list = useful.map((one) => card(one, told));
   if (verdict.probability_other > 0) list.push(plainCard("Something else", verdict.probability_other,
-    (verdict.coordinate ? "Most of what is left goes with " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment,
+    (verdict.coordinate ? "Most of the residual depends on " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment,
     el("div", { className: "row" }, el("button", { type: "button", onclick: () => add("free_curve") }, "Add a free curve"))));
-  if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "What is left would be noise."));
-  const places = [el("h2", {}, "What it could be"), el("ol", { className: "cards", id: "cards" }, ...list)];
+  if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "Then the residual would be noise."));
+  const places = [el("h2", {}, "Possible explanations"), el("ol", { className: "cards", id: "cards" }, ...list)];
   for (const group of verdict.alternatives) places.push(el("p", { className: "lead" }, "These records cannot tell apart: " + group.map((kind) => titleOf([kind])).join(", ") + "."));
-  if (rest.length) places.push(el("details", {}, el("summary", {}, rest.length + " others that were tried are improbable"), el("ol", { className: "cards" }, ...rest.map((one) => card(one, told)))));
+  if (rest.length) places.push(el("details", {}, el("summary", {}, rest.length + " other tried effects are improbable"), el("ol", { className: "cards" }, ...rest.map((one) => card(one, told)))));
   return places;
 }
 
@@ -153,7 +153,7 @@ async function diagnosis(place, job) {
   return () => {
     place.append(parts.verdict ? document.importNode(parts.verdict, true) : "");
     if (told.verdict.effects.length || told.verdict.coordinate) showBlocks(place, parts, isFirst);
-    place.append(...cards(told), commandLine(job.command), el("p", {}, el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "The whole report on a page of its own")));
+    place.append(...cards(told), commandLine(job.command), el("p", {}, el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Open the whole report")));
     const more = el("details", {}, el("summary", {}, "Errors, residuals and traces"));
     more.addEventListener("toggle", () => more.children.length === 1 && showBlocks(more, parts, (block) => !isFirst(block)), { once: true });
     place.append(more);
@@ -164,9 +164,9 @@ function head() {
   const ready = choice.model && chosenRecords().train.length;
   const records = chosenRecords();
   return [el("div", { className: "row head" }, el("h1", {}, "Effects"),
-    el("button", { type: "button", className: "primary", id: "diagnose", title: "Key D", disabled: !ready, onclick: () => begin(request("diagnose")) }, "Find what is missing"),
-    el("button", { type: "button", disabled: !ready, onclick: () => begin(request("improve")) }, "Add all that are significant")),
-  el("p", { className: "lead" }, ready ? choice.model + ", trained on " + records.train.join(", ") + (records.validate.length ? ", judged on " + records.validate.join(", ") : ", judged on blocks of them that are held back") + "."
+    el("button", { type: "button", className: "primary", id: "diagnose", title: "Key D", disabled: !ready, onclick: () => begin(request("diagnose")) }, "Find the missing effect"),
+    el("button", { type: "button", disabled: !ready, onclick: () => begin(request("improve")) }, "Add all significant effects")),
+  el("p", { className: "lead" }, ready ? choice.model + ", trained on " + records.train.join(", ") + (records.validate.length ? ", judged on " + records.validate.join(", ") : ", validated on held-back blocks of them") + "."
     : "Choose a model and at least one training record.")];
 }
 

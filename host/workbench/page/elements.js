@@ -53,7 +53,7 @@ export function errorBox(error, accept) {
   const box = el("section", { className: "verdict bad", role: "alert" }, el("span", { className: "badge" }, "not possible"), el("h2", {}, error.message));
   if (fatal.length && accept) {
     const words = [...new Set(fatal.map((fault) => fault.kind))];
-    box.append(el("p", {}, "Mend the record, or go on in spite of it."), el("button", { type: "button", onclick: () => accept(words) }, "Accept: " + words.join(", ")));
+    box.append(el("p", {}, "Correct the record, or continue anyway."), el("button", { type: "button", onclick: () => accept(words) }, "Accept: " + words.join(", ")));
   }
   return box;
 }

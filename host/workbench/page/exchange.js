@@ -1,7 +1,7 @@
 // Questions to the program behind the page.
 
 async function told(response) {
-  const answer = await response.json().catch(() => ({ error: response.status === 403 ? "This page is no longer known: open the address that axistool serve printed." : "The program gave no answer that can be read." }));
+  const answer = await response.json().catch(() => ({ error: response.status === 403 ? "This page has expired: open the address that axistool serve printed." : "The program's answer cannot be read." }));
   if (response.ok) return answer;
   throw Object.assign(new Error(answer.error || "Refused (" + response.status + ")."), { log: answer.log });
 }

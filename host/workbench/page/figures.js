@@ -27,7 +27,7 @@ export function errorBars(steps) {
   const rows = steps.map((step) => el("tr", {}, el("th", { scope: "row" }, step.label), el("td", {}, bar("training", step.train, "train"), bar("held back", step.validate, "model"))));
   const swatch = (colour, text) => el("span", {}, el("i", { className: "swatch", style: "background:var(--" + colour + ")" }), text);
   return el("figure", { className: "bars" },
-    el("figcaption", {}, el("strong", {}, "Error in multiples of the noise floor"), el("span", {}, "All channels together; 1 is what a perfect model leaves.")),
+    el("figcaption", {}, el("strong", {}, "Error in multiples of the noise floor"), el("span", {}, "All channels together; a perfect model gives 1.")),
     el("div", { className: "legend" }, swatch("train", "training"), swatch("model", "held back"), el("span", {}, el("i", { className: "swatch line" }), "noise floor")),
     el("table", {}, ...rows));
 }
@@ -87,7 +87,7 @@ function keyOf(name, catalogue, rotary) {
 export function parameterTable(parameters, catalogue, rotary) {
   const k95 = 1.96;
   const rows = parameters.map((one) => [keyOf(one.name, catalogue, rotary), String(Number(one.value.toPrecision(5))), one.determined ? "± " + short(k95 * one.deviation) : "not determined"]);
-  return table("Parameters, all fitted again", "", ["parameter", "value", "95 %"], rows, 1);
+  return table("Parameters, all refitted", "", ["parameter", "value", "95 %"], rows, 1);
 }
 
 /** @param {number} share 0 to 1 */

@@ -1,9 +1,9 @@
-// The catalogue: what each effect does, what it is confused with, what tells them apart, and what can be done.
+// The catalogue: how each effect shows, what it is confused with, how to tell them apart, and the remedy.
 import { choice } from "./choice.js";
 import { el } from "./elements.js";
 import { add, effects } from "./effects.js";
 
-const kStages = { command: "Command and current loop", motor: "Motor", load: "Torques on the shaft", friction: "Friction", mechanics: "Masses and what connects them", encoder: "Encoder", tachometer: "Tachometer" };
+const kStages = { command: "Command and current loop", motor: "Motor", load: "Torques on the shaft", friction: "Friction", mechanics: "Masses and their connections", encoder: "Encoder", tachometer: "Tachometer" };
 
 function entry(info, catalogue) {
   const link = (kind) => el("a", { href: "#gallery/" + kind }, catalogue.find((one) => one.kind === kind)?.title || kind);
@@ -13,8 +13,8 @@ function entry(info, catalogue) {
     el("summary", {}, info.title, el("span", { className: "soft" }, " " + info.shows.split(". ")[0] + ".")),
     el("dl", {},
       ...term("How it shows", info.shows), ...term("Goes with", info.along.join(", ").replaceAll("_", " ") || "–"), ...term("Equation", el("code", {}, info.equation)),
-      ...term("Where it comes from", info.origin || "–"), ...term("Easily taken for", ...(confused.length ? confused : ["–"])),
-      ...term("What tells them apart", info.separate_by || "–"), ...term("What can be done", info.remedy || "–")),
+      ...term("Origin", info.origin || "–"), ...term("Easily taken for", ...(confused.length ? confused : ["–"])),
+      ...term("How to tell them apart", info.separate_by || "–"), ...term("Remedy", info.remedy || "–")),
     info.base || !choice.model ? null : el("button", { type: "button", onclick: () => add(info.kind) }, "Add it to " + choice.model));
 }
 
@@ -31,7 +31,7 @@ export async function showGallery(place, kind) {
     for (const group of groups) group.hidden = !group.querySelector("details:not([hidden])");
   };
   place.replaceChildren(el("div", { className: "row head" }, el("h1", {}, "Gallery"), el("input", { type: "search", placeholder: "Search, e.g. reversal", "aria-label": "Search the effects", oninput: filter })),
-    el("p", { className: "lead" }, "Every effect that the plant has and that diagnose looks for."), el("div", { className: "gallery" }, ...groups));
+    el("p", { className: "lead" }, "Every effect of the plant model; diagnose tests all of them."), el("div", { className: "gallery" }, ...groups));
   const opened = /** @type {HTMLDetailsElement|null} */ (document.getElementById("effect-" + kind));
   if (!opened) return;
   opened.open = true;

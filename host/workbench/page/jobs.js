@@ -1,4 +1,4 @@
-// Long work in the program: asked for, watched, cancelled. The folder keeps it; this is a picture of it.
+// Long jobs in the program: starts, shows and cancels them. Their state is in the folder.
 import { commandLine, el, notice, percent } from "./elements.js";
 import { fileAddress, get, post } from "./exchange.js";
 
@@ -55,7 +55,7 @@ export function whole(job) {
   return get("/api/jobs/" + job.id);
 }
 
-const kVerbs = { identify: "Identifying", diagnose: "Searching what is missing", add: "Fitting", improve: "Adding what is significant" };
+const kVerbs = { identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", improve: "Adding significant effects" };
 
 /** @param {any} job */
 export function titleOf(job) {
@@ -85,6 +85,6 @@ export function showJobs(place) {
       job.state === "done" && job.report ? el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Whole report") : null,
       isOpen(job) ? el("button", { type: "button", onclick: () => cancel(job) }, "Cancel") : el("button", { type: "button", onclick: () => begin(job.request) }, "Run again"))));
   place.replaceChildren(el("h1", {}, "Jobs"),
-    el("p", { className: "lead" }, "What was computed here, latest first. Results lie in the folder, in “workbench”; models beside the one that they came from."),
+    el("p", { className: "lead" }, "Jobs, latest first. Results are in the subfolder “workbench”; new models are beside their original."),
     rows.length ? el("ol", { className: "jobs" }, ...rows) : el("p", { className: "soft" }, "None yet."));
 }

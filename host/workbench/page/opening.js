@@ -37,8 +37,8 @@ async function open(place, logs, yes) {
   const accept = () => open(place, logs, true).catch((error) => notice(error.message));
   place.replaceChildren(
     el("h1", {}, logs.join(", ")),
-    el("p", { className: "lead" }, told.asks.length ? "Almost: is this right?" : "No record can be made of this as it is; what is missing stands below."),
+    el("p", { className: "lead" }, told.asks.length ? "Is this right?" : "No record can be made from this yet; see below what is missing."),
     ...told.asks.map((ask) => el("p", {}, ask)),
-    told.asks.length ? el("button", { type: "button", className: "primary", id: "accept-opening", onclick: accept }, "That is right: make records of it") : "",
+    told.asks.length ? el("button", { type: "button", className: "primary", id: "accept-opening", onclick: accept }, "Correct: make records") : "",
     commandLine(command), ...told.files.map(channels));
 }

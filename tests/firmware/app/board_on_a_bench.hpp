@@ -13,6 +13,9 @@
 
 namespace firmware_test {
 
+/// Axis x at 20 mm/s.
+inline constexpr firmware::JogRequest kJog{0, {}, 20.0F};
+
 inline sim::DriveDescription paper_machine(const PaperAxis& paper) {
   sim::DriveDescription drive;
   drive.data.amplifier_gain_A_per_V = paper.amplifier_gain_A_per_V;

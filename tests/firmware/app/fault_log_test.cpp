@@ -12,12 +12,11 @@ namespace {
 
 using firmware::kLoggedFaults;
 using firmware::LoggedFault;
+using hal::pc::kTornStates;
 using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Log = firmware::FaultLog<SimulatedFlash>;
-
-constexpr TornState kTornStates[] = {TornState::untouched, TornState::complete, TornState::partial, TornState::prefix};
 
 /// Sectors of 96 entries: after a copy of 64 there is room for some 30 more.
 SimulatedFlash blank_flash() { return SimulatedFlash(4, 96 * 32, 4); }
@@ -45,7 +44,7 @@ LoggedFault time_alone(std::uint32_t run_s) {
 }
 
 template <typename Flash>
-firmware::FaultLog<Flash> start_up(Flash& flash) {
+firmware::FaultLog<Flash> log_at_start(Flash& flash) {
   firmware::FaultLog<Flash> log(flash);
   log.load();
   return log;
@@ -62,7 +61,7 @@ void expect_faults_up_to(firmware::FaultLog<Flash>& log, std::uint32_t newest, c
 
 TEST(FaultLog, IsEmptyOnABlankChip) {
   SimulatedFlash flash = blank_flash();
-  Log log = start_up(flash);
+  Log log = log_at_start(flash);
   expect_faults_up_to(log, 0);
   EXPECT_EQ(log.run_s(), 0u);
 }
@@ -70,7 +69,7 @@ TEST(FaultLog, IsEmptyOnABlankChip) {
 TEST(FaultLog, KeepsTheNewestOfMany) {
   SimulatedFlash flash = blank_flash();
   for (std::uint32_t n = 0; n < 300;) {
-    Log log = start_up(flash);
+    Log log = log_at_start(flash);
     expect_faults_up_to(log, n, "after a restart");
     for (const std::uint32_t end = n + (n < 70 ? 1 : 37); n < end;) {
       ASSERT_TRUE(log.add(fault_number(++n)));
@@ -81,10 +80,10 @@ TEST(FaultLog, KeepsTheNewestOfMany) {
 
 TEST(FaultLog, LosesNoFaultToTheTimeThatItCounts) {
   SimulatedFlash flash = blank_flash();
-  Log log = start_up(flash);
+  Log log = log_at_start(flash);
   for (std::uint32_t n = 1; n <= 3; ++n) ASSERT_TRUE(log.add(fault_number(n)));
   for (std::uint32_t k = 1; k <= 1000; ++k) ASSERT_TRUE(log.add(time_alone(3000 + 360 * k)));
-  Log again = start_up(flash);
+  Log again = log_at_start(flash);
   expect_faults_up_to(again, 3);
   EXPECT_EQ(again.run_s(), 3000u + 360'000);
   LoggedFault next = fault_number(4);
@@ -96,7 +95,7 @@ TEST(FaultLog, LosesNoFaultToTheTimeThatItCounts) {
 /// The sector that is erased next must be the one without the newest entries, also after a cut.
 TEST(FaultLog, LosesNothingToAPowerCutAtAnyOperation) {
   SimulatedFlash before = blank_flash();
-  Log full = start_up(before);
+  Log full = log_at_start(before);
   constexpr std::uint32_t kBefore = 86, kNew = 14;  // the sector fills up among the new ones
   for (std::uint32_t n = 1; n <= kBefore; ++n) ASSERT_TRUE(full.add(fault_number(n)));
   const auto add_all = [&](Log& log, std::uint32_t& done) {
@@ -119,21 +118,21 @@ TEST(FaultLog, LosesNothingToAPowerCutAtAnyOperation) {
       flash.cut_power_after(operation, torn, seed);
       EXPECT_THROW(
           {
-            Log log = start_up(flash);
+            Log log = log_at_start(flash);
             add_all(log, done);
           },
           PowerCut)
           << where;
       flash.cut_power_after(0, torn, seed + 1);
       try {
-        start_up(flash);
+        log_at_start(flash);
       } catch (const PowerCut&) {  // it had something to write
       }
       flash.restore_power();
-      Log log = start_up(flash);
+      Log log = log_at_start(flash);
       if (log.entry(0) == fault_number(done + 1)) ++done;  // the one that was being written
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(log, done, where));
-      Log again = start_up(flash);
+      Log again = log_at_start(flash);
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(again, done, where + ", second start-up"));
       for (std::uint32_t n = done + 1; n <= done + 40; ++n) ASSERT_TRUE(again.add(fault_number(n))) << where;
       ASSERT_NO_FATAL_FAILURE(expect_faults_up_to(again, done + 40, where + ", 40 later"));
@@ -145,12 +144,12 @@ TEST(FaultLog, LosesNothingToAPowerCutAtAnyOperation) {
 
 TEST(FaultLog, ADamagedEntryIsLeftOutAndNoOther) {
   SimulatedFlash flash = blank_flash();
-  Log log = start_up(flash);
+  Log log = log_at_start(flash);
   for (std::uint32_t n = 1; n <= 5; ++n) ASSERT_TRUE(log.add(fault_number(n)));
   const std::size_t sector = flash.contents()[2][0] != std::byte{0xFF} ? 2 : 3;
   flash.contents()[sector][32 * 4 + 9] ^= std::byte{2};  // behind the head and the time: the third
   EXPECT_EQ(log.entry(2), std::nullopt) << "it reads otherwise than it was written";
-  Log again = start_up(flash);
+  Log again = log_at_start(flash);
   ASSERT_EQ(again.size(), 4u);
   EXPECT_EQ(again.entry(1), fault_number(4));
   EXPECT_EQ(again.entry(2), fault_number(2));
@@ -170,7 +169,7 @@ class WornFlash : public SimulatedFlash {
 TEST(FaultLog, LeavesPlacesThatDoNotReadBack) {
   WornFlash flash(4, 96 * 32, 4);
   for (std::uint32_t n = 0; n < 200; ++n) {
-    auto log = start_up(flash);
+    auto log = log_at_start(flash);
     expect_faults_up_to(log, n);
     ASSERT_TRUE(log.add(fault_number(n + 1)));
     expect_faults_up_to(log, n + 1);
@@ -180,7 +179,7 @@ TEST(FaultLog, LeavesPlacesThatDoNotReadBack) {
 /// A board without these sectors has no log, and nothing else is hurt.
 TEST(FaultLog, IsNothingWithoutItsSectors) {
   SimulatedFlash flash(2, 4096, 4);
-  Log log = start_up(flash);
+  Log log = log_at_start(flash);
   EXPECT_FALSE(log.add(fault_number(1)));
   EXPECT_EQ(log.size(), 0u);
   EXPECT_EQ(flash.operations(), 0u);

@@ -9,11 +9,11 @@ using firmware::AxisFault;
 using firmware::MessageType;
 using firmware::Status;
 using firmware::SupervisorState;
+using firmware_test::kJog;
 using firmware_test::set;
 using Bench = firmware_test::BoardOnABench<float>;
 
 constexpr std::uint16_t kFirst = 1, kSecond = 2;
-constexpr firmware::JogRequest kJog{0, {}, 20.0F};
 constexpr auto kLost = static_cast<std::uint8_t>(AxisFault::host_heartbeat_lost);
 
 class TwoClients : public testing::Test {

@@ -19,12 +19,11 @@ using firmware::StoreState;
 using firmware_test::paper_values;
 using firmware_test::place_named;
 using firmware_test::set;
+using hal::pc::kTornStates;
 using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Store = firmware::ParameterStore<SimulatedFlash>;
-
-constexpr TornState kTornStates[] = {TornState::untouched, TornState::complete, TornState::partial, TornState::prefix};
 
 /// Sectors as small as they may be: what lies beyond the set matters to nothing.
 SimulatedFlash blank_flash() { return SimulatedFlash(2, 2048, 4); }
@@ -44,13 +43,13 @@ ParameterValues generation(int number) {
   return values;
 }
 
-struct Found {
+struct StoredParameters {
   firmware::StoreReport report;
   ParameterValues values;
 };
 
-Found start_up(SimulatedFlash& flash) {
-  Found found;
+StoredParameters load_at_start(SimulatedFlash& flash) {
+  StoredParameters found;
   Store store(flash);
   found.report = store.load(found.values);
   return found;
@@ -65,7 +64,7 @@ void save(SimulatedFlash& flash, const ParameterValues& values) {
 
 TEST(ParameterStore, IsEmptyOnABlankChip) {
   SimulatedFlash flash = blank_flash();
-  const Found found = start_up(flash);
+  const StoredParameters found = load_at_start(flash);
   EXPECT_EQ(found.report.state, StoreState::empty);
   EXPECT_EQ(found.values, ParameterValues{});
 }
@@ -74,7 +73,7 @@ TEST(ParameterStore, ReturnsTheLastOfManySaves) {
   SimulatedFlash flash = blank_flash();
   for (int i = 1; i <= 7; ++i) {
     save(flash, generation(i));
-    const Found found = start_up(flash);
+    const StoredParameters found = load_at_start(flash);
     EXPECT_EQ(found.report.state, StoreState::loaded);
     EXPECT_EQ(found.values, generation(i));
     EXPECT_EQ(found.report.sequence, static_cast<std::uint32_t>(i));
@@ -87,7 +86,7 @@ TEST(ParameterStore, SavesTwiceWithoutARestart) {
   Store store(flash);
   ASSERT_EQ(store.save(generation(1)), SaveResult::saved);
   ASSERT_EQ(store.save(generation(2)), SaveResult::saved);
-  EXPECT_EQ(start_up(flash).values, generation(2));
+  EXPECT_EQ(load_at_start(flash).values, generation(2));
 }
 
 /// Cuts power at one operation of two consecutive saves; afterwards starts up, being cut once more at the first
@@ -108,18 +107,18 @@ void cut_once(const SimulatedFlash& before, std::size_t operation, TornState tor
       PowerCut);
   flash.cut_power_after(0, torn, seed + 1);
   try {
-    start_up(flash);
+    load_at_start(flash);
   } catch (const PowerCut&) {  // it had something to write
   }
   flash.restore_power();
-  const Found found = start_up(flash);
+  const StoredParameters found = load_at_start(flash);
   const bool is_old = found.values == sets[done];
   ASSERT_TRUE(is_old || found.values == sets[done + 1]) << where << ": neither the old set nor the new one";
   const bool was_empty = is_old && done == 0 && old_state == StoreState::empty;
   ASSERT_EQ(found.report.state, was_empty ? StoreState::empty : StoreState::loaded) << where;
-  ASSERT_EQ(start_up(flash).values, found.values) << where << ": another start-up, another set";
+  ASSERT_EQ(load_at_start(flash).values, found.values) << where << ": another start-up, another set";
   save(flash, generation(4));
-  ASSERT_EQ(start_up(flash).values, generation(4)) << where;
+  ASSERT_EQ(load_at_start(flash).values, generation(4)) << where;
 }
 
 std::size_t cut_everywhere(const SimulatedFlash& before, const ParameterValues& old, StoreState old_state) {
@@ -169,7 +168,7 @@ TEST(PowerCut, TwiceInARowLeavesOneOfTheSetsThatWereSaved) {
         }
       }
       flash.restore_power();
-      const Found found = start_up(flash);
+      const StoredParameters found = load_at_start(flash);
       ASSERT_EQ(found.report.state, StoreState::loaded) << first << " " << second;
       ASSERT_TRUE(found.values == generation(1) || found.values == generation(2) || found.values == generation(3))
           << first << " " << second;
@@ -192,7 +191,7 @@ TEST(DamagedStore, IsNamedAndNeverReplacedByTheSetBefore) {
     for (int bit = 0; bit < 8; ++bit) {
       SimulatedFlash flash = whole;
       flash.contents()[newest][offset] ^= static_cast<std::byte>(1 << bit);
-      const Found found = start_up(flash);
+      const StoredParameters found = load_at_start(flash);
       ASSERT_EQ(found.report.state, StoreState::damaged) << "byte " << offset << " bit " << bit;
       ASSERT_EQ(found.values, ParameterValues{});
     }
@@ -204,10 +203,10 @@ TEST(DamagedStore, HealsByTheNextSave) {
   save(flash, generation(1));
   save(flash, generation(2));
   flash.contents()[1][100] ^= std::byte{1};
-  ASSERT_EQ(start_up(flash).report.state, StoreState::damaged);
+  ASSERT_EQ(load_at_start(flash).report.state, StoreState::damaged);
   save(flash, generation(3));
-  EXPECT_EQ(start_up(flash).report.state, StoreState::loaded);
-  EXPECT_EQ(start_up(flash).values, generation(3));
+  EXPECT_EQ(load_at_start(flash).report.state, StoreState::loaded);
+  EXPECT_EQ(load_at_start(flash).values, generation(3));
 }
 
 TEST(DamagedStore, OfTheOlderSetIsNoMatter) {
@@ -215,8 +214,8 @@ TEST(DamagedStore, OfTheOlderSetIsNoMatter) {
   save(flash, generation(1));
   save(flash, generation(2));
   flash.contents()[0][100] ^= std::byte{1};
-  EXPECT_EQ(start_up(flash).report.state, StoreState::loaded);
-  EXPECT_EQ(start_up(flash).values, generation(2));
+  EXPECT_EQ(load_at_start(flash).report.state, StoreState::loaded);
+  EXPECT_EQ(load_at_start(flash).values, generation(2));
 }
 
 TEST(DamagedStore, BothSlots) {
@@ -224,13 +223,13 @@ TEST(DamagedStore, BothSlots) {
   save(flash, generation(1));
   save(flash, generation(2));
   for (auto& sector : flash.contents()) sector[100] ^= std::byte{1};
-  EXPECT_EQ(start_up(flash).report.state, StoreState::damaged);
+  EXPECT_EQ(load_at_start(flash).report.state, StoreState::damaged);
   save(flash, generation(3));
-  EXPECT_EQ(start_up(flash).values, generation(3));
+  EXPECT_EQ(load_at_start(flash).values, generation(3));
 }
 
 /// A chip that does not take one word.
-class WornFlash : public SimulatedFlash {
+class FlashThatLosesOneWrite : public SimulatedFlash {
  public:
   using SimulatedFlash::SimulatedFlash;
   hal::FlashResult program(std::size_t sector, std::size_t offset, std::span<const std::byte> in) {
@@ -240,7 +239,7 @@ class WornFlash : public SimulatedFlash {
 };
 
 TEST(ParameterStore, ReadsBackWhatItWroteBeforeItCounts) {
-  WornFlash flash(2, 2048, 4);
+  FlashThatLosesOneWrite flash(2, 2048, 4);
   firmware::ParameterStore store(flash);
   ASSERT_EQ(store.save(generation(1)), SaveResult::saved);
   ASSERT_EQ(store.save(generation(2)), SaveResult::not_verified);
@@ -268,7 +267,7 @@ TEST(Migration, FindsEachValueByItsIdAndGivesNewParametersTheirInitialValue) {
   SimulatedFlash flash =
       flash_of_another_table({{0x1000 | 80, 0, std::bit_cast<std::uint32_t>(33.5F)},    // x.feedback.k1
                               {0x2000 | 64, 0, std::bit_cast<std::uint32_t>(0.25F)}});  // y.kalman.k11
-  const Found found = start_up(flash);
+  const StoredParameters found = load_at_start(flash);
   EXPECT_EQ(found.report.state, StoreState::migrated);
   EXPECT_EQ(found.report.schema_hash, 0x12345678u);
   EXPECT_EQ(found.report.erases, 17u);

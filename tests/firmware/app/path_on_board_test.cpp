@@ -13,7 +13,7 @@ using firmware::PathPhase;
 using firmware::Status;
 using firmware::SupervisorState;
 
-constexpr firmware::PathUnits kUnits{16, 24, 32};
+constexpr firmware::PathUnits kPathUnits{16, 24, 32};
 constexpr double kPiece = 10.0;  ///< samples
 
 template <typename Scalar>
@@ -34,7 +34,7 @@ class PathOnBoard : public testing::Test {
   }
 
   Status open(bool relative = false) {
-    const firmware::OpenPathRequest request{3, static_cast<std::uint8_t>(relative ? 1 : 0), kUnits};
+    const firmware::OpenPathRequest request{3, static_cast<std::uint8_t>(relative ? 1 : 0), kPathUnits};
     const firmware::Message reply = bench.ask(MessageType::open_path, request);
     if (reply.status != Status::ok) return reply.status;
     EXPECT_TRUE(reply.get(opened));
@@ -50,7 +50,7 @@ class PathOnBoard : public testing::Test {
   Status send_next() {
     const bool last = sent + 1 == pieces();
     std::array<std::int64_t, 2> then = given;
-    const auto node = circle.node(kPiece * (sent + 1), kPiece, kUnits, last, then);
+    const auto node = circle.node(kPiece * (sent + 1), kPiece, kPathUnits, last, then);
     firmware::Message request;
     request.type = MessageType::path_nodes;
     const std::uint32_t headrooms = headroom << firmware::kHeadroomHereShift | headroom

@@ -21,17 +21,17 @@ hal::HidReport report_of(std::initializer_list<int> head, std::initializer_list<
 }
 
 /// Version 1, jog, sequence 0x1234, 8 bytes: axis 1, -12.5 mm/s (0xC1480000).
-const hal::HidReport kJog = report_of({0x01, 0x23, 0x34, 0x12, 0x00, 0x08, 0, 0, 0x01, 0, 0, 0, 0x00, 0x00, 0x48, 0xC1},
-                                      {0xA0, 0x81, 0xBB, 0xAB});
+const hal::HidReport kJogReport = report_of(
+    {0x01, 0x23, 0x34, 0x12, 0x00, 0x08, 0, 0, 0x01, 0, 0, 0, 0x00, 0x00, 0x48, 0xC1}, {0xA0, 0x81, 0xBB, 0xAB});
 
 TEST(Report, IsThePagesBytes) {
   Message message;
   message.type = MessageType::jog;
   message.sequence = 0x1234;
   message.put(firmware::JogRequest{1, {}, -12.5F});
-  EXPECT_EQ(firmware::encode(message), kJog);
+  EXPECT_EQ(firmware::encode(message), kJogReport);
   Message decoded;
-  ASSERT_EQ(firmware::decode(kJog, decoded), Status::ok);
+  ASSERT_EQ(firmware::decode(kJogReport, decoded), Status::ok);
   EXPECT_EQ(decoded, message);
   firmware::JogRequest jog;
   ASSERT_TRUE(decoded.get(jog));
@@ -40,9 +40,9 @@ TEST(Report, IsThePagesBytes) {
 }
 
 TEST(Report, NoFlippedBitPasses) {
-  for (std::size_t byte = 0; byte < kJog.size(); ++byte) {
+  for (std::size_t byte = 0; byte < kJogReport.size(); ++byte) {
     for (int bit = 0; bit < 8; ++bit) {
-      hal::HidReport damaged = kJog;
+      hal::HidReport damaged = kJogReport;
       damaged[byte] ^= static_cast<std::byte>(1 << bit);
       Message message;
       EXPECT_EQ(firmware::decode(damaged, message), Status::damaged) << byte << " " << bit;
@@ -58,10 +58,10 @@ hal::HidReport sealed(hal::HidReport report) {
 
 TEST(Report, AnotherVersionAndALengthThatCannotBeAreRefused) {
   Message message;
-  hal::HidReport other = kJog;
+  hal::HidReport other = kJogReport;
   other[0] = std::byte{2};
   EXPECT_EQ(firmware::decode(sealed(other), message), Status::wrong_version);
-  other = kJog;
+  other = kJogReport;
   other[5] = std::byte{53};
   EXPECT_EQ(firmware::decode(sealed(other), message), Status::damaged);
 }

@@ -11,11 +11,11 @@ namespace {
 using firmware::MessageType;
 using firmware::Status;
 using firmware::SupervisorState;
+using firmware_test::kJog;
 using firmware_test::set;
 using Bench = firmware_test::BoardOnABench<float>;
 
 constexpr std::uint16_t kOwner = 1, kStranger = 2;
-constexpr firmware::JogRequest kJog{0, {}, 20.0F};
 /// 600 ms at 50 mm/s in all, of x alone.
 constexpr firmware::PathUnits kUnits{8, 20, 26};
 

@@ -14,13 +14,12 @@ using firmware::ParameterValues;
 using firmware::PitchPoint;
 using firmware::SaveResult;
 using firmware::StoreState;
+using hal::pc::kTornStates;
 using hal::pc::PowerCut;
 using hal::pc::SimulatedFlash;
 using hal::pc::TornState;
 using Store = firmware::ParameterStore<SimulatedFlash>;
 using Points = std::vector<PitchPoint>;
-
-constexpr TornState kTornStates[] = {TornState::untouched, TornState::complete, TornState::partial, TornState::prefix};
 
 Points points(int count, int seed) {
   Points list;
@@ -42,14 +41,14 @@ SaveResult load(Store& store, const ParameterValues& values, std::uint16_t axis,
   return store.finish_table(values, firmware::crc32(std::as_bytes(std::span(table))));
 }
 
-struct Found {
+struct StoredTables {
   firmware::StoreReport report;
   ParameterValues values;
   Points x, y;
 };
 
-Found start_up(SimulatedFlash& flash) {
-  Found found;
+StoredTables tables_at_start(SimulatedFlash& flash) {
+  StoredTables found;
   Store store(flash);
   found.report = store.load(found.values);
   const auto of_axis = [&](std::size_t axis) {
@@ -79,7 +78,7 @@ struct Story {
         return load(store, second, 0, c) == SaveResult::saved;
     }
   }
-  bool is_after(const Found& found, int steps) const {
+  bool is_after(const StoredTables& found, int steps) const {
     if (steps == 0) return found.report.state == StoreState::empty && found.x.empty() && found.y.empty();
     return found.report.state == StoreState::loaded && found.values == (steps < 3 ? first : second) &&
            found.x == (steps < 4 ? a : c) && found.y == (steps < 2 ? Points{} : b);
@@ -94,7 +93,7 @@ TEST(StoredTables, StayThroughSavesAndReplacements) {
     ParameterValues ignored;
     store.load(ignored);
     ASSERT_TRUE(story.do_step(store, step)) << step;
-    ASSERT_TRUE(story.is_after(start_up(flash), step + 1)) << step;
+    ASSERT_TRUE(story.is_after(tables_at_start(flash), step + 1)) << step;
   }
 }
 
@@ -123,7 +122,7 @@ TEST(StoredTables, APowerCutLeavesWhatWasThereOrWhatIsNew) {
         } catch (const PowerCut&) {
         }
         flash.restore_power();
-        const Found found = start_up(flash);
+        const StoredTables found = tables_at_start(flash);
         ASSERT_TRUE(story.is_after(found, step) || story.is_after(found, step + 1))
             << "step " << step << ", operation " << operation << ", torn " << static_cast<int>(torn);
         // And it can be done again.
@@ -131,7 +130,7 @@ TEST(StoredTables, APowerCutLeavesWhatWasThereOrWhatIsNew) {
         ParameterValues ignored;
         store.load(ignored);
         ASSERT_TRUE(story.do_step(store, step));
-        ASSERT_TRUE(story.is_after(start_up(flash), step + 1)) << "step " << step << ", operation " << operation;
+        ASSERT_TRUE(story.is_after(tables_at_start(flash), step + 1)) << "step " << step << ", operation " << operation;
         ++cuts;
       }
     }
@@ -156,7 +155,7 @@ TEST(StoredTables, DamageIsNamed) {
     for (int bit = 0; bit < 8; ++bit) {
       SimulatedFlash flash = whole;
       flash.contents()[0][offset] ^= static_cast<std::byte>(1 << bit);
-      const Found found = start_up(flash);
+      const StoredTables found = tables_at_start(flash);
       ASSERT_EQ(found.report.state, StoreState::damaged) << offset - begin << " bit " << bit;
       ASSERT_TRUE(found.x.empty());
     }
@@ -180,7 +179,7 @@ TEST(StoredTables, NeedRoomAndTheRightPoints) {
   EXPECT_TRUE(roomy.add_point({10, 0, 0}));
   EXPECT_FALSE(roomy.add_point({20, 0, 0})) << "one too many";
   EXPECT_EQ(roomy.finish_table(values, 0), SaveResult::not_verified) << "another checksum";
-  EXPECT_EQ(start_up(larger).report.state, StoreState::empty);
+  EXPECT_EQ(tables_at_start(larger).report.state, StoreState::empty);
 }
 
 }  // namespace

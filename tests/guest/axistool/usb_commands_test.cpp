@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "host/record/read_record.hpp"
-#include "tests/guest/support/child.hpp"
+#include "tests/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
 #include "tests/host/axistool/run_workflow.hpp"
 #include "tests/host/temporary_folder.hpp"
@@ -19,7 +19,6 @@
 namespace {
 
 using namespace std::chrono_literals;
-using guest_test::Child;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;

@@ -10,7 +10,6 @@
 namespace {
 
 using namespace std::chrono_literals;
-using guest_test::Child;
 
 const std::string kModel = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml";
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/model/model_file.hpp"
-#include "tests/guest/support/child.hpp"
+#include "tests/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
 #include "tests/host/temporary_folder.hpp"
 #include "tests/run_program.hpp"
@@ -27,8 +27,7 @@ TEST(UsbCommission, FindsWhatCogsAndMakesItBetter) {
   sim::DriveDescription drive = host::read_model(machine);
   drive.effects.clear();
   host::write_model(drive, sheet);
-  guest_test::Child board(
-      {AXISTOOL_PROGRAM, "sim", "--usb", "--serial", "BENCH", "--forget", "--axes", "1", "--x", machine});
+  Child board({AXISTOOL_PROGRAM, "sim", "--usb", "--serial", "BENCH", "--forget", "--axes", "1", "--x", machine});
   ASSERT_TRUE(guest_test::boards_become(1, host::hid_library(host::HidBackend::hidraw), 20s));
   // Its steps show on the console while it runs.
   const ProgramRun run =

@@ -11,8 +11,8 @@
 #include "host/device/board_client.hpp"
 #include "host/exit_codes.hpp"
 #include "host/record/read_record.hpp"
+#include "tests/child.hpp"
 #include "tests/firmware/app/paper_values.hpp"
-#include "tests/guest/support/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
 #include "tests/guest/support/path_bench.hpp"
 #include "tests/host/temporary_folder.hpp"
@@ -21,7 +21,6 @@
 namespace {
 
 using namespace std::chrono_literals;
-using guest_test::Child;
 using host::BoardClient;
 using testing::HasSubstr;
 

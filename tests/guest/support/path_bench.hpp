@@ -18,7 +18,7 @@
 #include "firmware/core/supervision/supervisor_state.hpp"
 #include "host/device/board_client.hpp"
 #include "host/model/model_file.hpp"
-#include "tests/guest/support/child.hpp"
+#include "tests/child.hpp"
 #include "tests/guest/support/path_in_process.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
 #include "tests/host/temporary_folder.hpp"

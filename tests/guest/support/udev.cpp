@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "tests/guest/support/child.hpp"
+#include "tests/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
 #include "tests/run_program.hpp"
 
@@ -15,7 +15,7 @@ class Udev : public testing::Environment {
  public:
   void SetUp() override {
     if (!guest_test::in_guest()) return;
-    daemon_ = std::make_unique<guest_test::Child>(std::vector<std::string>{"/lib/systemd/systemd-udevd"});
+    daemon_ = std::make_unique<Child>(std::vector<std::string>{"/lib/systemd/systemd-udevd"});
     bool answers = false;
     for (int attempt = 0; attempt < 100 && !answers; ++attempt) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -26,7 +26,7 @@ class Udev : public testing::Environment {
   void TearDown() override { daemon_.reset(); }
 
  private:
-  std::unique_ptr<guest_test::Child> daemon_;
+  std::unique_ptr<Child> daemon_;
 };
 
 const testing::Environment* const kUdev = testing::AddGlobalTestEnvironment(new Udev);

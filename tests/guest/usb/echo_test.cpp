@@ -10,15 +10,14 @@
 #include "host/exit_codes.hpp"
 #include "host/link/udev_rule.hpp"
 #include "host/link/usb_boards.hpp"
+#include "tests/child.hpp"
 #include "tests/guest/echo_board/echo_report.hpp"
-#include "tests/guest/support/child.hpp"
 #include "tests/guest/support/guest_boards.hpp"
 #include "tests/run_program.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
-using guest_test::Child;
 using host::find_usb_boards;
 using host::HidBackend;
 using host::open_usb_board;

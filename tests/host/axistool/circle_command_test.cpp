@@ -99,7 +99,7 @@ TEST_F(Circle, SaysWhatARecordLacks) {
   const std::size_t field = line.find(",0.050000");
   const ProgramRun gap = run_axistool("circle " + folder_.write("gap.csv", line.replace(field, 9, ",")));
   EXPECT_EQ(gap.exit_code, 9) << gap.output;
-  EXPECT_THAT(gap.output, HasSubstr("row 2 of y_mm is no number"));
+  EXPECT_THAT(gap.output, HasSubstr("row 2 of y_mm is not a number"));
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const fs::path kCase = fs::path(AXIS_TEST_DATA) / "drive-cases" / "none" / "case-00";
-
 std::vector<std::string> lines_of(const std::string& path) {
   std::vector<std::string> lines;
   std::ifstream file(path);
@@ -29,8 +27,8 @@ std::vector<std::string> lines_of(const std::string& path) {
 class Compare : public testing::Test {
  protected:
   TemporaryFolder folder;
-  const std::string model = (kCase / "model.toml").string();
-  const std::string record = (kCase / "validate.csv").string();
+  const std::string model = kCase + "/model.toml";
+  const std::string record = kCase + "/validate.csv";
 };
 
 TEST_F(Compare, JsonHasWhatTheFormatSays) {
@@ -69,7 +67,7 @@ TEST_F(Compare, PredictionsHaveTheRecordsRows) {
 }
 
 TEST_F(Compare, SeveralRecordsGetAFileEach) {
-  const std::string jog = (kCase / "train-jog.csv").string();
+  const std::string jog = kCase + "/train-jog.csv";
   ASSERT_EQ(
       run_axistool("compare " + model + " " + record + " " + jog + " --predictions " + folder.path("p.csv")).exit_code,
       0);

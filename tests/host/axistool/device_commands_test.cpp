@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "host/record/read_record.hpp"
 #include "tests/host/axistool/run_workflow.hpp"
@@ -19,8 +17,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
 
 class DeviceCommands : public testing::Test {
  protected:
@@ -42,6 +38,12 @@ class DeviceCommands : public testing::Test {
 
   /// The design on the board, which is patient: a loaded computer must not look like a lost host.
   void fit() const { ASSERT_EQ(run("set-params " + design() + " host.timeout=5").exit_code, 0); }
+
+  /// Of a capture that has not ended.
+  std::ptrdiff_t lines_on_disk(const char* name) const {
+    std::ifstream in(file(name) + ".unfinished");
+    return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+  }
 
   TemporaryFolder folder_;
   SimulatedBoardProcess board_{folder_.path(""), {"--x", kCase + "/model.toml"}};
@@ -138,12 +140,14 @@ TEST_F(DeviceCommands, FaultsAreLogged) {
   ASSERT_EQ(run("set-params " + design() + " host.timeout=0.2 --save").exit_code, 0);
   EXPECT_TRUE(json("faults")["log"].empty());
   ASSERT_EQ(run("enable x --yes").exit_code, 0);
-  run_program("timeout -s KILL 1.5 \"" AXISTOOL_PROGRAM "\" jog" + board_.device() + "x 10 --for 60", "2>&1");
+  Child jog = board_.start("jog x 10 --for 60");
+  EXPECT_TRUE(wait_until([&] { return board_.moves(); }));
+  jog.kill();
   nlohmann::json faults;
-  for (int tries = 0; tries < 50 && (!faults.contains("log") || faults["log"].empty()); ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(wait_until([&] {
     faults = nlohmann::json::parse(run_axistool("faults" + board_.device() + "--json -", "2>/dev/null").output);
-  }
+    return !faults["log"].empty();
+  }));
   ASSERT_FALSE(faults["log"].empty());
   const nlohmann::json entry = faults["log"].back();  // x; the other axis, not fitted, has none
   EXPECT_EQ(entry["fault"], "host_heartbeat_lost");
@@ -193,13 +197,10 @@ TEST_F(DeviceCommands, ATriggerKeepsWhatWasBefore) {
 }
 
 TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
-  std::thread puller([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
-    board_.end(SIGKILL);
-  });
-  const ProgramRun capture = run("capture -o " + file("long.csv") + " --for 60");
-  puller.join();
-  EXPECT_EQ(capture.exit_code, 3) << capture.output;
+  Child capture = board_.start("capture -o " + file("long.csv") + " --for 60");
+  EXPECT_TRUE(wait_until([&] { return lines_on_disk("long.csv") > 500; }));
+  board_.end(SIGKILL);
+  EXPECT_EQ(capture.wait(), 3);
   EXPECT_FALSE(std::filesystem::exists(file("long.csv")));
   EXPECT_GT(host::read_record(file("long.csv.unfinished")).size(), 400u) << "what came is on disk";
   EXPECT_EQ(run("info").exit_code, 3) << "nobody is there";
@@ -207,11 +208,10 @@ TEST_F(DeviceCommands, APulledPlugEndsACaptureAtOnce) {
 
 /// Catches a capture that a signal ends without a file.
 TEST_F(DeviceCommands, ASignalEndsACaptureWithWhatCame) {
-  const ProgramRun done = run_program("timeout -s INT 4 \"" AXISTOOL_PROGRAM "\" capture" + board_.device() + "-o " +
-                                          file("cut.csv") + " --for 3600 --json -",
-                                      "2>/dev/null");
-  EXPECT_EQ(done.exit_code, 124) << "timeout had to send it";
-  EXPECT_TRUE(nlohmann::json::parse(done.output)["cut_short"].get<bool>());
+  Child capture = board_.start("capture -o " + file("cut.csv") + " --for 3600 --json -", file("told.json"));
+  EXPECT_TRUE(wait_until([&] { return lines_on_disk("cut.csv") > 600; }));
+  EXPECT_EQ(capture.end(SIGINT), 0);
+  EXPECT_TRUE(nlohmann::json::parse(std::ifstream(file("told.json")))["cut_short"].get<bool>());
   const host::Record record = host::read_record(file("cut.csv"));
   EXPECT_GT(record.size(), 500u);
   EXPECT_FALSE(std::filesystem::exists(file("cut.csv.unfinished")));

@@ -18,8 +18,6 @@
 
 namespace {
 
-const std::string kCase = AXIS_TEST_DATA "/drive-cases/none/case-00";
-
 /// The first seconds of a shipped record, as numbers: t_s, u_V, x_mm, w_rad_s.
 struct Table {
   std::vector<std::array<double, 4>> rows;
@@ -151,8 +149,8 @@ TEST_P(FaultyLogs, AreNamedByWhatTrainsAndJudges) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
+std::string name_of_fault(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Every, FaultyLogs, testing::ValuesIn(kFaults), name_of);
+INSTANTIATE_TEST_SUITE_P(Every, FaultyLogs, testing::ValuesIn(kFaults), name_of_fault);
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(HilCommand, AnUnknownNameSaysWhichThereAre) {
 TEST(HilCommand, TheSpoiltCircleIsNotCalledGood) {
   const ProgramRun run = run_axistool("hil hidden-effect");
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.output, HasSubstr("misses its aim"));
+  EXPECT_THAT(run.output, HasSubstr("misses its target"));
 }
 
 TEST(HilCommand, BeforeAndAfterStandOnOnePage) {

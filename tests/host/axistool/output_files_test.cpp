@@ -16,14 +16,12 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const fs::path kCase = fs::path(AXIS_TEST_DATA) / "drive-cases" / "none" / "case-00";
-
 class OutputFiles : public testing::Test {
  protected:
   OutputFiles() {
-    fs::copy_file(kCase / "model.toml", model);
-    fs::copy_file(kCase / "validate.csv", record);
-    fs::copy_file(kCase / "validate.csv", other_record);
+    fs::copy_file(kCase + "/model.toml", model);
+    fs::copy_file(kCase + "/validate.csv", record);
+    fs::copy_file(kCase + "/validate.csv", other_record);
   }
 
   /// Runs a command that must be refused as wrong usage and must leave its inputs byte by byte.
@@ -100,7 +98,7 @@ TEST_F(OutputFiles, PredictionsOfSeveralRecordsSpareThemToo) {
 }
 
 TEST_F(OutputFiles, AModelMayBeReadAndWrittenAgainByFriction) {
-  const std::string jog = (kCase / "train-jog.csv").string();
+  const std::string jog = kCase + "/train-jog.csv";
   EXPECT_EQ(run_axistool("friction " + jog + " --model " + model + " -o " + model).exit_code, 0);
   EXPECT_THAT(host::read_file(model), HasSubstr("train-jog.csv"));
 }

@@ -76,27 +76,12 @@ TEST_F(RunCommand, AProgramBeyondTheTravelIsRefusedBeforeAnythingMoves) {
 }
 
 /// A circle of 44 s in a process of its own, which is sent a signal once the axis is seen to move: on a busy computer
-/// nobody knows when that is. Returns its exit code, or the signal that ended it.
+/// nobody knows when that is. Returns its exit code, or, negative, the signal that ended it.
 int signalled_on_the_circle(const SimulatedBoardProcess& board, const std::string& program, const std::string& more,
                             int signal) {
-  const std::string words = "exec " AXISTOOL_PROGRAM " run" + board.device() + program + more + " >/dev/null 2>&1";
-  const pid_t process = ::fork();
-  if (process == 0) {
-    ::execl("/bin/sh", "sh", "-c", words.c_str(), nullptr);
-    ::_exit(127);
-  }
-  const auto moves = [&board] {
-    constexpr double kSlow_mm_s = 1.0;
-    const auto seen = nlohmann::json::parse(board.run("info --json -", "2>/dev/null").output, nullptr, false);
-    if (!seen.is_object()) return false;
-    return std::ranges::any_of(
-        seen["axes"], [](const nlohmann::json& axis) { return std::abs(axis["velocity"].get<double>()) > kSlow_mm_s; });
-  };
-  for (int tries = 0; tries < 300 && !moves(); ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  ::kill(process, signal);
-  int status = 0;
-  ::waitpid(process, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
+  Child process = board.start("run " + program + more);
+  EXPECT_TRUE(wait_until([&board] { return board.moves(); }));
+  return process.end(signal);
 }
 
 TEST_F(RunCommand, AnInterruptStopsOnThePath) {
@@ -117,13 +102,8 @@ TEST_F(RunCommand, AKilledHostIsNamed) {
   fit();
   ASSERT_EQ(run("set-params host.timeout=1").exit_code, 0);
   const std::string circle = written("circle.ngc", "F300 G3 X0 Y0 I35 J0\nM2\n");
-  EXPECT_EQ(signalled_on_the_circle(board_, circle, " --yes", SIGKILL), SIGKILL);
-  std::string faults;
-  for (int tries = 0; tries < 20 && faults.find("host_heartbeat_lost") == std::string::npos; ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    faults = run("faults").output;
-  }
-  EXPECT_THAT(faults, HasSubstr("host_heartbeat_lost"));
+  EXPECT_EQ(signalled_on_the_circle(board_, circle, " --yes", SIGKILL), -SIGKILL);
+  EXPECT_TRUE(wait_until([&] { return run("faults").output.find("host_heartbeat_lost") != std::string::npos; }));
 }
 
 TEST(RunAlone, AProgramIsJudgedBeforeAMachineIsAskedFor) {

@@ -1,61 +1,63 @@
 // axistool sim in a process of its own, as a user has it in another window.
 #pragma once
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "tests/child.hpp"
 #include "tests/host/axistool/run_axistool.hpp"
+#include "tests/wait_until.hpp"
 
 class SimulatedBoardProcess {
  public:
   /// `folder`, with its slash, holds socket and flash. `options`: more words for the command line.
-  explicit SimulatedBoardProcess(const std::string& folder, std::vector<std::string> options = {})
-      : socket_(folder + "board.socket") {
-    std::vector<std::string> words = {AXISTOOL_PROGRAM, "sim", "--socket", socket_, "--flash", folder + "flash.bin"};
-    words.insert(words.end(), options.begin(), options.end());
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    process_ = ::fork();
-    if (process_ == 0) {
-      const int null = ::open("/dev/null", O_WRONLY);
-      ::dup2(null, STDOUT_FILENO);
-      ::execv(AXISTOOL_PROGRAM, arguments.data());
-      ::_exit(127);
-    }
-    for (int i = 0; i < 500 && !std::filesystem::exists(socket_); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  explicit SimulatedBoardProcess(const std::string& folder, const std::vector<std::string>& options = {})
+      : socket_(folder + "board.socket"), process_(words(folder, options)) {
+    wait_until([this] { return std::filesystem::exists(socket_); });
   }
   ~SimulatedBoardProcess() { end(SIGTERM); }
   SimulatedBoardProcess(const SimulatedBoardProcess&) = delete;
   SimulatedBoardProcess& operator=(const SimulatedBoardProcess&) = delete;
 
   /// SIGTERM: an orderly end. SIGKILL: the plug is pulled.
-  void end(int signal) {
-    if (process_ <= 0) return;
-    ::kill(process_, signal);
-    ::waitpid(process_, nullptr, 0);
-    process_ = -1;
-  }
+  void end(int signal) { process_.end(signal); }
 
   std::string address() const { return "socket:" + socket_; }
   std::string device() const { return " --device " + address() + " "; }
   ProgramRun run(const std::string& command, const std::string& streams = "2>&1") const {
-    const std::size_t blank = command.find(' ');
-    return run_axistool(command.substr(0, blank) + device() + (blank == std::string::npos ? "" : command.substr(blank)),
-                        streams);
+    return run_axistool(meant(command), streams);
+  }
+  /// The same in the background; `output` takes its standard output.
+  Child start(const std::string& command, const std::string& output = "/dev/null") const {
+    return Child({"/bin/sh", "-c", "exec \"" AXISTOOL_PROGRAM "\" " + meant(command) + " 2>/dev/null"}, output);
+  }
+  /// Whether an axis is seen to move.
+  bool moves() const {
+    constexpr double kSlow_mm_s = 1.0;
+    const auto seen = nlohmann::json::parse(run("info --json -", "2>/dev/null").output, nullptr, false);
+    if (!seen.is_object()) return false;
+    return std::ranges::any_of(
+        seen["axes"], [](const nlohmann::json& axis) { return std::abs(axis["velocity"].get<double>()) > kSlow_mm_s; });
   }
 
  private:
+  std::vector<std::string> words(const std::string& folder, const std::vector<std::string>& options) const {
+    std::vector<std::string> all = {AXISTOOL_PROGRAM, "sim", "--socket", socket_, "--flash", folder + "flash.bin"};
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+  std::string meant(const std::string& command) const {
+    const std::size_t blank = command.find(' ');
+    return command.substr(0, blank) + device() + (blank == std::string::npos ? "" : command.substr(blank));
+  }
+
   std::string socket_;
-  pid_t process_ = -1;
+  Child process_;
 };

@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr double kGain_N_per_V = 35.0, kMass_kg = 95.0, kViscous = 200.0, kCoulomb_N = 20.0;
+constexpr double kGain_N_per_V = 35.0, kMass_kg = 95.0, kViscous_Ns_per_m = 200.0, kCoulomb_N = 20.0;
 constexpr double kPeriod_s = 1e-3, kDelay_s = 1.2e-3;
 
 sim::DriveDescription model_with(double delay_s) {
@@ -21,7 +21,7 @@ sim::DriveDescription model_with(double delay_s) {
   model.data.dac_limit_V = 10.0;
   model.data.encoder_resolution = 1e-7;
   model.effects = {{"inertia", {{"J", kMass_kg}}, {}, {}},
-                   {"viscous", {{"B", kViscous}}, {}, {}},
+                   {"viscous", {{"B", kViscous_Ns_per_m}}, {}, {}},
                    {"coulomb", {{"positive", kCoulomb_N}, {"negative", -kCoulomb_N}}, {}, {}}};
   if (delay_s > 0.0) model.effects.push_back({"input_delay", {{"delay", delay_s}}, {}, {}});
   return model;
@@ -41,7 +41,7 @@ struct Strokes {
     if (t <= 0.0) return 0.0;
     const double v = 0.05 * kSlow * std::sin(kSlow * t) + 0.002 * kFast * std::sin(kFast * t);
     const double a = 0.05 * kSlow * kSlow * std::cos(kSlow * t) + 0.002 * kFast * kFast * std::cos(kFast * t);
-    return kMass_kg * a + kViscous * v + (v > 0.0 ? kCoulomb_N : -kCoulomb_N);
+    return kMass_kg * a + kViscous_Ns_per_m * v + (v > 0.0 ? kCoulomb_N : -kCoulomb_N);
   }
 };
 

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr double kPeriod_mm = 2.5, kLag_s = 0.004, kDirection_mm = 0.003, kCogging_mm = 0.002;
+constexpr double kCoggingPeriod_mm = 2.5, kLag_s = 0.004, kDirection_mm = 0.003, kCogging_mm = 0.002;
 
 /// A table that goes to and fro 5 ms late, sticks by 3 µm to where it came from, and waves every 2.5 mm.
 host::Record sample() {
@@ -26,7 +26,7 @@ host::Record sample() {
                        kDirection_mm * (v > 0.0   ? 1.0
                                         : v < 0.0 ? -1.0
                                                   : 0.0) -
-                       kCogging_mm * std::sin(2.0 * std::numbers::pi * x / kPeriod_mm));
+                       kCogging_mm * std::sin(2.0 * std::numbers::pi * x / kCoggingPeriod_mm));
   }
   return record;
 }
@@ -44,7 +44,7 @@ TEST(TrackingError, TellsLagFrictionAndPeriodApart) {
   EXPECT_GT(part(error, "speed").share, 0.9);
   EXPECT_NEAR(part(error, "direction").coefficient, kDirection_mm, 5e-4);
   ASSERT_FALSE(error.periods.empty());
-  EXPECT_NEAR(error.periods[0].period, kPeriod_mm, 0.05);
+  EXPECT_NEAR(error.periods[0].period, kCoggingPeriod_mm, 0.05);
   EXPECT_NEAR(std::hypot(error.periods[0].cosine, error.periods[0].sine), kCogging_mm, 5e-4);
   EXPECT_EQ(host::tracking_json({error})["format"], "axis-tracking/1");
 }

@@ -7,9 +7,9 @@
 
 namespace {
 
-constexpr double kCount_mm = 0.0025;
+constexpr double kEncoderStep_mm = 0.0025;
 
-host::PitchPoints parse(const std::string& text) { return host::parse_pitch(text, "screw.csv", kCount_mm); }
+host::PitchPoints parse(const std::string& text) { return host::parse_pitch(text, "screw.csv", kEncoderStep_mm); }
 
 TEST(PitchFile, ReadsPlacesAndDeviationsOfBothDirections) {
   const auto points =
@@ -24,7 +24,7 @@ TEST(PitchFile, OneColumnServesBothDirections) {
 
 TEST(PitchFile, ReadsBackWhatItShows) {
   const host::PitchPoints points{{-12345, 7, -8}, {1, 65536 * 3 + 1, 0}, {70001, 99999, -131071}};
-  EXPECT_EQ(parse(host::format_pitch(points, kCount_mm)), points);
+  EXPECT_EQ(parse(host::format_pitch(points, kEncoderStep_mm)), points);
 }
 
 struct Bad {

@@ -8,6 +8,7 @@
 
 #include "host/compare/chance.hpp"
 #include "host/diagnose/probability.hpp"
+#include "tests/host/diagnose/sum_of_probabilities.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
 namespace {
@@ -96,19 +97,13 @@ TEST(Claim, TheSecondsToRecordSufficeWhereAllImproves) {
   }
 }
 
-double sum_of(const host::Diagnosis& diagnosis) {
-  double sum = diagnosis.verdict.probability_nothing + diagnosis.verdict.probability_other;
-  for (const host::JudgedCandidate& judged : diagnosis.candidates) sum += judged.probability;
-  return sum;
-}
-
 TEST(Probability, ACandidateThatTakesItAllHasIt) {
   host::Diagnosis found = diagnosis(20.0, 12.0);
   found.candidates = {candidate(12.0, 0.9, 0.9), candidate(12.0, 13.0, 19.0)};
   host::assign_probabilities(found);
   EXPECT_GT(found.candidates[0].probability, 0.9);
   EXPECT_LT(found.candidates[1].probability, 0.001);  // raises the error
-  EXPECT_NEAR(sum_of(found), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(found), 1.0, 1e-12);
 }
 
 TEST(Probability, EqualsShareItAndWhatIsLeftBelongsToSomethingElse) {
@@ -122,7 +117,7 @@ TEST(Probability, EqualsShareItAndWhatIsLeftBelongsToSomethingElse) {
   poor.candidates = {candidate(12.0, 9.0, 15.0)};
   host::assign_probabilities(poor);
   EXPECT_GT(poor.verdict.probability_other, 0.9);
-  EXPECT_NEAR(sum_of(poor), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(poor), 1.0, 1e-12);
 }
 
 TEST(Probability, ASmallErrorIsProbablyNothing) {
@@ -132,7 +127,7 @@ TEST(Probability, ASmallErrorIsProbablyNothing) {
   complete.candidates = {candidate(0.95, 0.90, 0.84)};
   host::assign_probabilities(complete);
   EXPECT_GT(complete.verdict.probability_nothing, 0.7);
-  EXPECT_NEAR(sum_of(complete), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(complete), 1.0, 1e-12);
 }
 
 /// Whoever is told that the records do not suffice, or that what is left is no noise, is not told that all is well.
@@ -147,7 +142,7 @@ TEST(Probability, AnObjectionToTheAllClearIsOneToNothing) {
   host::assign_probabilities(complete);
   EXPECT_LT(unshown, clear);
   EXPECT_LT(complete.verdict.probability_nothing, unshown);
-  EXPECT_NEAR(sum_of(complete), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(complete), 1.0, 1e-12);
 }
 
 }  // namespace

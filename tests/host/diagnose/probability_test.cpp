@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/host/diagnose/sum_of_probabilities.hpp"
+
 namespace {
 
 host::JudgedCandidate candidate(const char* kind, double after, double luck) {
@@ -22,17 +24,12 @@ host::Diagnosis diagnosis_of(std::vector<host::JudgedCandidate> candidates, doub
   return diagnosis;
 }
 
-double sum_of(const host::Diagnosis& diagnosis) {
-  double sum = diagnosis.verdict.probability_nothing + diagnosis.verdict.probability_other;
-  for (const host::JudgedCandidate& judged : diagnosis.candidates) sum += judged.probability;
-  return sum;
-}
-
 TEST(Probabilities, SumToOneWhateverThereIs) {
-  EXPECT_NEAR(sum_of(diagnosis_of({})), 1.0, 1e-12);
-  EXPECT_NEAR(sum_of(diagnosis_of({candidate("cogging", 1.0, 0.0), candidate("backlash", 9.0, 0.2)})), 1.0, 1e-12);
-  EXPECT_NEAR(sum_of(diagnosis_of({candidate("cogging", 19.0, 1.0)})), 1.0, 1e-12);
-  EXPECT_NEAR(sum_of(diagnosis_of({}, 1.0)), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(diagnosis_of({})), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(diagnosis_of({candidate("cogging", 1.0, 0.0), candidate("backlash", 9.0, 0.2)})),
+              1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(diagnosis_of({candidate("cogging", 19.0, 1.0)})), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of_probabilities(diagnosis_of({}, 1.0)), 1.0, 1e-12);
 }
 
 TEST(Probabilities, WhatMayBeLuckTakesNothingFromTheOthers) {

@@ -69,6 +69,7 @@ Point swinging(double t_s) {
 
 // Less than a turn must do: a weight is neither a spring nor friction under load.
 TEST(EffortScreen, SeesAWeightInPartOfATurn) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const auto weight = [](const Point& point) { return 0.08 * std::sin(point.x + 0.3); };
   const host::Record train = record_of(swinging, weight, 0.0, 20.0, 6);
   const host::Record validate = record_of(swinging, weight, 23.0, 36.0, 7);
@@ -182,6 +183,7 @@ std::pair<double, double> moves(const std::array<double, 6>& places, double t_s)
 // Commands above a current limit do nothing. No regression knows that; a second mass or a ripple must not stand for it,
 // since the motion shows it.
 TEST(EffortScreen, LeavesALimitOfTheCurrentToTheMotion) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   sim::DriveDescription model = motor();
   model.find("inertia")->parameters["J"] = 0.004;
   model.find("viscous")->parameters["B"] = 0.01;
@@ -269,6 +271,7 @@ class Shaken {
 
 // The forms tried first lie 12 % apart.
 TEST(EffortScreen, FindsTheAntiresonanceBetweenTheFormsTriedFirst) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::Record train = Shaken({{4.0, 0.31}, {0.8, 0.83}, {0.6, 2.6}, {0.6, 4.9}, {0.3, 7.1}}).record(21);
   const host::Record validate = Shaken({{3.0, 0.37}, {0.9, 0.71}, {0.7, 2.1}, {0.5, 5.3}, {0.3, 8.3}}).record(22);
   const host::EffortScreen screen =

@@ -14,8 +14,8 @@
 
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kPeriod_mm = 2.5, kLead_mm = 10.0 / kTwoPi;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kPeriod_mm = 2.5, kLead_mm = 10.0 / kTurn;
 
 sim::DataSheet sheet() {
   sim::DataSheet data;
@@ -29,7 +29,7 @@ sim::DataSheet sheet() {
 using Pattern = std::function<double(double x_mm, double w)>;
 
 double cogging(double x_mm, double /*w*/) {
-  return 0.15 * std::cos(kTwoPi * x_mm / kPeriod_mm) + 0.05 * std::sin(kTwoPi * 2.0 * x_mm / kPeriod_mm);
+  return 0.15 * std::cos(kTurn * x_mm / kPeriod_mm) + 0.05 * std::sin(kTurn * 2.0 * x_mm / kPeriod_mm);
 }
 
 /// Strokes of 30 mm with 2 mm of a faster swing on top, 8 s at 1 kHz. The encoder's zero lies at `zero_mm`.
@@ -38,7 +38,7 @@ host::Record strokes(double stroke_Hz, double zero_mm, const Pattern& pattern) {
   record.path = "strokes.csv";
   record.sample_period_s = 1e-3;
   for (int k = 0; k < 8000; ++k) {
-    const double t = 1e-3 * k, slow = kTwoPi * stroke_Hz, fast = kTwoPi * 3.1;
+    const double t = 1e-3 * k, slow = kTurn * stroke_Hz, fast = kTurn * 3.1;
     const double x = 15.0 * std::sin(slow * t) + 1.0 * std::sin(fast * t);
     const double w = (15.0 * slow * std::cos(slow * t) + 1.0 * fast * std::cos(fast * t)) / kLead_mm;
     const double a = -(15.0 * slow * slow * std::sin(slow * t) + 1.0 * fast * fast * std::sin(fast * t)) / kLead_mm;

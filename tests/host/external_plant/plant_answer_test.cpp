@@ -50,4 +50,20 @@ TEST(PlantAnswer, IsRefusedWithWhatIsWrongAndHowItOughtToLook) {
   }
 }
 
+TEST(PlantLines, ReadBackByAProgramThatIsTheMachine) {
+  const auto greeting = host::parse_plant_greeting("axis-plant/1 2 0.001\r");
+  EXPECT_EQ(greeting.axes, 2u);
+  EXPECT_EQ(greeting.period_s, 0.001);
+  for (const char* line : {"", "hello", "axis-plant/2 1 0.001", "axis-plant/1 0 0.001", "axis-plant/1 1.5 0.001",
+                           "axis-plant/1 65 0.001", "axis-plant/1 1 0", "axis-plant/1 1 nan", "axis-plant/1 1"})
+    EXPECT_THROW(host::parse_plant_greeting(line), host::Failure) << line;
+  const auto commands = host::parse_plant_line("12 -1.25 off", 12, 2);
+  EXPECT_EQ(commands[0], -1.25);
+  EXPECT_FALSE(commands[1].has_value());
+  for (const char* line : {"", "12 1", "11 1 2", "12 1 on", "12 inf 2", "12 1 2 3"})
+    EXPECT_THROW(host::parse_plant_line(line, 12, 2), host::Failure) << line;
+  const std::array<sim::ForeignReading, 2> readings{{{0.5, -2.0}, {7.25, std::nullopt}}};
+  EXPECT_EQ(host::plant_answer(12, readings), "12 0.5 -2 7.25 -\n");
+}
+
 }  // namespace

@@ -11,6 +11,7 @@
 #include "host/response/loop_design.hpp"
 #include "host/response/response_measurement.hpp"
 #include "host/simulated_board/simulated_link.hpp"
+#include "tests/host/hil/largest_contour_error.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
@@ -43,8 +44,6 @@ host::LoopAim aim(bool seek_notch) {
   return aim;
 }
 
-double worst_contour_um(const host::ScenarioRun& run) { return *std::ranges::max_element(run.contour_um); }
-
 TEST(Notch, LetsTheBandwidthRiseByAThirdAtTheSameMarginAndTheCircleGainsByIt) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const std::string folder = AXIS_TEST_DATA "/../../host/hil/scenarios/";
@@ -70,8 +69,8 @@ TEST(Notch, LetsTheBandwidthRiseByAThirdAtTheSameMarginAndTheCircleGainsByIt) {
     plain.axes[i].tuning = {without.design.used.bandwidth_Hz, without.filters};
     notched.axes[i].tuning = {with.design.used.bandwidth_Hz, with.filters};
   }
-  const double before = worst_contour_um(host::run_scenario(plain)),
-               after = worst_contour_um(host::run_scenario(notched));
+  const double before = largest_contour_error_um(host::run_scenario(plain)),
+               after = largest_contour_error_um(host::run_scenario(notched));
   std::printf("contour error of the circle: %.1f um before, %.1f um after\n", before, after);
   EXPECT_LT(after, 0.8 * before);
 }

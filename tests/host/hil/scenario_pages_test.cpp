@@ -81,7 +81,7 @@ TEST(ScenarioIndex, CountsAndNamesWhatFailsFirst) {
   const host::Verdict verdict = host::index_verdict(lines);
   EXPECT_EQ(verdict.headline, "2 of 3 scenarios hold");
   EXPECT_EQ(verdict.tone, host::Tone::bad);
-  EXPECT_THAT(verdict.sentences, testing::ElementsAre("wish misses its aim: nearly.", "bad one FAILS: too far."));
+  EXPECT_THAT(verdict.sentences, testing::ElementsAre("wish misses its target: nearly.", "bad one FAILS: too far."));
   const std::string page = host::scenario_index(lines).html();
   const auto at = [&page](const char* link) { return page.find(std::string("<a href=\"") + link); };
   EXPECT_LT(at("bad one.html"), at("wish.html"));

@@ -63,7 +63,7 @@ TEST(Scenario, AnAimThatIsMissedIsSaidButFailsNothing) {
   EXPECT_FALSE(run.expectations[0].holds);
   EXPECT_TRUE(run.holds());
   EXPECT_TRUE(run.misses_aim());
-  EXPECT_EQ(host::outcome_of(run).word, "misses its aim");
+  EXPECT_EQ(host::outcome_of(run).word, "misses its target");
 }
 
 TEST(Scenario, AnExpectationThatDoesNotHoldIsSaid) {
@@ -129,7 +129,7 @@ TEST(BadScenario, NamesFileLineFieldAndRemedy) {
               HasSubstr("unknown field axis"));
   EXPECT_THAT(error_with("[[fault]]\nat_s = nan\nkind = \"blocked\"\naxis = \"x\"\n"), HasSubstr("finite number"));
   EXPECT_THAT(error_with("[[expect]]\naxis = \"x\"\n"), HasSubstr("nothing is expected"));
-  EXPECT_THAT(error_with("[[expect]]\nsignal = \"contour_um\"\n"), HasSubstr("belong together"));
+  EXPECT_THAT(error_with("[[expect]]\nsignal = \"contour_um\"\n"), HasSubstr("signal needs at_most"));
   EXPECT_THAT(error_with("[[expect]]\nsignal = \"table_um\"\nat_most_share = 0.5\n"), HasSubstr("of_axis"));
   EXPECT_THAT(error_with("[[x.effect]]\nkind = \"cogging\"\n"), HasSubstr("missing field"));
   EXPECT_THAT(error_of("format = \"axis-scenario/1\"\nname = \"n\"\n[x]\ndrive = \"nowhere.toml\"\n"),

@@ -22,18 +22,18 @@ using testing::HasSubstr;
 constexpr double kLead = 10.0 / (2.0 * std::numbers::pi);
 
 /// What Table 1 says, typed again, as a closed form; and what is believed before jogging, (42).
-struct PaperAxis {
+struct JoggedAxis {
   const char* name;
   double B, static_Nm[2], coulomb_Nm[2], omega1[2], omega2[2];  // magnitudes
   double J, believed_B;
   double curve_tolerance_Nm;
 };
-constexpr PaperAxis kAxes[] = {
+constexpr JoggedAxis kAxes[] = {
     {"x", 0.0321, {3.647, 2.702}, {2.205, 1.656}, {2.0, 2.0}, {2.0, 2.0}, 7.65e-3, 0.0296, 0.015},
     {"y", 0.0287, {3.652, 3.218}, {3.058, 2.739}, {4.1, 3.6}, {5.4, 4.2}, 9.79e-3, 0.0385, 0.03},
 };
 
-double true_friction_Nm(const PaperAxis& axis, double w) {
+double true_friction_Nm(const JoggedAxis& axis, double w) {
   const int d = w > 0.0 ? 0 : 1;
   const double v = std::abs(w);
   const double level = axis.static_Nm[d] * std::exp(-v / axis.omega1[d]) +
@@ -42,7 +42,7 @@ double true_friction_Nm(const PaperAxis& axis, double w) {
 }
 
 /// What the engineer has before jogging: data sheet, inertia and the least-squares estimate of B.
-sim::DriveDescription believed(const PaperAxis& axis) {
+sim::DriveDescription believed(const JoggedAxis& axis) {
   sim::DriveDescription model = *host::paper_drive(axis.name);
   model.effects = {{.kind = "inertia", .parameters = {{"J", axis.J}}, .ci95 = {}, .from = {}},
                    {.kind = "viscous", .parameters = {{"B", axis.believed_B}}, .ci95 = {}, .from = {}},
@@ -50,7 +50,7 @@ sim::DriveDescription believed(const PaperAxis& axis) {
   return model;
 }
 
-host::Record jog(const PaperAxis& axis, double tach_gain = 1.0) {
+host::Record jog(const JoggedAxis& axis, double tach_gain = 1.0) {
   sim::DriveDescription machine = *host::paper_drive(axis.name);
   if (tach_gain != 1.0) {
     machine.effects.push_back({.kind = "tach_gain", .parameters = {{"gain", tach_gain}}, .ci95 = {}, .from = {}});
@@ -59,7 +59,7 @@ host::Record jog(const PaperAxis& axis, double tach_gain = 1.0) {
   return host::record_jogs(machine, host::design_axis(believed(axis), {}), host::jogging_programme(speeds, 10.0), 11);
 }
 
-double worst_curve_error_Nm(const PaperAxis& axis, const host::FrictionLaw& law) {
+double worst_curve_error_Nm(const JoggedAxis& axis, const host::FrictionLaw& law) {
   double worst = 0.0;
   for (double v = 0.6; v <= 63.0; v *= 1.02) {
     for (const double w : {v, -v}) worst = std::max(worst, std::abs(law.effort(w) - true_friction_Nm(axis, w)));
@@ -67,7 +67,7 @@ double worst_curve_error_Nm(const PaperAxis& axis, const host::FrictionLaw& law)
   return worst;
 }
 
-class Jogging : public testing::TestWithParam<PaperAxis> {};
+class Jogging : public testing::TestWithParam<JoggedAxis> {};
 
 TEST_P(Jogging, FindsTheConstantSpeedsOfThePaperBothWays) {
   const host::Record record = jog(GetParam());
@@ -92,7 +92,7 @@ TEST_P(Jogging, FindsTheConstantSpeedsOfThePaperBothWays) {
 }
 
 TEST_P(Jogging, JointFitRecoversTheFrictionCurveAndViscousFriction) {
-  const PaperAxis& axis = GetParam();
+  const JoggedAxis& axis = GetParam();
   const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis)}), believed(axis),
                                              FrictionMethod::joint);
   EXPECT_LT(worst_curve_error_Nm(axis, found.fit.law), axis.curve_tolerance_Nm);
@@ -108,7 +108,7 @@ TEST_P(Jogging, JointFitRecoversTheFrictionCurveAndViscousFriction) {
 }
 
 TEST_P(Jogging, TachometerGainErrorIsFoundAndNotAbsorbedInViscousFriction) {
-  const PaperAxis& axis = GetParam();
+  const JoggedAxis& axis = GetParam();
   const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis, 1.01)}),
                                              believed(axis), FrictionMethod::joint);
   ASSERT_TRUE(found.tachometer);
@@ -121,7 +121,7 @@ TEST_P(Jogging, TachometerGainErrorIsFoundAndNotAbsorbedInViscousFriction) {
 }
 
 TEST_P(Jogging, ThePapersProcedureReachesWhatItsAuthorsReport) {
-  const PaperAxis& axis = GetParam();
+  const JoggedAxis& axis = GetParam();
   const auto found = host::identify_friction(host::MeasurementGate(believed(axis)).admit({jog(axis)}), believed(axis),
                                              FrictionMethod::paper);
   // An independent implementation of (53)-(62) on such plants: B' within 1 % (x) and 4 % (y), Tcoul within 0.2 % and

@@ -33,9 +33,9 @@ TEST(Plausibility, ThePapersDrivesAreDrives) {
 }
 
 TEST(Plausibility, FrictionThatPushesIsNamed) {
-  EXPECT_THAT(doubts(with("coulomb", "positive", -0.5, {-0.6, -0.4})), HasSubstr("friction that pushes"));
-  EXPECT_THAT(doubts(with("coulomb", "negative", 0.5, {0.4, 0.6})), HasSubstr("friction that pushes"));
-  EXPECT_THAT(doubts(with("viscous", "B", -0.01, {-0.02, -0.005})), HasSubstr("friction that pushes"));
+  EXPECT_THAT(doubts(with("coulomb", "positive", -0.5, {-0.6, -0.4})), HasSubstr("friction cannot drive the axis"));
+  EXPECT_THAT(doubts(with("coulomb", "negative", 0.5, {0.4, 0.6})), HasSubstr("friction cannot drive the axis"));
+  EXPECT_THAT(doubts(with("viscous", "B", -0.01, {-0.02, -0.005})), HasSubstr("friction cannot drive the axis"));
   EXPECT_THAT(doubts(with("inertia", "J", -0.01, {-0.02, -0.005})), HasSubstr("no mass is negative"));
 }
 

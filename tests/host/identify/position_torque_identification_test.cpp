@@ -47,7 +47,7 @@ TEST(PositionTorque, AWeightOnAnArmDoesNotBendTheInertia) {
   EXPECT_TRUE(found.beside_travel);
   EXPECT_NEAR(found.estimate.inertia.value, kInertia, 0.05 * kInertia);
   EXPECT_NEAR(found.estimate.viscous.value, kViscous, 0.1 * kViscous);
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("goes with the position")));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("depends on position")));
   EXPECT_EQ(read_again(found).find("inertia")->at("J"), found.model.find("inertia")->at("J"));
 }
 
@@ -65,7 +65,7 @@ TEST(PositionTorque, AWeightBeyondFrictionLeavesAModelThatCanBeRead) {
   EXPECT_NEAR(found.estimate.negative->value, kWeight - kCoulomb, 0.1 * kCoulomb) << "the estimate says what it found";
   const sim::DriveDescription model = read_again(found);
   EXPECT_NEAR(model.find("coulomb")->at("level"), kCoulomb, 0.05 * kCoulomb);
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("friction that pushes")));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("friction cannot drive the axis")));
   EXPECT_THAT(found.warnings, Contains(HasSubstr("constant_torque")));
 }
 

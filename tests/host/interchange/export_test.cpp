@@ -1,5 +1,6 @@
 // Models for other programs: what they compute there is what ours does.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,6 +14,9 @@
 #include "tests/run_program.hpp"
 
 namespace {
+
+using testing::HasSubstr;
+using testing::Not;
 
 /// Everything that formulas can express, and two effects that they cannot.
 constexpr const char* kModel = R"(format = "axis-model/1"
@@ -161,12 +165,24 @@ TEST_F(ExportModel, XmlReadsBack) {
   }
 }
 
-TEST_F(ExportModel, HalComponentCompiles) {
-  if (run_program("command -v halcompile").exit_code != 0) GTEST_SKIP() << "linuxcnc-uspace-dev is not installed";
-  to(host::ExportTarget::linuxcnc, "x_friction.comp");
-  const ProgramRun compiled =
-      run_program(fmt::format("cd {} && halcompile --compile x_friction.comp", folder_.path("")));
-  EXPECT_EQ(compiled.exit_code, 0) << compiled.output;
+/// What the component puts out, and that it names itself as its .hal file does, is tried in LinuxCNC: tests/linuxcnc.
+TEST_F(ExportModel, HalLinesNameThePinsAsHalcompileDoes) {
+  const host::Export exported = to(host::ExportTarget::linuxcnc, "hal_x_friction_.comp");
+  EXPECT_THAT(exported.files[0].text, HasSubstr("component hal_x_friction_ "));
+  const std::string& hal = exported.files[1].text;
+  EXPECT_THAT(hal, HasSubstr("\nloadrt hal_x_friction_\naddf x-friction.0 servo-thread\n"));
+  EXPECT_THAT(hal, HasSubstr("\nsetp x-friction.0.scale 1.38888889 "));  // V for 1 Nm: 1 / (1.2 A/V 0.6 Nm/A)
+  EXPECT_THAT(hal, HasSubstr("\nnet x-pos-cmd joint.0.motor-pos-cmd => x-friction.0.position\n"));
+  model_.name = "z";
+  EXPECT_THAT(to(host::ExportTarget::linuxcnc, "z.comp").files[1].text,
+              HasSubstr("\nnet z-vel-cmd joint.2.vel-cmd => z.0.velocity\n"));
+}
+
+TEST_F(ExportModel, SaysUnderWhatNameHalcompileTakesAComponent) {
+  for (const char* name : {"x-friction.comp", "x_friction.txt"})
+    EXPECT_THAT(to(host::ExportTarget::linuxcnc, name).files[0].text, HasSubstr("name this one x_friction.comp"))
+        << name;
+  EXPECT_THAT(to(host::ExportTarget::linuxcnc, "x_friction.comp").files[0].text, Not(HasSubstr("name this one")));
 }
 
 TEST_F(ExportModel, WhatIsLeftOutIsNamed) {

@@ -188,7 +188,7 @@ class LoggedMachines(Log):
             path = moves(seed, 4000, 0.004, 100.0, 40.0)
             self.write(name, axis.run(follow(path, 5.0, 0.3, 10.0), 0.004, 4000, 20), 0.04)
         found = self.identified()
-        self.assertTrue(any("friction that pushes" in warning for warning in found["warnings"]))
+        self.assertTrue(any("friction cannot drive the axis" in warning for warning in found["warnings"]))
         verdict = self.diagnosed()["verdict"]
         self.assertIn("constant_torque", verdict["effects"])
         self.assertNotIn("spring_torque", verdict["effects"])

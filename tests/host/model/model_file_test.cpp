@@ -278,9 +278,10 @@ TEST(ReadModel, OneFormForBothDirectionsOrOneForEach) {
 }
 
 TEST(ReadModel, WrongTypes) {
-  EXPECT_THAT(message_of("0.00765", "\"0.00765\""), AllOf(HasSubstr("line 20"), HasSubstr("J_kg_m2: a number")));
+  EXPECT_THAT(message_of("0.00765", "\"0.00765\""),
+              AllOf(HasSubstr("line 20"), HasSubstr("J_kg_m2: expected a number")));
   EXPECT_THAT(message_of("0.00765", "nan"), AllOf(HasSubstr("line 20"), HasSubstr("finite")));
-  EXPECT_THAT(message_of("\"rotary\"", "1"), AllOf(HasSubstr("line 5"), HasSubstr("kind: a text in quotes")));
+  EXPECT_THAT(message_of("\"rotary\"", "1"), AllOf(HasSubstr("line 5"), HasSubstr("kind: expected a text in quotes")));
   EXPECT_THAT(message_of("\"rotary\"", "\"round\""),
               AllOf(HasSubstr("line 5"), HasSubstr("rotary"), HasSubstr("linear")));
   EXPECT_THAT(message_of("[0.0076, 0.0077]", "0.0076"), AllOf(HasSubstr("line 21"), HasSubstr("[low, high]")));
@@ -397,7 +398,7 @@ TEST(WriteModel, KeepsWhatIsKnownOfAParameter) {
   EXPECT_EQ(moved.find("viscous")->believed, model.find("viscous")->believed) << "a fit is no data sheet";
   EXPECT_THAT(message_of("B_Nm_s_per_rad = 0.0296", "B_Nm_s_per_rad_sd = 0.003\nB_Nm_s_per_rad = 0.0296"),
               testing::Eq("no failure"));
-  EXPECT_THAT(message_of("B_Nm_s_per_rad = 0.0296", "B_Nm_s_per_rad_held = true"), HasSubstr("stands without"));
+  EXPECT_THAT(message_of("B_Nm_s_per_rad = 0.0296", "B_Nm_s_per_rad_held = true"), HasSubstr("is given without"));
 }
 
 constexpr const char* kCurve = R"([[effect]]
@@ -424,8 +425,8 @@ TEST(ReadModel, ACurveThatIsNone) {
   const std::string text = std::string(kPaperX) + kCurve;
   EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"weather\"")), HasSubstr("position"));
   EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0, 0.0]")), HasSubstr("above"));
-  EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0]")), HasSubstr("as many"));
-  EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"phase\"")), HasSubstr("as the first"));
+  EXPECT_THAT(message_of(replaced(text, "[-10.0, 0.0, 10.0]", "[-10.0, 10.0]")), HasSubstr("same length"));
+  EXPECT_THAT(message_of(replaced(text, "\"speed\"", "\"phase\"")), HasSubstr("must equal the first"));
 }
 
 TEST(WriteModel, WritesNumbersAsPeopleDo) {

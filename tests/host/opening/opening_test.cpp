@@ -188,6 +188,35 @@ TEST_F(Opening, ASecondPositionThatIsNoTableIsLeftOut) {
   EXPECT_THAT(channels(opening.files[0])["link position [mm]"].why, HasSubstr("--map x2_mm="));
 }
 
+/// Signals as LinuxCNC's configurations name them, of two joints: an output goes with the axis whose letter it has.
+TEST_F(Opening, HalsamplerOfTwoJointsMakesARecordOfEach) {
+  std::string text, hal = "loadrt threads name1=servo period1=1000000\naddf sampler.0 servo\n";
+  for (int k = 0; k < kRows; ++k)
+    text += fmt::format("{:f} {:f} {:f} {:f} {:f} {:f} {:f} \n", x_at(k + 1), x_at(k), i_at(k), 1e-3 * i_at(k),
+                        -2.0 * x_at(k + 1), -2.0 * x_at(k), -i_at(k));
+  int pin = 0;
+  for (const auto& [axis, joint] : {std::pair{'x', 0}, std::pair{'y', 1}}) {
+    hal += fmt::format("net {0}-pos-cmd joint.{1}.motor-pos-cmd => pid.{0}.command sampler.0.pin.{2}\n", axis, joint,
+                       pin++);
+    hal +=
+        fmt::format("net {0}-pos-fb encoder.{1}.position => pid.{0}.feedback sampler.0.pin.{2}\n", axis, joint, pin++);
+    hal += fmt::format("net {0}-output pid.{0}.output => sampler.0.pin.{1}\n", axis, pin++);
+    if (joint == 0) hal += fmt::format("net x-f-error joint.0.f-error => sampler.0.pin.{}\n", pin++);
+  }
+  host::OpeningOptions options;
+  options.hal_path = write("loop.hal", hal);
+  const host::Opening opening = open({write("log.txt", text)}, options);
+  auto found = channels(opening.files[0]);
+  for (const char* axis : {"x", "y"}) {
+    EXPECT_EQ(found[fmt::format("{}-pos-fb", axis)].taken_as, "x_mm");
+    EXPECT_EQ(found[fmt::format("{}-output", axis)].taken_as, "u_V");
+  }
+  EXPECT_EQ(found["x-f-error"].taken_as, "");
+  ASSERT_EQ(opening.records().size(), 2u);
+  EXPECT_EQ(opening.records()[1]->axis, "y");
+  EXPECT_NEAR(opening.records()[1]->record.x[5], -2.0 * x_at(5), 1e-6);
+}
+
 TEST_F(Opening, TheMappingFileNeedsNoQuestion) {
   std::string text = "time,position,current\n";
   for (int k = 0; k < kRows; ++k) text += fmt::format("{:.3f},{:.6f},{:.4f}\n", 1e-3 * k, x_at(k), i_at(k));

@@ -206,7 +206,7 @@ TEST_F(BadRecord, DeadChannel) {
   EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.x_mm = 7.5; })),
               AllOf(HasSubstr("column x_mm: dead channel"), HasSubstr("w_rad_s shows motion")));
   EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.u_V = 0.0; })),
-              AllOf(HasSubstr("column u_V: dead channel"), HasSubstr("moves both ways")));
+              AllOf(HasSubstr("column u_V: dead channel"), HasSubstr("moves in both directions")));
   EXPECT_THAT(message_of(with_columns([](int, Row& r) { r.u_V = 3.1; })), HasSubstr("column u_V: dead channel"));
 }
 
@@ -216,7 +216,7 @@ TEST_F(BadRecord, NoCommandWhileTheAxisSpeedsUp) {
                 r.w_rad_s = 0.02 * k;
                 r.x_mm = std::round(0.00001 * kLead * k * k * 1000.0) / 1000.0;
               })),
-              AllOf(HasSubstr("column u_V: dead channel"), HasSubstr("speeds up")));
+              AllOf(HasSubstr("column u_V: dead channel"), HasSubstr("accelerates")));
 }
 
 TEST_F(BadRecord, ConstantChannelsThatAreLegal) {

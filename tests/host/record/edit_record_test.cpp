@@ -12,14 +12,14 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::size_t kRows = 400;
+constexpr std::size_t kEditedRows = 400;
 double speed(double t_s) { return 10.0 * std::sin(20.0 * t_s); }
 
 host::Record sample() {
   host::Record record;
   record.path = "r.csv";
   record.sample_period_s = 0.001;
-  for (std::size_t k = 0; k < kRows; ++k) {
+  for (std::size_t k = 0; k < kEditedRows; ++k) {
     const double t = 1e-3 * static_cast<double>(k);
     record.t_s.push_back(t);
     record.u_V.push_back(k % 100 < 50 ? 1.0 : -1.0);
@@ -67,14 +67,14 @@ TEST(CutRecord, TooLittleIsRefused) {
 TEST(ShiftChannel, LaterAndEarlierByWholeSamplesMovesBits) {
   const host::Record given = sample();
   const host::Record later = host::shift_channel(given, "w_rad_s", 0.014);
-  ASSERT_EQ(later.size(), kRows - 14);
+  ASSERT_EQ(later.size(), kEditedRows - 14);
   EXPECT_NEAR(later.t_s.front(), 0.014, 1e-12);
   for (std::size_t k = 0; k < later.size(); ++k) {
     EXPECT_NEAR(later.w[k], given.w[k], 1e-9);
     EXPECT_EQ(later.x[k], given.x[k + 14]);
   }
   const host::Record earlier = host::shift_channel(given, "w_rad_s", -0.014);
-  ASSERT_EQ(earlier.size(), kRows - 14);
+  ASSERT_EQ(earlier.size(), kEditedRows - 14);
   EXPECT_EQ(earlier.t_s.front(), 0.0);
   for (std::size_t k = 0; k < earlier.size(); ++k) EXPECT_NEAR(earlier.w[k], given.w[k + 14], 1e-9);
 }

@@ -61,7 +61,7 @@ std::string message_of(const char* text) {
 
 TEST(Mapping, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(message_of(""), HasSubstr("the name of a column"));
-  EXPECT_THAT(message_of("t_s"), HasSubstr("character 4: '=' belongs behind 't_s'"));
+  EXPECT_THAT(message_of("t_s"), HasSubstr("character 4: expected '=' after 't_s'"));
   EXPECT_THAT(message_of("t_s=t,x_mm="), HasSubstr("character 12"));
   EXPECT_THAT(message_of("t_s=t,t_s=u"), HasSubstr("'t_s' is mapped twice"));
   EXPECT_THAT(message_of("x_mm=a*b"), HasSubstr("a column comes from one source"));
@@ -71,7 +71,7 @@ TEST(Mapping, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(message_of("x_mm=a*0"), HasSubstr("would not depend on 'a'"));
   EXPECT_THAT(message_of("x_mm=0.5"), HasSubstr("no variable or column to come from"));
   EXPECT_THAT(message_of("x_mm=a b"), HasSubstr("'b' is not expected here"));
-  EXPECT_THAT(message_of("x_mm=\"a"), HasSubstr("a name in quotes belongs here"));
+  EXPECT_THAT(message_of("x_mm=\"a"), HasSubstr("expected a name in quotes"));
 }
 
 }  // namespace

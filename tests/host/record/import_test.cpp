@@ -72,11 +72,11 @@ class MatFile {
   mat_t* file_;
 };
 
-constexpr int kRows = 200;
+constexpr int kMatRows = 200;
 
 std::vector<double> series(double (*f)(double)) {
   std::vector<double> values;
-  for (int k = 0; k < kRows; ++k) values.push_back(f(0.001 * k));
+  for (int k = 0; k < kMatRows; ++k) values.push_back(f(0.001 * k));
   return values;
 }
 
@@ -93,7 +93,7 @@ TEST_P(ImportMat, DoublesIntegersMatricesAndStructs) {
     std::vector<double> matrix = series([](double t) { return 5.0 + t; });
     const std::vector<double> speed = series([](double t) { return 20.0 * std::cos(20.0 * t); });
     matrix.insert(matrix.end(), speed.begin(), speed.end());
-    for (int k = 0; k < kRows; ++k) {
+    for (int k = 0; k < kMatRows; ++k) {
       counts.push_back(static_cast<std::uint8_t>(k < 100 ? 2 * k : 2 * (199 - k)));
       command.push_back(static_cast<std::int16_t>(k % 50 * 600 - 15000));
     }
@@ -105,7 +105,7 @@ TEST_P(ImportMat, DoublesIntegersMatricesAndStructs) {
   const host::Log log = host::read_log(path);
   const host::Record record =
       import(log, "t_s=t,u_V=dac/3276.8,x_mm=counts*0.5-100,w_rad_s=both(:,2),temp_C=rig.temperature,load_V=both(1)");
-  ASSERT_EQ(record.size(), static_cast<std::size_t>(kRows));
+  ASSERT_EQ(record.size(), static_cast<std::size_t>(kMatRows));
   EXPECT_DOUBLE_EQ(record.sample_period_s, 0.001);
   EXPECT_DOUBLE_EQ(record.u_V[0], -15000.0 / 3276.8);
   EXPECT_DOUBLE_EQ(record.x[0], -100.0);  // below zero: nothing wraps as an unsigned byte would
@@ -125,7 +125,7 @@ TEST_P(ImportMat, UnknownAndUnusableVariablesAreNamed) {
   {
     MatFile file(path, GetParam());
     file.add("t", MAT_C_DOUBLE, MAT_T_DOUBLE, series([](double t) { return t; }));
-    file.add("vir", MAT_C_SINGLE, MAT_T_SINGLE, std::vector<float>(kRows, 1.5F));
+    file.add("vir", MAT_C_SINGLE, MAT_T_SINGLE, std::vector<float>(kMatRows, 1.5F));
     file.add("short", MAT_C_DOUBLE, MAT_T_DOUBLE, std::vector<double>(7, 1.0));
     file.add("note", MAT_C_CHAR, MAT_T_UINT8, std::vector<char>{'h', 'i'});
   }
@@ -158,7 +158,7 @@ TEST(ImportLog, NotAMatlabFile) {
 template <typename Stamp>
 std::string table(std::string_view heading, std::string_view separator, Stamp stamp) {
   std::string text(heading);
-  for (int k = 0; k < kRows; ++k)
+  for (int k = 0; k < kMatRows; ++k)
     text += fmt::format("{0:.6f}{3}{1:.6f}{3}{2:.6f}\n", stamp(k), std::sin(0.1 * k), 3.0 * stamp(k), separator);
   return text;
 }
@@ -174,7 +174,7 @@ TEST(ImportTable, SeparatorsAndHeadingsAreFound) {
   for (const auto& [heading, separator] : tables) {
     const host::Log log = host::parse_table(table(heading, separator, even), "log.txt");
     const host::Record record = import(log, "t_s=time,u_V=cmd*2,x_mm=pos");
-    ASSERT_EQ(record.size(), static_cast<std::size_t>(kRows)) << heading;
+    ASSERT_EQ(record.size(), static_cast<std::size_t>(kMatRows)) << heading;
     EXPECT_NEAR(record.u_V[10], 2.0 * std::sin(1.0), 1e-6);
     EXPECT_NEAR(record.x[10], 0.03, 1e-9);
   }
@@ -192,7 +192,7 @@ TEST(ImportTable, ColumnsByNumberWithoutHeadings) {
 TEST(ImportTable, HeadingsWithBlanksInQuotes) {
   const host::Log log = host::parse_table(table("Time (s);Command, V;Position [mm]\n", ";", even), "log.txt");
   EXPECT_EQ(import(log, "t_s='Time (s)',u_V=\"Command, V\",x_mm='Position [mm]'").size(),
-            static_cast<std::size_t>(kRows));
+            static_cast<std::size_t>(kMatRows));
 }
 
 TEST(ImportTable, BadFieldsAreNamedWhereTheyMatter) {
@@ -264,7 +264,7 @@ TEST(ImportJitter, GapsAreFilledOnlyWhenAskedAndThenStated) {
 
 TEST(ImportJitter, SlowerChannelsWithBlankFieldsOrStampsOfTheirOwn) {
   std::string text = "t_s,u_V,x_mm,temp_C\n";
-  for (int k = 0; k < kRows; ++k)
+  for (int k = 0; k < kMatRows; ++k)
     text +=
         fmt::format("{:.3f},{},{},{}\n", even(k), k % 7, 2 * k, k % 10 == 0 ? fmt::format("{}", 20.0 + 0.1 * k) : "");
   const host::Log log = host::parse_table(text, "log.txt");

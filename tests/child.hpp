@@ -1,4 +1,4 @@
-// A program in the background of a test; what it prints on standard output is nobody's.
+// A program in the background of a test; what it prints on standard output is nobody's, or goes into a file.
 #pragma once
 
 #include <fcntl.h>
@@ -10,22 +10,22 @@
 #include <string>
 #include <vector>
 
-namespace guest_test {
-
 class Child {
  public:
-  /// `words`: program and arguments.
-  explicit Child(std::vector<std::string> words) {
+  /// `words`: program and arguments. `output`: what takes the standard output.
+  explicit Child(std::vector<std::string> words, const std::string& output = "/dev/null") {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
+    const int taker = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     process_ = fork();
     if (process_ < 0) throw std::runtime_error("cannot start " + words.front());
     if (process_ == 0) {
-      dup2(open("/dev/null", O_WRONLY), STDOUT_FILENO);
+      dup2(taker, STDOUT_FILENO);
       execvp(arguments[0], arguments.data());
       _exit(127);
     }
+    close(taker);
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -34,24 +34,22 @@ class Child {
   /// Does not run on, until it is killed.
   void pause() const { ::kill(process_, SIGSTOP); }
   void go_on() const { ::kill(process_, SIGCONT); }
-  /// Its exit code, once it has ended; -1 for a signal.
+  /// Its exit code, once it has ended; the signal's number, negative, where one ended it.
   int wait() {
     int status = 0;
     waitpid(process_, &status, 0);
     process_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
 
-  /// As a pulled plug: without warning.
-  void kill() {
-    if (process_ <= 0) return;
-    ::kill(process_, SIGKILL);
-    waitpid(process_, nullptr, 0);
-    process_ = -1;
+  /// Sends `signal`; returns as wait() does. SIGTERM is an orderly end, SIGKILL a pulled plug.
+  int end(int signal) {
+    if (process_ <= 0) return 0;
+    ::kill(process_, signal);
+    return wait();
   }
+  void kill() { end(SIGKILL); }
 
  private:
   pid_t process_ = -1;
 };
-
-}  // namespace guest_test

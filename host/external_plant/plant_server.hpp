@@ -1,0 +1,18 @@
+// The simulator's drives as the machine of another controller: the program's side of axis-plant/1.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <vector>
+
+#include "sim/drive_description.hpp"
+
+namespace host {
+
+/// Greets, then answers line by line, until the input ends: what encoder and tachometer of each drive show. Each drive
+/// stands at 0 at first. `seed`: of the tachometers' noise. Throws Failure(protocol) for any other line, or a
+/// greeting for another number of axes.
+void serve_plant(const std::vector<sim::DriveDescription>& drives, std::uint64_t seed, std::istream& in,
+                 std::ostream& out);
+
+}  // namespace host
