@@ -150,12 +150,35 @@ TableDrive settled(TableDrive drive, const std::vector<DriveRange>& numbers, con
   return drive;
 }
 
+/// Where else the fit may stand as well. At a reversal the table loses the gap and twice what its friction bends the
+/// spring: more of one beside less of the other loses as much. Where it slides on, its friction alone is in doubt. The
+/// drive itself is among them.
+std::vector<TableDrive> alike_at_reversals(const TableDrive& drive) {
+  const double loss = drive.gap + 2.0 * drive.lag * drive.deceleration;
+  std::vector<TableDrive> alike;
+  for (const double lag : {0.8, 0.9, 1.0, 1.1, 1.25})
+    for (const double part : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95}) {
+      TableDrive one = drive;
+      one.lag *= lag;
+      one.gap = part * loss;
+      one.deceleration = 0.5 * (1.0 - part) * loss / one.lag;
+      alike.push_back(one);
+    }
+  for (const double friction : {0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8}) {
+    alike.push_back(drive);
+    alike.back().deceleration *= friction;
+  }
+  return alike;
+}
+
 }  // namespace
 
 TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, const Evidence& evidence,
                      const MatrixXd& others, double correlation, double deceleration) {
   const std::vector<DriveRange> numbers = free_numbers(starts.front(), deceleration);
   const Remainder remainder(rows, evidence, others, correlation);
+  const bool is_new = starts.size() > 1;
+  double least = HUGE_VAL;
   const auto price = [&](int iterations) {
     std::vector<std::pair<double, std::size_t>> costs(starts.size());
     for_each_in_parallel(starts.size(), [&](std::size_t k) {
@@ -166,6 +189,7 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     std::vector<TableDrive> ordered;
     for (const auto& [cost, k] : costs) ordered.push_back(starts[k]);
     starts = std::move(ordered);
+    least = costs.front().first;
   };
   price(0);
   // Between sizes that lose as much at a reversal lie worse ones: the best of each gap, or of each spring, goes on.
@@ -177,9 +201,20 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
       best_of_each.push_back(start);
   starts = std::move(best_of_each);
   constexpr std::pair<std::size_t, int> kRounds[] = {{6, 6}, {4, 12}, {2, 20}};  // starts that go on, iterations
-  for (const auto& [kept, iterations] : kRounds) {
-    starts.resize(std::min(kept, starts.size()));
-    price(iterations);
+  const auto go_on = [&] {
+    for (const auto& [kept, iterations] : kRounds) {
+      starts.resize(std::min(kept, starts.size()));
+      price(iterations);
+    }
+  };
+  go_on();
+  constexpr int kRidges = 2;
+  for (int ridge = 0; ridge < kRidges && is_new && starts.front().gap > 0.0 && starts.front().lag > 0.0; ++ridge) {
+    const double before = least;
+    starts = alike_at_reversals(starts.front());
+    price(0);
+    go_on();
+    if (!(least < before - 1.0)) break;
   }
   return starts.front();
 }

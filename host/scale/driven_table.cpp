@@ -53,8 +53,7 @@ DrivenSamples sprung(const TableDrive& drive, const std::vector<double>& motor, 
     if (k + 1 == motor.size()) break;
     const double motor_speed = (motor[k + 1] - motor[k]) / period_s;
     for (int part = 0; part < parts; ++part) {
-      const double bend = motor[k] + motor_speed * step * (part + 0.5) - table,
-                   bent = bend - std::clamp(bend, -half, half);
+      const double bend = motor[k] + motor_speed * step * part - table, bent = bend - std::clamp(bend, -half, half);
       double pull = 0.0;
       if (bent != 0.0) {
         pull = stiffness * bent + damping * (motor_speed - speed);

@@ -157,15 +157,7 @@ class Search {
   /// From all starts: after a gap or a spring came or went.
   void settle_drive_anew(std::vector<TableTerm>& terms, double correlation) const {
     const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
-    if (gap && spring) {
-      std::vector<TableTerm> alone = terms;
-      std::erase_if(alone, [](const TableTerm& term) { return term.kind == "backlash"; });
-      settle_drive(alone, correlation, drive_starts(false, rows_, deceleration_));
-      const auto sprung = std::ranges::find(alone, std::string_view("compliance"), &TableTerm::kind);
-      settle_drive(terms, correlation, starts_beside(sprung->drive, rows_));
-    } else if (gap || spring) {
-      settle_drive(terms, correlation, drive_starts(gap, rows_, deceleration_));
-    }
+    if (gap || spring) settle_drive(terms, correlation, drive_starts(gap, spring, rows_, deceleration_));
   }
 
   /// Where the motor is, without the errors of its encoder that are among the terms.

@@ -158,41 +158,23 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows)
   return forms;
 }
 
-std::vector<TableDrive> drive_starts(bool gap, const TableRows& rows, double deceleration) {
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration) {
   // Gaps of good ball screws up to worn ones, within what is there; springs from 10 to 400 Hz with the motor held.
   constexpr double kLeastGap_mm = 0.001, kMostGap_mm = 0.6, kLeastLag = 1.6e-7, kMostLag = 2.6e-4, kNoSlide = 1e5;
   const double whole = 1e-3 * (rows.y.maxCoeff() - rows.y.minCoeff());
   const double usual = deceleration > 0.0 ? deceleration : 500.0;
-  std::vector<double> slower = {usual, 2.0 * usual, 4.0 * usual};
-  if (gap) slower.push_back(kNoSlide);
+  std::vector<double> gaps = {0.0}, lags = {0.0}, slower = {usual, 2.0 * usual, 4.0 * usual};
+  if (!spring) slower.push_back(kNoSlide);
+  if (gap) gaps.clear();
+  for (double free = kLeastGap_mm; gap && free < std::max(2.0 * kLeastGap_mm, std::min(kMostGap_mm, whole));
+       free *= 1.41)
+    gaps.push_back(free);
+  if (spring) lags.clear();
+  for (double lag = kLeastLag; spring && lag <= kMostLag; lag *= 1.6) lags.push_back(lag);
   std::vector<TableDrive> starts;
-  for (const double one : slower) {
-    for (double free = kLeastGap_mm; gap && free < std::max(2.0 * kLeastGap_mm, std::min(kMostGap_mm, whole));
-         free *= 1.41)
-      starts.push_back({.gap = free, .deceleration = one});
-    for (double lag = kLeastLag; !gap && lag <= kMostLag; lag *= 1.6)
-      starts.push_back({.lag = lag, .deceleration = one});
-  }
-  return starts;
-}
-
-std::vector<TableDrive> starts_beside(const TableDrive& sprung, const TableRows& rows) {
-  // At a reversal the table loses the gap and twice what its friction bends the spring: more of one beside less of the
-  // other loses as much. How the spring follows accelerations is known better.
-  const double whole = 1e-3 * (rows.y.maxCoeff() - rows.y.minCoeff()), bend = sprung.lag * sprung.deceleration;
-  std::vector<TableDrive> starts;
-  for (const double lag : {0.6, 0.75, 0.85, 0.92, 1.0, 1.1})
-    for (const double part : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
-      TableDrive start = sprung;
-      start.lag *= lag;
-      start.deceleration = (1.0 - part) * bend / start.lag;
-      start.gap = std::clamp(2.0 * part * bend, 1e-4, std::max(whole, 2e-4));
-      start.damping = 0.05;
-      for (const double drag : {1.0, 4.0}) {
-        start.drag = drag;
-        starts.push_back(start);
-      }
-    }
+  for (const double one : slower)
+    for (const double free : gaps)
+      for (const double lag : lags) starts.push_back({.gap = free, .lag = lag, .deceleration = one});
   return starts;
 }
 

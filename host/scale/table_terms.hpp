@@ -48,12 +48,9 @@ inline constexpr std::string_view kTableKinds[] = {"compliance", "backlash", "en
 /// Forms of one kind that these rows may show; none of what is driven.
 std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows);
 
-/// Where the fit of a driven table may begin, with a gap alone or a spring alone. `deceleration`: see shape_ranges().
+/// Where the fit of a driven table may begin: a grid over gap, spring and friction. `deceleration`: see shape_ranges().
 /// At least one.
-std::vector<TableDrive> drive_starts(bool gap, const TableRows& rows, double deceleration);
-
-/// With a gap beside the spring that explains most without one.
-std::vector<TableDrive> starts_beside(const TableDrive& sprung, const TableRows& rows);
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration);
 
 /// Always there: each record's offset, and the time by which one sensor is read after the other.
 Eigen::MatrixXd table_base(const TableRows& rows);
