@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "host/cancellation.hpp"
 #include "host/parallel.hpp"
@@ -36,10 +37,15 @@ class Remainder {
     taken_ = factors.householderQ() * MatrixXd::Identity(white.rows(), factors.rank());
   }
 
-  VectorXd of(const TableDrive& drive) const {
-    const VectorXd white = evidence_.whiten(rows_.y - drive_table(drive, rows_).all, correlation_);
+  /// One column a drive.
+  MatrixXd of(std::span<const TableDrive> drives) const {
+    MatrixXd left(rows_.size(), static_cast<Index>(drives.size()));
+    const std::vector<DrivenRows> driven = drive_tables(drives, rows_);
+    for (Index k = 0; k < left.cols(); ++k) left.col(k) = rows_.y - driven[static_cast<std::size_t>(k)].all;
+    const MatrixXd white = evidence_.whiten(left, correlation_);
     return white - taken_ * (taken_.transpose() * white);
   }
+  VectorXd of(const TableDrive& drive) const { return of(std::span(&drive, 1)); }
 
   /// The noise's scale at which these are most probable.
   double scale_of(const VectorXd& left) const {
@@ -86,33 +92,36 @@ class DriveCost : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const auto columns = static_cast<Index>(numbers_.size());
     const Eigen::Map<const VectorXd> at(parameters[0], columns);
-    Eigen::Map<VectorXd> here(residuals, num_residuals());
-    here = at_numbers(at);
-    if (!here.allFinite() || is_cancelled()) return false;
-    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    const bool slopes = jacobians != nullptr && jacobians[0] != nullptr;
+    MatrixXd points = at.replicate(1, slopes ? columns + 1 : 1);
+    for (Index column = 0; slopes && column < columns; ++column) {
+      const DriveRange& one = numbers_[static_cast<std::size_t>(column)];
+      points(column, column + 1) += at(column) + one.step > one.high ? -one.step : one.step;
+    }
+    const MatrixXd values = at_numbers(points);
+    Eigen::Map<VectorXd>(residuals, num_residuals()) = values.col(0);
+    if (!values.allFinite() || is_cancelled()) return false;
+    if (!slopes) return true;
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
         jacobians[0], num_residuals(), columns);
-    for (Index column = 0; column < columns; ++column) {
-      const DriveRange& one = numbers_[static_cast<std::size_t>(column)];
-      VectorXd moved = at;
-      const double step = at(column) + one.step > one.high ? -one.step : one.step;
-      moved(column) += step;
-      jacobian.col(column) = (at_numbers(moved) - here) / step;
-    }
-    return jacobian.allFinite();
+    for (Index column = 0; column < columns; ++column)
+      jacobian.col(column) = (values.col(column + 1) - values.col(0)) / (points(column, column + 1) - at(column));
+    return true;
   }
 
  private:
-  VectorXd at_numbers(const VectorXd& at) const {
-    TableDrive drive = start_;
-    VectorXd all(num_residuals());
-    for (Index k = 0; k < at.size(); ++k) {
-      const DriveRange& one = numbers_[static_cast<std::size_t>(k)];
-      set_number(drive, one.which, at(k));
-      all(rows_ + k) = (at(k) - one.middle) / one.deviation;
-    }
-    const Eigen::ArrayXd left = remainder_.of(drive).array() / scale_;
-    all.head(rows_) = left.sign() * ((kDegrees + 1.0) * (left.square() / kDegrees).log1p()).sqrt();
+  /// One column each.
+  MatrixXd at_numbers(const MatrixXd& points) const {
+    std::vector<TableDrive> drives(static_cast<std::size_t>(points.cols()), start_);
+    MatrixXd all(num_residuals(), points.cols());
+    for (Index point = 0; point < points.cols(); ++point)
+      for (Index k = 0; k < points.rows(); ++k) {
+        const DriveRange& one = numbers_[static_cast<std::size_t>(k)];
+        set_number(drives[static_cast<std::size_t>(point)], one.which, points(k, point));
+        all(rows_ + k, point) = (points(k, point) - one.middle) / one.deviation;
+      }
+    const Eigen::ArrayXXd left = remainder_.of(drives).array() / scale_;
+    all.topRows(rows_) = left.sign() * ((kDegrees + 1.0) * (left.square() / kDegrees).log1p()).sqrt();
     return all;
   }
 
@@ -181,9 +190,17 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
   double least = HUGE_VAL;
   const auto price = [&](int iterations) {
     std::vector<std::pair<double, std::size_t>> costs(starts.size());
-    for_each_in_parallel(starts.size(), [&](std::size_t k) {
-      if (iterations > 0) starts[k] = settled(starts[k], numbers, remainder, rows.size(), iterations);
-      costs[k] = {remainder.cost_of(remainder.of(starts[k])) + prior_cost(starts[k], numbers), k};
+    if (iterations > 0)
+      for_each_in_parallel(starts.size(), [&](std::size_t k) {
+        starts[k] = settled(starts[k], numbers, remainder, rows.size(), iterations);
+      });
+    constexpr std::size_t kAtOnce = 16;
+    for_each_in_parallel((starts.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t part) {
+      const std::size_t first = part * kAtOnce, count = std::min(kAtOnce, starts.size() - first);
+      const MatrixXd left = remainder.of(std::span(starts).subspan(first, count));
+      for (std::size_t k = 0; k < count; ++k)
+        costs[first + k] = {remainder.cost_of(left.col(static_cast<Index>(k))) + prior_cost(starts[first + k], numbers),
+                            first + k};
     });
     std::ranges::sort(costs);
     std::vector<TableDrive> ordered;

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <span>
+#include <vector>
 
 #include "host/scale/table_rows.hpp"
 
@@ -48,6 +50,8 @@ struct DrivenRows {
 
 /// The motor's end moves as `TableRecord::pusher` says; each record begins with the spring unbent in the gap's middle.
 DrivenRows drive_table(const TableDrive& drive, const TableRows& rows);
+/// The same of many, side by side: all with a spring or all without one. At least one.
+std::vector<DrivenRows> drive_tables(std::span<const TableDrive> drives, const TableRows& rows);
 
 /// What a change of one number by 1 does to DrivenRows::all, um.
 Eigen::VectorXd slope_of(const TableDrive& drive, DriveNumber which, double step, const TableRows& rows,

@@ -172,9 +172,9 @@ std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& row
   if (spring) lags.clear();
   for (double lag = kLeastLag; spring && lag <= kMostLag; lag *= 1.6) lags.push_back(lag);
   std::vector<TableDrive> starts;
-  for (const double one : slower)
-    for (const double free : gaps)
-      for (const double lag : lags) starts.push_back({.gap = free, .lag = lag, .deceleration = one});
+  for (const double lag : lags)
+    for (const double one : slower)
+      for (const double free : gaps) starts.push_back({.gap = free, .lag = lag, .deceleration = one});
   return starts;
 }
 
