@@ -90,9 +90,9 @@ std::string advice_on_a_scale(const DiagnosisVerdict& verdict) {
                                [&](const std::vector<std::string>& group) { return contains(group, kind); });
   };
   if (std::ranges::none_of(kConnections, speaks_of)) return {};
-  return " A scale on the table (column x2_mm), or a dial gauge against it at reversals, decides: behind backlash the "
-         "table stays where it is for the gap at any force, on a spring it lags in proportion to the force, and where "
-         "it follows the motor it is neither.";
+  return " A scale on the table (column x2_mm) decides: behind backlash the table stays where it is for the gap at any "
+         "force, on a spring it lags in proportion to the force, and where it follows the motor it is neither. A dial "
+         "gauge at reversals (axistool dial) tells whether it is one of them.";
 }
 
 }  // namespace host

@@ -46,6 +46,11 @@ class Remainder {
     return white - taken_ * (taken_.transpose() * white);
   }
   VectorXd of(const TableDrive& drive) const { return of(std::span(&drive, 1)); }
+  /// Of a table that follows the motor.
+  VectorXd of_none() const {
+    const VectorXd white = evidence_.whiten(rows_.y, correlation_);
+    return white - taken_ * (taken_.transpose() * white);
+  }
 
   /// The noise's scale at which these are most probable.
   double scale_of(const VectorXd& left) const {
@@ -218,15 +223,19 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
       best_of_each.push_back(start);
   starts = std::move(best_of_each);
   constexpr std::pair<std::size_t, int> kRounds[] = {{6, 6}, {4, 12}, {2, 20}};  // starts that go on, iterations
+  // What does not fit better than a table that follows the motor once it has begun to move is none.
+  const double most = is_new ? remainder.cost_of(remainder.of_none()) : HUGE_VAL;
   const auto go_on = [&] {
     for (const auto& [kept, iterations] : kRounds) {
       starts.resize(std::min(kept, starts.size()));
       price(iterations);
+      if (least >= most) return;
     }
   };
   go_on();
   constexpr int kRidges = 2;
-  for (int ridge = 0; ridge < kRidges && is_new && starts.front().gap > 0.0 && starts.front().lag > 0.0; ++ridge) {
+  for (int ridge = 0; ridge < kRidges && is_new && least < most && starts.front().gap > 0.0 && starts.front().lag > 0.0;
+       ++ridge) {
     const double before = least;
     starts = alike_at_reversals(starts.front());
     price(0);

@@ -7,6 +7,7 @@
 
 #include "host/infer/posterior.hpp"
 #include "host/parallel.hpp"
+#include "host/report/progress.hpp"
 #include "host/scale/drive_fit.hpp"
 #include "host/scale/table_effect.hpp"
 #include "sim/drive.hpp"
@@ -305,11 +306,14 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   std::vector<std::vector<std::string>> groups;
   std::vector<double> odds;
   EvidenceFit fit = search.fit(chosen);
+  Progress progress("measuring the table against the motor", std::size(kTableKinds));
   while (chosen.size() < kMostEffects) {
+    if (!chosen.empty()) progress.add_steps(std::size(kTableKinds));
     std::vector<Fitted> found;
     std::vector<std::pair<std::string, double>> denied;
     std::vector<double> logs = {std::log(kNothingMore) + fit.log_evidence};
     for (const std::string_view kind : kTableKinds) {
+      progress.advance(1, kind);
       if (count_of(chosen, kind) >= (kind == "encoder_cyclic_error" ? kMostCyclic : 1) || stands_in(model, kind))
         continue;
       if (std::optional<Fitted> best = search.best_form(kind, chosen, fit)) {
