@@ -389,7 +389,9 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   study.before_um = rms(left_on(study.judge, {}, fit.factors, base));
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     TableEffect effect = table_effect(chosen[k], fit, covariance, search.first_column(chosen, k), study.train, model);
-    effect.group = groups[k];
+    // What stands in the model by itself is no other name of this one.
+    for (const std::string& kind : groups[k])
+      if (kind == chosen[k].kind || count_of(chosen, kind) == 0) effect.group.push_back(kind);
     effect.probability = odds[k];
     effect.before = rms(left_on(study.judge, others_of[k], less_of[k].factors, base));
     effect.after = study.left_um;
