@@ -47,6 +47,7 @@ void add_bode(CLI::App& app);
 void add_run(CLI::App& app);
 void add_circle(CLI::App& app);
 void add_pitch(CLI::App& app);
+void add_dial(CLI::App& app);
 void add_faults(CLI::App& app);
 void add_clear_faults(CLI::App& app);
 void add_bench(CLI::App& app);

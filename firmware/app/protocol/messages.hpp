@@ -273,6 +273,7 @@ enum class Channel : std::uint8_t {
   friction = 8,             ///< scalar, V
   control = 9,              ///< scalar, V: before limits and rounding
   flags = 10,               ///< state, then fault << 8, then saturated << 16
+  // 11 is reserved: low word of the counts of a second encoder, on the table.
 };
 inline constexpr std::size_t kChannels = 11;
 inline constexpr std::size_t kWordsPerReport = 12;
