@@ -13,8 +13,9 @@ namespace host {
 
 /// Predicted channels, one value a row; rows that no window reaches are left as they were.
 struct Prediction {
-/// One window that a drive runs through from its own start state. The values that the sensors would read are written to
-/// `x` and `w`, which have room for the window's length, and the table's travel to `table` unless that is null.
+  std::vector<double> x;      ///< encoder reading without quantisation
+  std::vector<double> w;      ///< tachometer reading without noise
+  std::vector<double> table;  ///< travel of the table; empty unless the record has it
 };
 
 /// Predicts every `stride`-th window. `out` is resized when needed, so that it can be used again.
