@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from table_machine import LEAD, Machine  # noqa: E402
 
 AXISTOOL = os.environ["AXISTOOL"]
-FEW = 3
+FEW = 2
 
 
 def axistool(*arguments: object) -> dict:
