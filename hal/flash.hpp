@@ -1,4 +1,4 @@
-// The flash sectors reserved for parameters (the first two) and the fault log (the next two).
+// Flash sectors that the program writes: for parameters (the first two) and the fault log (the next two), or images.
 #pragma once
 
 #include <concepts>

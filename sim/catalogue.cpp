@@ -39,6 +39,8 @@ namespace effects {
   EFFECT(tach_lag)                    \
   EFFECT(tach_ripple)                 \
   EFFECT(encoder_cyclic_error)        \
+  EFFECT(pitch_error)                 \
+  EFFECT(thermal_growth)              \
   EFFECT(free_curve)
 
 #define AXIS_DECLARE(NAME) extern const EffectInfo NAME;

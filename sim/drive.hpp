@@ -100,6 +100,14 @@ class Drive {
   /// What the encoder's reading adds to the true travel.
   double encoder_error_at(double x) const;
 
+  /// Travel of the table: of the load's side, with what the screw adds to it.
+  double table(const DriveMotion& motion, double t_s) const {
+    const double travel = second_mass ? motion.load_x : motion.x;
+    double sum = travel;
+    for (const auto& error : table_error) sum += error(t_s, travel);
+    return sum;
+  }
+
   /// What the tachometer reads without its noise.
   double tachometer(const DriveMotion& motion) const {
     return tach_gain * motion.tach * (tach_ripple.empty() ? 1.0 : tach_ripple_at(motion.x)) + tach_offset;
@@ -143,6 +151,7 @@ class Drive {
   std::optional<Bristles> bristles;
   std::optional<SecondMass> second_mass;
   std::vector<std::function<double(double x)>> encoder_error;
+  std::vector<std::function<double(double t_s, double x)>> table_error;  ///< added to the table's travel, mm or m
   double tach_gain = 1.0;
   double tach_offset = 0.0;
   double tach_lag_s = 0.0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -18,15 +19,27 @@ enum class DriveKind { rotary, linear };
 /// speed w is rad/s (rotary) or m/s (linear), effort T is Nm or N, travel x is mm or m, and dx/dt = lead * w.
 struct DataSheet {
   DriveKind kind = DriveKind::rotary;
-  double amplifier_gain_A_per_V = 0.0;        ///< Ka, rotary only, > 0
-  double torque_constant_Nm_per_A = 0.0;      ///< Kt, rotary only, > 0
-  double force_constant_N_per_V = 0.0;        ///< linear only, > 0
-  double lead = 1.0;                          ///< rg: mm/rad (rotary), 1 (linear: m per m)
-  double sample_period_s = 0.001;             ///< Ts, > 0
-  double dac_resolution_V = 0.0;              ///< du; 0 means ideal
-  double dac_limit_V = 10.0;                  ///< output range is -limit..+limit
-  double encoder_resolution = 0.0;            ///< dx: mm (rotary) or m (linear); 0 means ideal
+  double amplifier_gain_A_per_V = 0.0;      ///< Ka, rotary only, > 0
+  double torque_constant_Nm_per_A = 0.0;    ///< Kt, rotary only, > 0
+  double force_constant_N_per_V = 0.0;      ///< linear only, > 0
+  double lead = 1.0;                        ///< rg: mm/rad (rotary), 1 (linear: m per m)
+  double sample_period_s = 0.001;           ///< Ts, > 0
+  double dac_resolution_V = 0.0;            ///< du; 0 means ideal
+  double dac_limit_V = 10.0;                ///< output range is -limit..+limit
+  double encoder_resolution = 0.0;          ///< dx: mm (rotary) or m (linear); 0 means ideal
+  double load_encoder_resolution = 0.0;     ///< of a scale on the table: mm or m; 0: there is none
+  double load_encoder_cyclic_error = 0.0;   ///< amplitude of its error within its period, mm or m
+  double load_encoder_cyclic_period = 0.0;  ///< mm or m
+  double load_encoder_cyclic_phase_rad = 0.0;
   std::optional<double> tach_noise_variance;  ///< (rad/s)^2 or (m/s)^2; empty: the drive has no tachometer
+
+  bool has_load_encoder() const { return load_encoder_resolution > 0.0; }
+  /// What the scale's reading adds to the table's travel, mm or m.
+  double load_encoder_error(double travel) const {
+    if (!(load_encoder_cyclic_period > 0.0)) return 0.0;
+    const double turns = travel / load_encoder_cyclic_period;
+    return load_encoder_cyclic_error * std::cos(2.0 * std::numbers::pi * turns - load_encoder_cyclic_phase_rad);
+  }
 
   /// Effort at the shaft for one volt at the D/A converter: Ka*Kt in Nm/V, or N/V.
   double effort_per_volt() const {

@@ -48,7 +48,8 @@ struct ParameterInfo {
 };
 
 /// Where in the drive an effect sits; it decides which screens apply to it.
-enum class Stage { command, motor, load, friction, mechanics, encoder, tachometer };
+/// What acts on the `table` shows to a sensor on the table alone.
+enum class Stage { command, motor, load, friction, mechanics, encoder, tachometer, table };
 
 struct EffectInfo {
   std::string_view kind;

@@ -66,6 +66,12 @@ std::int64_t Plant::encoder_counts() const {
   return static_cast<std::int64_t>(std::floor(drive_.encoder(state_) / resolution));
 }
 
+std::optional<double> Plant::read_load_encoder() const {
+  if (!data_.has_load_encoder() || foreign_) return std::nullopt;
+  const double table = drive_.table(state_, time_s_), step = data_.load_encoder_resolution;
+  return step * std::floor((table + data_.load_encoder_error(table)) / step);
+}
+
 std::optional<double> Plant::read_tachometer() {
   if (!data_.tach_noise_variance) return std::nullopt;
   if (foreign_) return foreign_->reading().w;

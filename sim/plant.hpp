@@ -35,6 +35,10 @@ class Plant {
   /// does.
   std::int64_t encoder_counts() const;
 
+  /// What the scale on the table reads, mm or m, on its own grid; empty for a drive without one, and where a foreign
+  /// motion has taken the drive's place.
+  std::optional<double> read_load_encoder() const;
+
   /// A tachometer reading, rad/s or m/s, with fresh noise; empty for a drive without one.
   std::optional<double> read_tachometer();
 

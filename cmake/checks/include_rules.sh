@@ -20,11 +20,12 @@ find firmware hal host sim tests -type f \( -name '*.[ch]pp' -o -name '*.[chS]' 
     may["host/report/"] = "host/report/ host/model/ sim/"
     may["host/identify/"] = "host/identify/ host/record/ sim/"
     may["host/evidence/"] = "host/evidence/ " may["host/identify/"]
-    may["host/compare/"] = "host/compare/ host/report/ " may["host/evidence/"]
+    may["host/compare/"] = "host/compare/ host/report/ host/scale/ " may["host/evidence/"]
     may["host/interchange/"] = "host/interchange/ " may["host/compare/"]
     may["host/infer/"] = "host/infer/"
+    may["host/scale/"] = "host/scale/ host/infer/ host/report/ " may["host/evidence/"]
     may["host/effort/"] = "host/effort/ host/infer/ " may["host/compare/"]
-    may["host/diagnose/"] = "host/diagnose/ " may["host/effort/"]
+    may["host/diagnose/"] = "host/diagnose/ host/scale/ " may["host/effort/"]
     may["host/scoreboard/"] = "host/scoreboard/ host/model/ " may["host/diagnose/"]
     may["host/workbench/"] = "host/workbench/ host/model/ host/opening/ " may["host/diagnose/"]
     may["host/parameters/"] = "host/parameters/ host/identify/ sim/ firmware/core/ firmware/app/"

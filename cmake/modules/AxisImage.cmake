@@ -1,4 +1,4 @@
-# How an image for the microcontroller is built: axis_image().
+# How an image for the microcontroller is built, axis_image(), and the boot code in front of it, axis_boot_code().
 include(AxisVersion)
 set(AXIS_IMAGES "${CMAKE_BINARY_DIR}/images")
 file(MAKE_DIRECTORY "${AXIS_IMAGES}")
@@ -28,11 +28,30 @@ target_link_options(axis_target_flags INTERFACE -nostartfiles --specs=nano.specs
 
 file(GLOB COMMON_SOURCES CONFIGURE_DEPENDS "${AXIS_ROOT}/firmware/boards/image/*.cpp")
 
-# axis_image(NAME CPU m4|m3|m0plus BOARD folder [DEFINES ...] SOURCES ...): images/NAME.elf, .bin and .hex with a
-# complete header, and NAME.map beside them.
+# axis_boot_code(NAME CPU m4 BOARD folder HEADER board.hpp): images/NAME.elf, the boot code of a board whose folder has
+# boot_memory.ld.
+function(axis_boot_code NAME)
+  cmake_parse_arguments(BOOT "" "CPU;BOARD;HEADER" "" ${ARGN})
+  add_executable(${NAME} "${AXIS_ROOT}/firmware/boards/boot/boot.cpp")
+  target_link_libraries(${NAME} PRIVATE axis_target_flags)
+  target_compile_definitions(${NAME} PRIVATE "AXIS_BOOT_BOARD=\"${BOOT_HEADER}\"")
+  target_compile_options(${NAME} PRIVATE ${CPU_FLAGS_${BOOT_CPU}})
+  set_source_files_properties("${AXIS_ROOT}/firmware/boards/boot/boot.cpp" PROPERTIES COMPILE_OPTIONS -Os)
+  target_link_options(${NAME} PRIVATE ${CPU_FLAGS_${BOOT_CPU}} -L "${AXIS_ROOT}/firmware/boards/boot"
+    -T "${BOOT_BOARD}/boot_memory.ld" "-Wl,-Map=${AXIS_IMAGES}/${NAME}.map")
+  set_target_properties(${NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${AXIS_IMAGES}" SUFFIX .elf
+    LINK_DEPENDS "${BOOT_BOARD}/boot_memory.ld;${AXIS_ROOT}/firmware/boards/boot/boot.ld")
+endfunction()
+
+# axis_image(NAME CPU m4|m3|m0plus BOARD folder [MEMORY script] [BOOT target address] [DEFINES ...] SOURCES ...):
+# images/NAME.elf, .bin and .hex with a complete header, and NAME.map beside them. With BOOT the .bin and the .hex hold
+# that boot code, from `address` on, in front of the program.
 function(axis_image NAME)
-  cmake_parse_arguments(IMAGE "" "CPU;BOARD" "DEFINES;SOURCES" ${ARGN})
+  cmake_parse_arguments(IMAGE "" "CPU;BOARD;MEMORY" "BOOT;DEFINES;SOURCES" ${ARGN})
   set(MEMORY "${AXIS_ROOT}/firmware/boards/${IMAGE_BOARD}/memory.ld")
+  if(IMAGE_MEMORY)
+    set(MEMORY "${IMAGE_MEMORY}")
+  endif()
   add_executable(${NAME} ${COMMON_SOURCES} ${IMAGE_SOURCES})
   add_dependencies(${NAME} build_version)
   target_link_libraries(${NAME} PRIVATE axis_target_flags)
@@ -47,6 +66,18 @@ function(axis_image NAME)
   set_target_properties(${NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/linked" SUFFIX .elf
     LINK_DEPENDS "${MEMORY};${AXIS_ROOT}/firmware/boards/image/sections.ld")
   set(IMAGE "${AXIS_IMAGES}/${NAME}")
+  set(BOOT "")
+  if(IMAGE_BOOT)
+    list(GET IMAGE_BOOT 0 BOOT)
+    list(GET IMAGE_BOOT 1 ADDRESS)
+    math(EXPR PROGRAM "${ADDRESS} + 0x4000" OUTPUT_FORMAT HEXADECIMAL)  # kBootCodeSize
+    set(MERGE
+      COMMAND "${CMAKE_OBJCOPY}" -O binary --gap-fill 0xFF --pad-to ${PROGRAM} "$<TARGET_FILE:${BOOT}>" "${IMAGE}.boot"
+      COMMAND "${CMAKE_COMMAND}" -E rename "${IMAGE}.bin" "${IMAGE}.program"
+      COMMAND "${CMAKE_COMMAND}" -E cat "${IMAGE}.boot" "${IMAGE}.program" > "${IMAGE}.bin"
+      COMMAND "${CMAKE_OBJCOPY}" -I binary -O ihex --change-addresses ${ADDRESS} "${IMAGE}.bin" "${IMAGE}.hex"
+      COMMAND "${CMAKE_COMMAND}" -E rm "${IMAGE}.boot" "${IMAGE}.program")
+  endif()
   add_custom_command(OUTPUT "${IMAGE}.elf" "${IMAGE}.bin" "${IMAGE}.hex"
     COMMAND "${CMAKE_OBJCOPY}" -O binary "$<TARGET_FILE:${NAME}>" "${IMAGE}.unstamped"
     COMMAND "${STAMP_IMAGE}" "${IMAGE}.unstamped" "${IMAGE}.header"
@@ -54,6 +85,7 @@ function(axis_image NAME)
     COMMAND "${CMAKE_OBJCOPY}" -O binary "${IMAGE}.elf" "${IMAGE}.bin"
     COMMAND "${CMAKE_OBJCOPY}" -O ihex "${IMAGE}.elf" "${IMAGE}.hex"
     COMMAND "${CMAKE_COMMAND}" -E rm "${IMAGE}.unstamped" "${IMAGE}.header"
-    DEPENDS ${NAME} stamp_program "${STAMP_IMAGE}")
+    ${MERGE}
+    DEPENDS ${NAME} ${BOOT} stamp_program "${STAMP_IMAGE}")
   add_custom_target(${NAME}_image ALL DEPENDS "${IMAGE}.elf")
 endfunction()

@@ -9,7 +9,7 @@ option(AXIS_UNITY "Compile the sources of a folder together" OFF)
 # Folders of AXIS_HOT_FOLDERS compute, as sources by themselves do: -O2. The others read, write and wait, and -O1 compiles
 # them in two thirds of the time.
 set(AXIS_UNITY_SOURCES 30)
-set(AXIS_HOT_FOLDERS sim effects compare diagnose effort infer simulated_board)
+set(AXIS_HOT_FOLDERS sim effects compare diagnose effort infer scale simulated_board)
 function(axis_unity OUT)
   if(NOT AXIS_UNITY)
     set(${OUT} ${ARGN} PARENT_SCOPE)

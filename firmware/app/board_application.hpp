@@ -35,6 +35,7 @@ template <typename Scalar, hal::Board Board>
 class BoardApplication {
  public:
   using Number = Scalar;
+  using BoardType = Board;
   using Axes = AxisGroup<Scalar, typename Board::AxisType, Board::kAxes>;
   using Flash = std::remove_reference_t<decltype(std::declval<Board&>().parameter_flash())>;
   using Store = ParameterStore<Flash>;
@@ -129,11 +130,11 @@ class BoardApplication {
     return status_of(result);
   }
 
-  /// Likewise, of a part of a table; while no drive is enabled.
+  /// Likewise, of a part of a table or an image; while no drive is enabled.
   template <typename Write>
-  auto write_store(Write write) {
+  auto write_flash(Write write) {
     const typename Board::ControlShutOut guard;
-    return while_stalled([&] { return write(store_); });
+    return while_stalled(write);
   }
 
   /// Makes the staged table the axis's, switches it, and saves it with the parameters; while no drive is enabled.
@@ -141,7 +142,7 @@ class BoardApplication {
     staged_ = active_;
     staged_.set(*place_of(ParameterKey::of_axis(store_.staged_table().axis, pitch_check::kSwitch)), on ? 1.0F : 0.0F);
     const bool was_usable = store_is_usable();
-    const SaveResult result = write_store([&](Store& store) { return store.finish_table(staged_, crc); });
+    const SaveResult result = write_flash([&] { return store_.finish_table(staged_, crc); });
     if (result == SaveResult::saved) {
       active_ = staged_;
       saved_crc_ = active_crc_ = set_crc(active_);

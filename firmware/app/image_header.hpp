@@ -28,8 +28,12 @@ struct ImageHeader {
 static_assert(sizeof(ImageHeader) == 80 && std::is_trivially_copyable_v<ImageHeader>);
 
 inline constexpr std::uint32_t kImageMagic = 0x53495841;  // "AXIS"
-inline constexpr std::uint16_t kImageLayout = 1;
+inline constexpr std::uint16_t kImageLayout =
+    2;  ///< runs behind boot code, where a board has one (1: at the start of flash)
 inline constexpr std::size_t kImageHeaderOffset = 512;  // the vector table of the STM32F405 has 392 bytes
+
+/// Where a board has boot code, programs lie this far behind the start of flash: sector 0 of the STM32F405.
+inline constexpr std::size_t kBootCodeSize = 16 * 1024;
 
 enum class ImageState : std::uint8_t { whole, no_header, wrong_size, wrong_crc };
 

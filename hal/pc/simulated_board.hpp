@@ -40,6 +40,8 @@ class SimulatedBoardOf {
   SimulatedClock& clock() { return clock_; }
   SimulatedUsb& usb() { return usb_; }
   SimulatedFlash& parameter_flash() { return flash_; }
+  /// The program's place and two slots, as large as the F405's.
+  SimulatedFlash& image_flash() { return image_flash_; }
 
   void set_control_rate(std::uint32_t rate_Hz) { control_period_us_ = 1'000'000 / rate_Hz; }
   void begin_stall() {}
@@ -75,6 +77,7 @@ class SimulatedBoardOf {
   SimulatedClock clock_;
   SimulatedUsb usb_{16};
   SimulatedFlash flash_{4, 16384, 4};  // two full tables of pitch errors fit
+  SimulatedFlash image_flash_{3, 112 * 1024, 4};
   std::uint32_t control_period_us_ = 1000;
   bool wants_restart_ = false;
 };

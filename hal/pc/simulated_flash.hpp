@@ -27,9 +27,12 @@ inline constexpr TornState kTornStates[] = {TornState::untouched, TornState::com
 
 class SimulatedFlash {
  public:
-  /// All erased. `program_size` divides `sector_size`.
-  SimulatedFlash(std::size_t sector_count, std::size_t sector_size, std::size_t program_size)
-      : sectors_(sector_count, std::vector<std::byte>(sector_size, kErased)), program_size_(program_size) {}
+  /// All erased. `program_size` divides `sector_size`; so does `erase_parts`, into as many as are erased one by one.
+  SimulatedFlash(std::size_t sector_count, std::size_t sector_size, std::size_t program_size,
+                 std::size_t erase_parts = 1)
+      : sectors_(sector_count, std::vector<std::byte>(sector_size, kErased)),
+        program_size_(program_size),
+        erase_parts_(erase_parts) {}
 
   std::size_t sector_count() const { return sectors_.size(); }
   std::size_t sector_size() const { return sectors_.empty() ? 0 : sectors_.front().size(); }
@@ -59,11 +62,13 @@ class SimulatedFlash {
 
   FlashResult erase(std::size_t sector) {
     if (sector >= sectors_.size()) return FlashResult::out_of_range;
-    change(sectors_[sector], std::vector<std::byte>(sector_size(), kErased));
+    const std::size_t size = sector_size() / erase_parts_;
+    for (std::size_t part = 0; part < erase_parts_; ++part)
+      change(std::span(sectors_[sector]).subspan(part * size, size), std::vector<std::byte>(size, kErased));
     return FlashResult::ok;
   }
 
-  /// Power goes during the operation after `operations` more: one erase of a sector, or one unit programmed.
+  /// Power goes during the operation after `operations` more: one erase of a sector's part, or one unit programmed.
   void cut_power_after(std::size_t operations, TornState torn, std::uint32_t seed) {
     cut_ = Cut{operations_ + operations, torn, seed};
   }
@@ -108,7 +113,7 @@ class SimulatedFlash {
   }
 
   std::vector<std::vector<std::byte>> sectors_;
-  std::size_t program_size_;
+  std::size_t program_size_, erase_parts_;
   std::size_t operations_ = 0;
   std::optional<Cut> cut_;
 };

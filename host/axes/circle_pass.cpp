@@ -66,6 +66,7 @@ PlaneRecord one_record(const Record& record) {
   const double mm = record.kind == sim::DriveKind::linear ? 1e3 : 1.0;
   plane.x = scaled(record.x, mm);
   plane.x_ref = scaled(record.x_ref, mm);
+  plane.x2 = scaled(record.x2, mm);
   const auto take = [&](const std::string& name, std::vector<double>& into) {
     for (const auto& [unit, factor] : {std::pair("_mm", 1.0), std::pair("_m", 1e3)})
       if (const auto* values = column(record, name + unit)) {
@@ -75,7 +76,6 @@ PlaneRecord one_record(const Record& record) {
   };
   take("y", plane.y);
   take("y_ref", plane.y_ref);
-  take("x2", plane.x2);
   take("y2", plane.y2);
   take_ballbar(record, plane);
   return plane;

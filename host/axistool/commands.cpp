@@ -31,6 +31,7 @@ void add_all_commands(CLI::App& app) {
   add_effects(app);
   add_demo(app);
   add_flash(app);
+  add_update(app);
   add_info(app);
   add_list(app);
   add_hil(app);
@@ -53,6 +54,7 @@ void add_all_commands(CLI::App& app) {
   add_run(app);
   add_circle(app);
   add_pitch(app);
+  add_dial(app);
   add_faults(app);
   add_clear_faults(app);
   add_bench(app);

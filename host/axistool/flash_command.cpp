@@ -107,6 +107,11 @@ void run_on_hardware(const host::FlashRequest& request, const host::ImageFile& i
 void run(const FlashArguments& arguments) {
   const host::ImageFile image = host::read_image_file(arguments.image);
   host::check_image_for(image, arguments.board);
+  if (image.begin == 0)
+    throw host::Failure(host::ExitCode::bad_input,
+                        fmt::format("{}: an image without the boot code in front of it does not start: give the .bin "
+                                    "file that `make firmware` leaves",
+                                    arguments.image));
   const ScratchFolder scratch;
   host::FlashRequest request = request_of(arguments, image);
   request.read_back = scratch.file("read-back.bin");

@@ -24,7 +24,8 @@ struct Options {
 
 constexpr const char* kFooter =
     "Columns of a record, with their units: t_s; u_V or i_A; x_mm or x_m; w_rad_s (rotary) or v_m_s, v_mm_s (linear);\n"
-    "x_ref_mm, x_ref_m, w_ref_rad_s, v_ref_m_s, temp_C. Other columns are kept and ignored.\n"
+    "x2_mm, x2_m (the table, by a scale); x_ref_mm, x_ref_m, w_ref_rad_s, v_ref_m_s, temp_C. Other columns are kept\n"
+    "and ignored.\n"
     "A mapping may scale and shift (t_s=t_ms*0.001, x_mm=counts*0.00122-5, x_m=-pos) and name a column by its number\n"
     "(x_mm=#3 or x_mm=3*0.5), one column of a matrix (x_m=log(2)), a field (x_m=run.pos), separate time stamps\n"
     "(x_m=pos@t_pos, with --resample) or the row number (t_s=row*0.001). Quote names with spaces: u_V=\"Command "

@@ -11,6 +11,7 @@
 #include "host/axistool/json_output.hpp"
 #include "host/device/board_report.hpp"
 #include "host/device/image_file.hpp"
+#include "host/device/image_update.hpp"
 #include "host/device/pitch_table.hpp"
 
 namespace axistool {
@@ -56,13 +57,16 @@ void describe_board(const InfoArguments& arguments) {
   for (std::uint8_t axis = 0; known != nullptr && axis < status.axis.size(); ++axis)
     tables.push_back(host::pitch_text(host::read_pitch(board, axis), known->axis(axis).get<"pitch.on">(),
                                       host::count_mm_of(*known, axis)));
+  const auto slots = host::read_slots(board);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::board_json(board.name(), identity, status, timing, known);
     for (std::size_t axis = 0; axis < tables.size(); ++axis) document["axes"][axis]["pitch_table"] = tables[axis];
+    if (slots) document["slots"] = host::slots_json(*slots);
     write_json(document, arguments.json);
   }
   if (!talks(arguments)) return;
   fmt::print("{}", host::board_text(board.name(), identity, status, timing, known));
+  if (slots) fmt::print("{}", host::slots_text(*slots));
   for (std::size_t axis = 0; axis < tables.size(); ++axis)
     if (!tables[axis].empty()) fmt::print("pitch {}      {}\n", firmware::kAxisNames[axis], tables[axis]);
 }

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "firmware/app/parameters/parameter_values.hpp"
+#include "host/atomic_file.hpp"
 #include "host/axistool/command_options.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/external_plant/external_plant.hpp"
@@ -18,6 +19,7 @@
 #include "host/open_board.hpp"
 #include "host/output_target.hpp"
 #include "host/own_folder.hpp"
+#include "host/simulated_board/simulated_image.hpp"
 #include "host/simulated_board/socket_board.hpp"
 #include "host/simulated_board/usb_board.hpp"
 #include "host/simulated_board/usual_wiring.hpp"
@@ -34,7 +36,7 @@ struct SimArguments {
   std::uint64_t seed = 1;
   double patience_s = 10.0;
   bool forget = false, usb = false, as_plant = false;
-  std::string printed;
+  std::string printed, image, image_version = "next";
 };
 
 std::atomic<bool> stop = false;
@@ -90,6 +92,11 @@ void print_drive(const SimArguments& arguments) {
 void run(SimArguments arguments) {
   if (!arguments.printed.empty()) {
     print_drive(arguments);
+    return;
+  }
+  if (!arguments.image.empty()) {
+    const std::vector<std::byte> image = host::simulated_image(arguments.image_version);
+    host::write_file_atomically(arguments.image, {reinterpret_cast<const char*>(image.data()), image.size()});
     return;
   }
   if (arguments.as_plant) {
@@ -170,6 +177,13 @@ void add_sim(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "seed of the sensors' noise")->capture_default_str();
   command->add_option("--print-drive", arguments->printed,
                       "print the data sheet of this axis (x, y, …), for --drive of other commands, and end");
+  CLI::Option* image = add_output(*command, "--write-image", arguments->image,
+                                  "write an image for the simulated board to this file, to try `update` with, and end");
+  command
+      ->add_option("--image-version", arguments->image_version,
+                   fmt::format("version of that image; '{}' makes one that does not start", host::kHangingVersion))
+      ->capture_default_str()
+      ->needs(image);
   command->footer(
       "Each axis has a home switch 25 mm from its power-up position and, if rotary, one index pulse per turn.\n"
       "Examples:\n"

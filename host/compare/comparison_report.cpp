@@ -13,6 +13,7 @@
 #include "host/compare/free_run.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/report/text_format.hpp"
+#include "host/scale/table_figures.hpp"
 
 namespace host {
 
@@ -276,6 +277,8 @@ std::string comparison_text(std::span<const ComparedModel> models, const Termina
       text += fmt::format("Free run of {} from its first {} samples: position off by {:.3g} {} (RMS).\n",
                           file_name(record.path), kGivenSamples, *record.free_run,
                           first.model.data.kind == sim::DriveKind::rotary ? "mm" : "m");
+  if (!first.comparison.table.empty())
+    text += "\n" + wrapped(table_words(first.comparison.table), terminal.columns) + "\n";
   text +=
       "\n" + terminal_bars(bars_of(first.comparison.where, "regime", "Share of the squared error by regime"), terminal);
   Table regions;
@@ -314,6 +317,7 @@ Report comparison_report(std::span<const ComparedModel> models, const Focus& foc
   report.add(error_table(models));
 
   report.add(prediction_traces(models, record_in(focus, comparison), focus.stretch));
+  add_table_figures(comparison.table, report);
   add_missing_effort(models, report, focus);
   add_where_it_fails(models, report);
   return report;

@@ -46,6 +46,17 @@ double factor_in_file(const Record& record, std::vector<double> Record::*channel
   return rotary ? 1.0 : 1e3;
 }
 
+/// What the table's sensor reads; its zero, which no model knows, is the record's own.
+std::vector<double> readings_of(std::vector<double> table, const Record& record, const sim::DataSheet& data) {
+  double zero = 0.0;
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    table[k] += data.load_encoder_error(table[k]);
+    zero += (record.x2[k] - table[k]) / static_cast<double>(table.size());
+  }
+  for (double& reading : table) reading += zero;
+  return table;
+}
+
 }  // namespace
 
 ModelComparison compare_model(const sim::DriveDescription& model, const Measurements& measured, const RecordSet& set) {
@@ -67,6 +78,7 @@ ModelComparison compare_model(const sim::DriveDescription& model, const Measurem
   comparison.log_faults = measured.log();
   comparison.relative_error = inverse_error(model, records);
   comparison.where = error_regions(model, set);
+  comparison.table = study_table(model, measured.training_records(), {});
   return comparison;
 }
 
@@ -85,6 +97,7 @@ Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord p
   const sim::DriveState start = restart_states(drive, prepared).front();
   prediction.x.front() = drive.encoder(start);
   prediction.w.front() = drive.tachometer(start);
+  if (!prediction.table.empty()) prediction.table.front() = drive.table(start, prepared.record->t_s.front());
   return prediction;
 }
 
@@ -93,7 +106,7 @@ std::vector<std::pair<std::string, std::vector<double>>> predicted_columns(const
   const Record& record = *prepared.record;
   Prediction prediction = predict_all_rows(model, prepared);
   std::vector<std::pair<std::string, std::vector<double>>> columns{{"t_s", record.t_s}};
-  for (const auto channel : {&Record::w, &Record::x}) {
+  for (const auto channel : {&Record::w, &Record::x, &Record::x2}) {
     if ((record.*channel).empty()) continue;
     columns.emplace_back(name_in_file(record, channel), record.*channel);
     for (double& value : columns.back().second) value *= factor_in_file(record, channel);
@@ -101,6 +114,8 @@ std::vector<std::pair<std::string, std::vector<double>>> predicted_columns(const
   const bool rotary = model.data.kind == sim::DriveKind::rotary;
   columns.emplace_back(rotary ? "x_pred_mm" : "x_pred_m", std::move(prediction.x));
   columns.emplace_back(rotary ? "w_pred_rad_s" : "v_pred_m_s", std::move(prediction.w));
+  if (!prediction.table.empty())
+    columns.emplace_back(rotary ? "x2_pred_mm" : "x2_pred_m", readings_of(prediction.table, record, model.data));
   return columns;
 }
 
@@ -126,18 +141,21 @@ nlohmann::json comparison_json(const ModelComparison& comparison) {
          {"combined", record.error.combined},
          {"relative_error", number_or_null(record.relative_error)},
          {"free_run", {{"given_samples", kGivenSamples}, {"position_rms", number_or_null(record.free_run)}}}});
-  return {{"format", "axis-comparison/1"},
-          {"relative_error", number_or_null(comparison.relative_error)},
-          {"window_s", comparison.error.window_s},
-          {"error", to_json(comparison.error)},
-          {"channels", channels_json(comparison.error)},
-          {"combined", comparison.error.combined},
-          {"without_effects", {{"kinds", comparison.effects}, {"times", comparison.without_effects}}},
-          {"where", error_regions_json(comparison.where)},
-          {"where_in_words", where_it_fails(comparison.where)},
-          {"log", log_faults_json(comparison.log_faults)},
-          {"log_faults", log_faults_json(comparison.log_faults)},
-          {"records", std::move(records)}};
+  nlohmann::json document = {
+      {"format", "axis-comparison/1"},
+      {"relative_error", number_or_null(comparison.relative_error)},
+      {"window_s", comparison.error.window_s},
+      {"error", to_json(comparison.error)},
+      {"channels", channels_json(comparison.error)},
+      {"combined", comparison.error.combined},
+      {"without_effects", {{"kinds", comparison.effects}, {"times", comparison.without_effects}}},
+      {"where", error_regions_json(comparison.where)},
+      {"where_in_words", where_it_fails(comparison.where)},
+      {"log", log_faults_json(comparison.log_faults)},
+      {"log_faults", log_faults_json(comparison.log_faults)},
+      {"records", std::move(records)}};
+  if (!comparison.table.empty()) document["table"] = table_json(comparison.table);
+  return document;
 }
 
 }  // namespace host

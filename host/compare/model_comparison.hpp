@@ -11,6 +11,7 @@
 #include "host/compare/error_regions.hpp"
 #include "host/evidence/log_faults.hpp"
 #include "host/record/measurements.hpp"
+#include "host/scale/table_study.hpp"
 
 namespace host {
 
@@ -31,6 +32,7 @@ struct ModelComparison {
   double without_effects = 1.0;
   std::vector<ErrorRegion> where;
   std::vector<LogFault> log_faults;
+  TableStudy table;  ///< of all records together; empty where no sensor is on the table
 };
 
 /// Compares on the figure_set() of the training records; `model` has its sensors (with_measured_sensors).
@@ -39,7 +41,8 @@ ModelComparison compare_model(const sim::DriveDescription& model, const Measurem
 /// Prediction of every row: the rows after the last whole window by a shorter one, row 0 as the restart state reads.
 Prediction predict_all_rows(const sim::DriveDescription& model, PreparedRecord prepared);
 
-/// t_s, the record's own speed and position columns, x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s).
+/// t_s, the record's own speed and position columns, x_pred_mm and w_pred_rad_s (x_pred_m, v_pred_m_s);
+/// where it has the table's position also that, and x2_pred_mm (x2_pred_m), which begins where the table's sensor does.
 std::vector<std::pair<std::string, std::vector<double>>> predicted_columns(const sim::DriveDescription& model,
                                                                            const PreparedRecord& prepared);
 

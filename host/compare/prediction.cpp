@@ -131,6 +131,7 @@ void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, s
       drive.step(run.state, prepared.u_V[row], prepared.record->t_s[row], prepared.period_s);
       run.x[k] = drive.encoder(run.state);
       run.w[k] = drive.tachometer(run.state);
+      if (run.table != nullptr) run.table[k] = drive.table(run.state, prepared.record->t_s[row] + prepared.period_s);
     }
   }
 }
@@ -138,11 +139,14 @@ void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, s
 void predict(const sim::Drive& drive, const PreparedRecord& prepared, Prediction& out, std::size_t stride) {
   out.x.resize(prepared.record->size());
   out.w.resize(prepared.record->size());
+  const bool has_table = prepared.record->has_table_position();
+  if (has_table) out.table.resize(prepared.record->size());
   Restarts restarts(drive, prepared, stride);
   std::vector<WindowRun> runs;
   for (std::size_t index = 0; index < prepared.windows.size(); index += stride) {
     const Window& window = prepared.windows[index];
-    runs.push_back({&window, restarts.at(index), &out.x[window.begin + 1], &out.w[window.begin + 1]});
+    runs.push_back({&window, restarts.at(index), &out.x[window.begin + 1], &out.w[window.begin + 1],
+                    has_table ? &out.table[window.begin + 1] : nullptr});
     if (runs.size() < kSideBySide && index + stride < prepared.windows.size()) continue;
     run_side_by_side(drive, prepared, runs);
     runs.clear();

@@ -13,8 +13,9 @@ namespace host {
 
 /// Predicted channels, one value a row; rows that no window reaches are left as they were.
 struct Prediction {
-  std::vector<double> x;  ///< encoder reading without quantisation
-  std::vector<double> w;  ///< tachometer reading without noise
+  std::vector<double> x;      ///< encoder reading without quantisation
+  std::vector<double> w;      ///< tachometer reading without noise
+  std::vector<double> table;  ///< travel of the table; empty unless the record has it
 };
 
 /// Predicts every `stride`-th window. `out` is resized when needed, so that it can be used again.
@@ -25,12 +26,13 @@ std::vector<sim::DriveState> restart_states(const sim::Drive& drive, const Prepa
                                             std::size_t stride = 1);
 
 /// One window that a drive runs through from a state of its own. What the sensors would read goes to `x` and `w`, which
-/// have room for the window's length.
+/// have room for the window's length; the table's travel to `table`, where that is asked for.
 struct WindowRun {
   const Window* window;
   sim::DriveState state;
   double* x;
   double* w;
+  double* table = nullptr;
 };
 
 /// Runs are interleaved: the processor overlaps them, where a single run would wait for its last result. This doubles

@@ -7,12 +7,10 @@
 #include <cstring>
 #include <random>
 
-#include "firmware/app/parameters/parameter_check.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
-#include "host/device/board_report.hpp"
+#include "host/device/reply_status.hpp"
 #include "host/exit_codes.hpp"
 #include "host/link/device_users.hpp"
-#include "host/parameters/parameter_names.hpp"
 
 namespace host {
 
@@ -28,117 +26,6 @@ using std::chrono::steady_clock;
 constexpr milliseconds kSavePatience{5000};
 
 [[noreturn]] void fail(ExitCode code, const std::string& text) { throw Failure(code, text); }
-
-[[noreturn]] void throw_problem(const Message& reply) {
-  firmware::RefusedValuePayload problem;
-  if (!reply.get(problem)) fail(ExitCode::protocol, "the board refuses a value but does not say which");
-  const firmware::ParameterKey key{problem.key};
-  if (reply.type == firmware::reply_to(MessageType::start_excitation))
-    fail(ExitCode::refused,
-         fmt::format("the axis is not fitted, and experiments on it must stay within {} = {:g}: choose a smaller box, "
-                     "or raise the limit if the machine allows it (axistool set-params)",
-                     full_name(key), std::bit_cast<float>(problem.bits)));
-  if (reply.type == firmware::reply_to(MessageType::jog))
-    fail(ExitCode::refused,
-         fmt::format("the axis is not homed, and jogs at most at {} = {:g}: `axistool home` first, or jog slower",
-                     full_name(key), std::bit_cast<float>(problem.bits)));
-  if (reply.status == Status::drive_enabled)
-    fail(ExitCode::refused,
-         fmt::format("{} may change only while all drives are disabled: `axistool disable`", full_name(key)));
-  if (reply.status == Status::unknown_parameter)
-    fail(ExitCode::protocol,
-         fmt::format("the board does not know {}: flash the firmware that matches this axistool", full_name(key)));
-  fail(ExitCode::bad_input, describe(key, problem.kind, std::bit_cast<float>(problem.bits)));
-}
-
-[[noreturn]] void throw_outside_travel(const Message& reply) {
-  firmware::RefusedValuePayload limit;
-  if (!reply.get(limit)) fail(ExitCode::refused, "the motion would leave the axis's travel");
-  const firmware::ParameterKey key{limit.key};
-  const auto place = firmware::place_of(key);
-  const float value = std::bit_cast<float>(limit.bits);
-  fail(ExitCode::refused,
-       fmt::format("the motion would lead beyond {} = {}: choose a target inside, or move the limit if the machine has "
-                   "the room",
-                   full_name(key), place ? value_text(info_at(*place), value) : fmt::format("{}", value)));
-}
-
-/// "axis y: " where the reply names the axis that refuses.
-std::string refusing_axis(const Message& reply) {
-  firmware::RefusedAxisPayload refused;
-  const bool is_named = reply.type == firmware::reply_to(MessageType::enable) && reply.get(refused) &&
-                        refused.axis < firmware::kAxisNames.size();
-  return is_named ? fmt::format("axis {}: ", firmware::kAxisNames[refused.axis]) : "";
-}
-
-/// Throws what a status other than ok means; `others` may name the programs that have the board open too.
-void require_ok(const Message& reply, const std::string& others = "") {
-  switch (reply.status) {
-    case Status::ok:
-      return;
-    case Status::bad_value:
-    case Status::unknown_parameter:
-      throw_problem(reply);
-    case Status::drive_enabled:
-      if (reply.length != 0) throw_problem(reply);
-      fail(ExitCode::refused, "refused while a drive is enabled: `axistool disable` first");
-    case Status::wrong_state:
-      fail(ExitCode::refused,
-           refusing_axis(reply) +
-               "the axis is not in a state that allows this: `axistool info` shows it; enable it first, and let it "
-               "come to rest");
-    case Status::not_standing:
-      fail(ExitCode::refused, refusing_axis(reply) + "it moves: wait until it is at rest, then enable it");
-    case Status::outside_travel:
-      throw_outside_travel(reply);
-    case Status::not_fitted:
-      fail(ExitCode::refused,
-           refusing_axis(reply) +
-               "the axis is not fitted: give it the parameters of a design (axistool design, axistool set-params)");
-    case Status::others_motion:
-      fail(ExitCode::refused,
-           "another program moves the axes" + others +
-               ". Or stop them (`axistool disable`), or take the motion over (--take-over of enable, jog, move)");
-    case Status::restarting:
-      fail(ExitCode::refused, "the board is about to restart: try again in a second");
-    case Status::others_capture:
-      fail(ExitCode::refused,
-           "another program captures: wait until it has ended (a program that died holds a capture for two seconds)");
-    case Status::brown_out_off:
-      fail(ExitCode::refused, brown_out_problem());
-    case Status::not_homed:
-      fail(ExitCode::refused, "the axis is not homed: `axistool home` first (or move it --relative, or jog it)");
-    case Status::homing_mode:
-      fail(ExitCode::refused,
-           "homing.mode selects how to home: with 0 the operator defines it (`axistool home AXIS --here`), otherwise "
-           "the axis searches for it (without --here)");
-    case Status::unreachable:
-      fail(ExitCode::refused, "the move would last too long: raise limits.velocity, or split it");
-    case Status::device_fault:
-      fail(ExitCode::device_fault,
-           refusing_axis(reply) + "the board reports a fault: `axistool faults` shows cause and remedy");
-    case Status::flash_failed:
-      fail(ExitCode::device_fault, "the flash rejects the parameters; the former ones remain saved");
-    case Status::not_verified:
-      fail(ExitCode::device_fault, "the saved parameters read back differently; the former ones remain saved");
-    case Status::wrong_version:
-      fail(ExitCode::protocol, "the board speaks another version of the protocol: flash the firmware of this axistool");
-    case Status::damaged:
-      fail(ExitCode::protocol, "a report arrived damaged at the board: try again, and another cable or port");
-    case Status::set_differs:
-      fail(ExitCode::protocol, "the board staged other values than were sent: is another program setting parameters?");
-    case Status::unknown_request:
-    case Status::no_room:
-    case Status::malformed:
-    case Status::no_such_row:
-      break;
-  }
-  fail(ExitCode::protocol,
-       fmt::format("the board does not understand request {:#04x} (status {}): flash the firmware of "
-                   "this axistool",
-                   static_cast<unsigned>(reply.type) & ~unsigned{firmware::kReplyBit},
-                   static_cast<unsigned>(reply.status)));
-}
 
 std::random_device& randomness() {
   thread_local std::random_device device;
@@ -447,6 +334,16 @@ std::optional<firmware::FaultRowPayload> BoardClient::fault_row(std::uint8_t axi
   if (reply.status == Status::no_such_row) return std::nullopt;
   require_ok(reply);
   return payload_of<firmware::FaultRowPayload>(reply);
+}
+
+std::optional<firmware::SlotPayload> BoardClient::read_slot(std::uint8_t slot) {
+  Message message;
+  message.type = MessageType::read_slot;
+  message.put(firmware::ReadSlotRequest{slot});
+  const Message reply = reply_to(message, patience_);
+  if (reply.status == Status::unknown_request) return std::nullopt;
+  require_ok(reply);
+  return payload_of<firmware::SlotPayload>(reply);
 }
 
 FaultLog BoardClient::fault_log() {

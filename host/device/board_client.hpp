@@ -16,6 +16,7 @@
 #include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
+#include "firmware/app/protocol/update_messages.hpp"
 #include "firmware/app/store/stored_set.hpp"
 #include "host/link/report_link.hpp"
 
@@ -96,6 +97,9 @@ class BoardClient {
   std::optional<firmware::FaultRowPayload> fault_row(std::uint8_t axis, std::uint16_t row);
   /// Empty on a board whose firmware has none.
   FaultLog fault_log();
+
+  /// 0 the program that runs, 1 and 2 the slots of images. Empty on a board that cannot be updated.
+  std::optional<firmware::SlotPayload> read_slot(std::uint8_t slot);
 
   /// The reply to any other request. Throws where its status is not ok.
   firmware::Message exchange(firmware::Message message, std::chrono::milliseconds patience);

@@ -14,6 +14,7 @@
 #include "host/diagnose/judgement.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/search_by_steps.hpp"
+#include "host/diagnose/table_evidence.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/evidence/measured_sensors.hpp"
@@ -234,7 +235,14 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   if (timing_explains_delays(measured.training_records()))
     for (const sim::EffectInfo* effect : sim::catalogue())
       if (acts_late(*effect)) absent.emplace_back(effect->kind);
+  const std::shared_ptr<const TableStudy> table =
+      before != nullptr ? before->table
+                        : std::make_shared<TableStudy>(
+                              study_table(given, measured.training_records(), measured.validation_records()));
+  if (table)
+    for (std::string& kind : absent_by_table(*table)) absent.push_back(std::move(kind));
   Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent);
+  diagnosis.table = table;
   diagnosis.given_error = diagnosis.rows.error_of(given);
   diagnosis.base_error = diagnosis.moves_enough ? diagnosis.rows.error_of(diagnosis.base) : diagnosis.given_error;
   diagnosis.best_error =
@@ -244,6 +252,8 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
   name_coordinate(diagnosis);
   fill_found(diagnosis);
+  if (table && table->empty()) diagnosis.verdict.next_experiment += advice_on_a_scale(diagnosis.verdict);
+  if (table && before == nullptr) settle_by_table(*table, diagnosis);
   for (const DataSheetConflict& conflict : data_sheet_conflicts(diagnosis.best, diagnosis.training)) {
     diagnosis.verdict.data_sheet.push_back(conflict.words);
     diagnosis.verdict.explanation += " " + conflict.words;

@@ -18,6 +18,7 @@
 namespace host {
 
 struct EffortScreen;
+struct TableStudy;
 
 enum class Status { missing, adequate, parameters, ambiguous, unexplained, insufficient_data };
 
@@ -98,6 +99,7 @@ struct Diagnosis : PreparedSets {
   DiagnosisVerdict verdict;
   sim::DriveDescription best;                  ///< with the effects of the verdict; the base where there are none
   std::shared_ptr<const EffortScreen> screen;  ///< what plain least squares of the effort saw; may be absent
+  std::shared_ptr<const TableStudy> table;     ///< what a sensor on the table shows; empty where there is none
   bool by_effort = false;                      ///< that decided: errors are then of the effort over its sensors' noise
 
   /// Whether candidates were compared by the error that compare prints.

@@ -7,6 +7,7 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/evidence/log_faults.hpp"
 #include "host/identify/effort_timing.hpp"
+#include "host/scale/table_study.hpp"
 #include "sim/catalogue.hpp"
 #include "sim/curve.hpp"
 #include "sim/harmonic.hpp"
@@ -181,6 +182,7 @@ nlohmann::json to_json(const Diagnosis& diagnosis) {
       {"verdict", verdict_json(diagnosis.verdict)}};
   document["found"] = document["verdict"]["found"];
   if (!diagnosis.residual.dependences.empty()) document["residual"] = residual_json(diagnosis.residual);
+  if (diagnosis.table && !diagnosis.table->empty()) document["table"] = table_json(*diagnosis.table);
   if (diagnosis.screen) document["error"]["effort_screen"] = effort_screen_json(*diagnosis.screen);
   if (diagnosis.screen && diagnosis.screen->repeatable)
     document["error"]["repeatable"] = diagnosis.screen->repeatable->share;

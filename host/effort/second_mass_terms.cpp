@@ -163,7 +163,7 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
     for (double free = kFewCounts * model.data.encoder_resolution; free > 0.0 && free <= most; free *= 1.5)
       for (const double resonance_Hz : {0.5 * highest_Hz, highest_Hz, 2.0 * highest_Hz})
         for (const double damping : {0.3, 0.6})
-          for (const double part : {0.0, 0.5, 1.5})
+          for (const double part : {0.15, 0.5, 1.5})
             loads.push_back({resonance_Hz, damping, part * usual, free / rows.lead});
   }
   const char* const unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";

@@ -211,7 +211,7 @@ void MeasurementGate::share_zero(std::vector<Record>& training, std::vector<Reco
         "them. Effects that depend on position are compared by amplitude only",
         file_name(record), other.shift, rotary ? "mm" : "m", file_name(*records[other.reference]));
     if (!options_.as_logged) {
-      for (auto* column : {&record.x, &record.x_ref})
+      for (auto* column : {&record.x, &record.x2, &record.x_ref})
         for (double& x : *column) x += other.shift;
       message += "; moved to that zero here";
     }

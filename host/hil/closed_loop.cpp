@@ -63,6 +63,7 @@ void ClosedLoop::log(const firmware::AxisTelemetry<float>& seen) {
   record_.t_s.push_back(next_time(record_));
   record_.u_V.push_back(seen.dac_code * data_.dac_resolution_V);
   record_.x.push_back(static_cast<double>(seen.encoder_counts) * data_.encoder_resolution);
+  if (const auto table = plant_.read_load_encoder()) record_.x2.push_back(*table);
   if (data_.tach_noise_variance) record_.w.push_back(static_cast<double>(seen.tachometer_velocity));
   record_.x_ref.push_back(firmware::counts_from<double>(0, seen.reference) * data_.encoder_resolution);
   record_.w_ref.push_back(static_cast<double>(seen.reference_velocity));

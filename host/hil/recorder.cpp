@@ -23,6 +23,7 @@ void Recorder::take() {
     record.t_s.push_back(next_time(record));
     record.u_V.push_back(seen.dac_code * data.dac_resolution_V);
     record.x.push_back(static_cast<double>(seen.encoder_counts) * data.encoder_resolution);
+    if (const auto table = machine_.plant(i).read_load_encoder()) record.x2.push_back(*table);
     if (data.tach_noise_variance) record.w.push_back(static_cast<double>(seen.tachometer_velocity));
     record.x_ref.push_back(firmware::counts_from<double>(0, seen.reference) * data.encoder_resolution);
     record.w_ref.push_back(static_cast<double>(seen.reference_velocity));

@@ -84,12 +84,14 @@ class Evidence {
   Eigen::VectorXd gains(const EvidenceFit& fit, const Eigen::MatrixXd& further, const std::vector<int>& sign,
                         const Eigen::VectorXd& scales) const;
 
-  const Memory& memory() const { return memory_; }
-  const Eigen::VectorXd& rows() const { return y_; }
-
- private:
+  /// Each row less `correlation` times the one before it, along the runs.
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, double correlation) const;
 
+  const Memory& memory() const { return memory_; }
+  const Eigen::VectorXd& rows() const { return y_; }
+  double least_noise() const { return least_noise_; }
+
+ private:
   Eigen::VectorXd y_;
   std::vector<RowRun> runs_;
   Memory memory_;

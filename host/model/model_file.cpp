@@ -103,9 +103,19 @@ class ModelReader {
     require_fields(*drive);
     for (const DataSheetField& field : kDataSheetFields)
       if (field.belongs_to(model_.data.kind)) read_field(*drive, field);
+    if (const toml::table* scale = table_at(*drive, "load_encoder")) check_load_encoder(*scale);
     if (const toml::table* tach = table_at(*drive, "tach")) read_tachometer(*tach);
     const bool gives_volts = drive->contains(kForcePerVolt) || drive->contains("amplifier_gain_A_per_V");
     if (!gives_volts) take_current_alone(*drive);
+  }
+
+  void check_load_encoder(const toml::table& scale) const {
+    const std::string_view unit = model_.data.kind == DriveKind::rotary ? "mm" : "m";
+    if (!model_.data.has_load_encoder())
+      fail(line_of(scale), "missing field resolution_{} in [drive.load_encoder]; add one count of the scale", unit);
+    if ((model_.data.load_encoder_cyclic_error > 0.0) != (model_.data.load_encoder_cyclic_period > 0.0))
+      fail(line_of(scale), "[drive.load_encoder]: cyclic_error_{0} and cyclic_period_{0} go together; add the other",
+           unit);
   }
 
   /// All that is missing at once. A kind that is not told is presumed from the fields that are there.
@@ -147,7 +157,7 @@ class ModelReader {
              *field.only == DriveKind::rotary ? "rotary" : "linear",
              *field.only == DriveKind::rotary ? "linear" : "rotary");
     refuse_unknown(drive, known_in(""), "in [drive]");
-    for (const std::string_view name : {"dac", "encoder"})
+    for (const std::string_view name : {"dac", "encoder", "load_encoder"})
       if (const toml::table* table = table_at(drive, name))
         refuse_unknown(*table, known_in(name), fmt::format("in [drive.{}]", name));
     if (const toml::table* tach = table_at(drive, "tach"))
@@ -156,7 +166,7 @@ class ModelReader {
 
   Names known_in(std::string_view table) const {
     Names known;
-    if (table.empty()) known = {"kind", "dac", "encoder", "tach"};
+    if (table.empty()) known = {"kind", "dac", "encoder", "load_encoder", "tach"};
     for (const DataSheetField& field : kDataSheetFields)
       if (field.table == table && field.belongs_to(model_.data.kind)) known.push_back(field.key);
     return known;
@@ -166,8 +176,10 @@ class ModelReader {
     const toml::table* table = field.table.empty() ? &drive : table_at(drive, field.table);
     const toml::node* node = table == nullptr ? nullptr : table->get(field.key);
     if (node == nullptr) return;
-    if (field.presence == Presence::alternative_unit && table->size() > 1)
-      fail(line_of(*node), "{}: the same quantity is also given in another unit; keep one of them", field.key);
+    for (const DataSheetField& other : kDataSheetFields)
+      if (field.presence == Presence::alternative_unit && other.value == field.value && other.key != field.key &&
+          table->contains(other.key))
+        fail(line_of(*node), "{}: the same quantity is also given in another unit; keep one of them", field.key);
     model_.data.*field.value = positive_number(*node, field.key, field.zero_allowed) / field.divisor;
   }
 

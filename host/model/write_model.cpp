@@ -37,6 +37,7 @@ void append_data_sheet(const sim::DataSheet& data, std::string& text) {
   for (const DataSheetField& field : kDataSheetFields) {
     if (!field.belongs_to(data.kind) || field.presence == Presence::alternative_unit) continue;
     if (field.presence == Presence::of_volts && is_known_by_current(data)) continue;
+    if (field.table == "load_encoder" && !data.has_load_encoder()) continue;
     if (data.*field.value == 0.0 && !field.zero_allowed && field.presence == Presence::optional) continue;
     if (field.table != table) fmt::format_to(out, "\n[drive.{}]\n", field.table);
     table = field.table;

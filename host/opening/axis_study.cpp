@@ -235,6 +235,38 @@ void AxisStudy::settle_position() {
   take(*position_, *decision);
 }
 
+/// The table by a sensor of its own: no record needs one, so that what is in doubt is left out without a question.
+void AxisStudy::settle_table_position() {
+  if (!position_taken_) return;
+  const NamedChannel* table = nullptr;
+  for (const NamedChannel& channel : channels_)
+    if (!settled_[channel.column] && channel.name.quantity == Quantity::position && channel.name.is_second &&
+        !channel.name.is_reference && rank(channel) >= 0.0 && (table == nullptr || rank(channel) > rank(*table)))
+      table = &channel;
+  if (table == nullptr) return;
+  const auto found = best_follow(table->column, position_->column);
+  if (!found || found->r_squared < kPair || found->factor == 0.0) {
+    leave(*table, fmt::format("a second position that does not follow {}", quoted(*position_)), 0.5);
+    return;
+  }
+  const double shown = position_taken_->factor / found->factor;  // mm a step, by the motor's position
+  constexpr double kSameWay = 0.05;                              // backlash, wind-up and pitch errors are far less
+  const auto by_unit =
+      table->name.unit && table->name.unit->dimension == Dimension::length ? position_by_unit(*table) : std::nullopt;
+  const auto neat = neat_length(std::abs(shown));
+  const double size = by_unit ? by_unit->factor : neat ? neat->value : 0.0;
+  if (!(size > 0.0) || std::abs(std::abs(shown) / size - 1.0) > kSameWay) {
+    leave(*table,
+          fmt::format("the table's position: a step of it is {:.6g} mm by {}; say --map x2_mm={}*MM_PER_STEP", shown,
+                      quoted(*position_), source_text(log_.columns[table->column].name)),
+          0.6);
+    return;
+  }
+  take(*table, {"x2_mm", std::copysign(size, shown), 0.0, by_unit ? kSureByUnit : kSureByPhysics,
+                fmt::format("the table by a sensor of its own, {}{}", by_unit ? by_unit->why : neat->words,
+                            shown < 0.0 ? ", counting the other way" : "")});
+}
+
 void AxisStudy::settle_speed() {
   if (speed_ == nullptr) return;
   std::optional<Proportion> change;
@@ -300,14 +332,6 @@ void AxisStudy::settle_speed() {
 }
 
 void AxisStudy::settle_references() {
-  if (const NamedChannel* second = position_ == nullptr ? nullptr : pick(Quantity::position, false, true)) {
-    if (const auto decision = position_by_unit(*second)) {
-      Decision as_second = *decision;
-      as_second.column = "x2_mm";
-      as_second.why += ", from a second sensor";
-      take(*second, as_second);
-    }
-  }
   const NamedChannel* reference = pick(Quantity::position, true, false);
   if (reference != nullptr) {
     std::optional<Decision> decision = position_by_unit(*reference);
@@ -447,6 +471,7 @@ void AxisStudy::run(std::vector<NamedChannel> channels, OpenedAxis& axis, Unders
   found_ = &found;
   speed_ = pick(Quantity::speed, false, false);
   settle_position();
+  settle_table_position();
   settle_speed();
   settle_references();
   settle_effort();

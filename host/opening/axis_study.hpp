@@ -42,6 +42,7 @@ class AxisStudy {
   void lack(std::string text) { axis_->missing.push_back(std::move(text)); }
 
   void settle_position();
+  void settle_table_position();
   void settle_speed();
   void settle_references();
   void settle_effort();

@@ -75,7 +75,10 @@ class Understander {
       const std::string& name = log_.columns[k].name;
       if (is_matrix(log_) && name.ends_with(')') && name.find('(') != std::string::npos)
         names_.back() = {};  // a matrix' name
-      if (find_known_column(name) != nullptr) names_.back().axis.clear();
+      if (const KnownColumn* known = find_known_column(name)) {
+        names_.back().axis.clear();
+        names_.back().is_second = known->channel == &Record::x2;
+      }
       if (name == "u_V") names_.back().is_reference = true;  // a record's own name for the command
     }
     apply_known_tools(log_, names_);

@@ -163,6 +163,36 @@ void check_position_and_speed_alive(const Record& record) {
     fail_dead(record, &Record::w, fmt::format("{} shows motion", name_of(record, &Record::x)));
 }
 
+/// The table's own sensor may be mounted either way and read in any unit; backlash, wind-up and pitch errors are far
+/// below its travel.
+void check_table_position(const Record& record) {
+  if (!record.has_table_position() || !position_moves(record)) return;
+  if (is_constant(record.x2))
+    fail_dead(record, &Record::x2, fmt::format("{} shows motion", name_of(record, &Record::x)));
+  const std::vector<double> motor = block_means(record.x, kBlockRows), table = block_means(record.x2, kBlockRows);
+  if (motor.size() < 2) return;
+  double mm = 0.0, mt = 0.0, tt = 0.0;
+  for (std::size_t k = 1; k < motor.size(); ++k) {
+    const double by_motor = motor[k] - motor[0], by_table = table[k] - table[0];
+    mm += by_motor * by_motor;
+    mt += by_motor * by_table;
+    tt += by_table * by_table;
+  }
+  constexpr double kSameMotion = 0.9;
+  if (!(mm > 0.0) || !(tt > 0.0) || std::abs(mt) < kSameMotion * std::sqrt(mm) * std::sqrt(tt)) return;
+  const double factor = mt / mm;
+  if (factor > 1.0 / kUnitFactor && factor < kUnitFactor) return;
+  const std::string pair = fmt::format("{}, and {}", where(record, &Record::x2), name_of(record, &Record::x));
+  if (factor < 0.0)
+    fail(record, LogFaultKind::table_sign, &Record::x2,
+         fmt::format("{}: the table's position runs against the motor's (factor {:.4g}); turn the sign of one of them",
+                     pair, factor));
+  fail(record, LogFaultKind::wrong_unit, &Record::x2,
+       fmt::format("{}: a unit cannot be right: the table moves {:.4g} times as far as the motor's position says; "
+                   "multiply the column by {:.4g}",
+                   pair, factor, 1.0 / factor));
+}
+
 bool axis_moves(const Record& record) { return record.has_position() ? position_moves(record) : speed_moves(record); }
 
 /// The axis' path: its position or, without one, the sum of its speed. Only its shape matters, not its unit.
@@ -304,10 +334,12 @@ void check_channels(const Record& record) {
               "D/A converters and amplifiers accept less; the numbers look like counts or mV");
   check_range(record, &Record::i_A, -kLargestCurrent_A, kLargestCurrent_A, "the numbers look like mA or counts");
   check_range(record, &Record::x, -kFarthest, kFarthest, "no axis is that long; the numbers look like an overflow");
+  check_range(record, &Record::x2, -kFarthest, kFarthest, "no axis is that long; the numbers look like an overflow");
   check_range(record, &Record::w, -kFastest, kFastest, "no drive is that fast; the numbers look like an overflow");
   check_range(record, &Record::temp_C, kLowestTemperature_C, kHighestTemperature_C,
               "the numbers look like kelvins or counts");
   check_position_and_speed_alive(record);
+  check_table_position(record);
   check_effort_alive(record);
   if (record.kind == sim::DriveKind::linear) check_speed_against_position(record, 1.0);
 }
@@ -335,6 +367,7 @@ void adapt_to(Record& record, const sim::DataSheet& sheet) {
     record.u_V.clear();  // nothing is known of it
   }
   scale(record.x, record.kind, sheet.kind);
+  scale(record.x2, record.kind, sheet.kind);
   scale(record.x_ref, record.kind, sheet.kind);
   record.kind = sheet.kind;
   record.kind_is_presumed = false;

@@ -26,6 +26,8 @@ inline constexpr KnownColumn kKnownColumns[] = {
     {"i_A", &Record::i_A, ColumnUnit::as_is, {}},
     {"x_mm", &Record::x, ColumnUnit::mm, {}},
     {"x_m", &Record::x, ColumnUnit::m, {}},
+    {"x2_mm", &Record::x2, ColumnUnit::mm, {}},
+    {"x2_m", &Record::x2, ColumnUnit::m, {}},
     {"w_rad_s", &Record::w, ColumnUnit::as_is, sim::DriveKind::rotary},
     {"v_m_s", &Record::w, ColumnUnit::m, sim::DriveKind::linear},
     {"v_mm_s", &Record::w, ColumnUnit::mm, sim::DriveKind::linear},
@@ -39,7 +41,8 @@ inline constexpr KnownColumn kKnownColumns[] = {
 
 /// All channels, in the order in which records are written.
 inline constexpr std::vector<double> Record::*kChannelsInFileOrder[] = {
-    &Record::t_s, &Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref, &Record::temp_C};
+    &Record::t_s, &Record::u_V,   &Record::i_A,   &Record::x,     &Record::x2,
+    &Record::w,   &Record::x_ref, &Record::w_ref, &Record::temp_C};
 
 inline const KnownColumn* find_known_column(std::string_view name) {
   for (const KnownColumn& column : kKnownColumns)

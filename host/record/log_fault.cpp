@@ -21,6 +21,7 @@ constexpr Row kRows[] = {
     {"position_scale", "unit", "scale the column with axistool import --map, or correct the lead in the data sheet"},
     {"time_shift", "time_shift", "shift the column with axistool shift RECORD --channel COLUMN --by SECONDS"},
     {"speed_sign", "sign", "invert the sign of the speed or of the position with axistool import --map"},
+    {"table_sign", "sign", "invert the sign of the table's position with axistool import --map"},
     {"wrong_unit", "unit", "scale the column with axistool import --map"},
     {"dead_channel", "dead", "check wiring and assignment, or leave the column out"},
     {"copied_channel", "duplicate", "also log the other channel, or leave the copy out"},

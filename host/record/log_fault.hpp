@@ -20,6 +20,7 @@ enum class LogFaultKind {
   position_scale,    ///< the position is not in its unit, by far
   time_shift,        ///< a channel is logged samples early or late
   speed_sign,        ///< the speed runs against the position
+  table_sign,        ///< the table's position runs against the motor's
   wrong_unit,        ///< values that their unit cannot mean
   dead_channel,      ///< constant where another channel shows motion
   copied_channel,    ///< one channel logged twice

@@ -34,6 +34,7 @@ struct Record {
   std::vector<double> u_V;     ///< command at the D/A converter; empty when only current was logged
   std::vector<double> i_A;     ///< motor current; empty when absent
   std::vector<double> x;       ///< position as the encoder reads it; empty when absent
+  std::vector<double> x2;      ///< position of the table by a sensor of its own; empty when absent
   std::vector<double> w;       ///< speed as the tachometer reads it; empty when absent
   std::vector<double> x_ref;   ///< reference position; empty when absent
   std::vector<double> w_ref;   ///< reference speed; empty when absent
@@ -42,6 +43,7 @@ struct Record {
 
   std::size_t size() const { return t_s.size(); }
   bool has_position() const { return !x.empty(); }
+  bool has_table_position() const { return !x2.empty(); }
   bool has_speed() const { return !w.empty(); }
 };
 

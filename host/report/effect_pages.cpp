@@ -31,6 +31,7 @@ constexpr std::array kStages = {
     StageName{sim::Stage::mechanics, "mechanics", "Masses and their connections"},
     StageName{sim::Stage::encoder, "encoder", "Encoder"},
     StageName{sim::Stage::tachometer, "tachometer", "Tachometer"},
+    StageName{sim::Stage::table, "table", "Table, as a scale of its own sees it"},
 };
 
 const StageName& stage_name(sim::Stage stage) { return *std::ranges::find(kStages, stage, &StageName::stage); }

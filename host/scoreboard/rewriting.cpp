@@ -13,6 +13,7 @@
 #include "host/diagnose/model_fit.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/model/model_file.hpp"
+#include "host/record/columns.hpp"
 
 namespace host {
 
@@ -58,14 +59,16 @@ void make_linear(Question& question) {
   data.kind = sim::DriveKind::linear;
   data.amplifier_gain_A_per_V = data.torque_constant_Nm_per_A = 0.0;
   data.lead = 1.0;
-  data.encoder_resolution *= 1e-3;
+  for (double* length : {&data.encoder_resolution, &data.load_encoder_resolution, &data.load_encoder_cyclic_error,
+                         &data.load_encoder_cyclic_period})
+    *length *= 1e-3;
   if (data.tach_noise_variance) *data.tach_noise_variance *= lead_m * lead_m;
   for_each_record(question, [&](Record& record) {
     record.kind = sim::DriveKind::linear;
-    for (auto* positions : {&record.x, &record.x_ref}) scale(*positions, 1e-3);
+    for (auto* positions : {&record.x, &record.x2, &record.x_ref}) scale(*positions, 1e-3);
     for (auto* speeds : {&record.w, &record.w_ref}) scale(*speeds, lead_m);
     for (std::string& column : record.columns)
-      column = column == "w_rad_s" ? "v_m_s" : column == "x_mm" ? "x_m" : column;
+      column = column == "w_rad_s" ? "v_m_s" : column == "x_mm" ? "x_m" : column == "x2_mm" ? "x2_m" : column;
   });
 }
 
@@ -87,7 +90,7 @@ void mirror(Question& question) {
     }
   }
   for_each_record(question, [](Record& record) {
-    for (auto* channel : {&record.u_V, &record.i_A, &record.x, &record.w, &record.x_ref, &record.w_ref})
+    for (auto* channel : {&record.u_V, &record.i_A, &record.x, &record.x2, &record.w, &record.x_ref, &record.w_ref})
       scale(*channel, -1.0);
   });
 }
@@ -103,8 +106,7 @@ void cut_in_two(Question& question) {
   Record& first = question.train.front();
   Record second = first;
   const auto half = static_cast<std::ptrdiff_t>(first.size() / 2);
-  for (auto channel : {&Record::t_s, &Record::u_V, &Record::i_A, &Record::x, &Record::w, &Record::x_ref, &Record::w_ref,
-                       &Record::temp_C}) {
+  for (const auto channel : kChannelsInFileOrder) {
     if ((first.*channel).empty()) continue;
     (second.*channel).erase((second.*channel).begin(), (second.*channel).begin() + half);
     (first.*channel).resize(static_cast<std::size_t>(half));

@@ -8,6 +8,7 @@
 
 #include "host/exit_codes.hpp"
 #include "host/record/channel_checks.hpp"
+#include "host/record/columns.hpp"
 #include "host/record/read_record.hpp"
 
 namespace host {
@@ -99,9 +100,9 @@ Record read_piece(const Piece& piece, const sim::DataSheet& data) {
   if (end - begin < 2)
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: no samples from {:g} s to {:g} s", piece.path, piece.from_s, piece.to_s));
-  for (auto* channel :
-       {&record.t_s, &record.u_V, &record.i_A, &record.x, &record.w, &record.x_ref, &record.w_ref, &record.temp_C})
-    if (!channel->empty()) *channel = std::vector<double>(channel->begin() + begin, channel->begin() + end);
+  for (const auto channel : kChannelsInFileOrder)
+    if (std::vector<double>& values = record.*channel; !values.empty())
+      values = std::vector<double>(values.begin() + begin, values.begin() + end);
   record.extra.clear();
   return record;
 }

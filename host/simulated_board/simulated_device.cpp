@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "firmware/app/protocol/server.hpp"
+#include "firmware/app/update/boot_choice.hpp"
 #include "hal/pc/simulated_board.hpp"
 #include "host/atomic_file.hpp"
 #include "host/exit_codes.hpp"
 #include "host/known_by_current.hpp"
 #include "host/read_file.hpp"
+#include "host/simulated_board/simulated_image.hpp"
 
 namespace host {
 
@@ -35,18 +39,27 @@ void load_flash(hal::pc::SimulatedFlash& flash, const std::string& file) {
     for (std::size_t i = 0; i < sector_size && next != bytes.end(); ++i) sector[i] = static_cast<std::byte>(*next++);
 }
 
-firmware::ImageHeader image_of_simulation() {
-  firmware::ImageHeader image;
-  std::ranges::copy(std::string_view("simulated"), image.board.begin());
-  std::ranges::copy(std::string_view("host"), image.version.begin());
-  return image;
+/// As `axistool flash` leaves a board.
+hal::pc::SimulatedFlash flashed_images(hal::pc::SimulatedFlash flash) {
+  std::ranges::copy(simulated_image("host"), flash.contents()[0].begin());
+  return flash;
+}
+
+/// What the boot code makes of it; the header of the image that runs.
+firmware::ImageHeader boot(hal::pc::SimulatedFlash& flash, const std::optional<hal::pc::SimulatedFlash>& before) {
+  flash = before ? *before : flashed_images(flash);
+  firmware::BootChoice(flash).prepare();
+  return firmware::ImageSlots(flash).header(0);
 }
 
 template <std::size_t axes>
 class ProgramOf : public SimulatedProgram {
  public:
-  ProgramOf(const SimulatedDeviceOptions& options, const firmware::BootFacts& boot)
-      : board_(drives_of(options), options.seed, wiring_of(options)), server_(application_, image_, boot) {
+  ProgramOf(const SimulatedDeviceOptions& options, const firmware::BootFacts& facts,
+            const std::optional<hal::pc::SimulatedFlash>& images)
+      : board_(drives_of(options), options.seed, wiring_of(options)),
+        image_(boot(board_.image_flash(), images)),
+        server_(application_, image_, facts) {
     for (std::size_t i = 0; i < axes; ++i)
       if (options.drives[i].motion) board_.plant(i).hand_over(options.drives[i].motion);
     load_flash(board_.parameter_flash(), options.flash_file);
@@ -56,11 +69,15 @@ class ProgramOf : public SimulatedProgram {
   std::uint32_t run_control_period() override {
     application_.control_period();
     board_.advance();
+    if (hangs_) hung_us_ += board_.control_period_us();
     return board_.control_period_us();
   }
-  void poll(UsbEnd& usb) override { server_.poll(usb); }
-  bool wants_restart() const override { return board_.wants_restart(); }
+  void poll(UsbEnd& usb) override {
+    if (!hangs_) server_.poll(usb);
+  }
+  bool wants_restart() const override { return board_.wants_restart() || hung_us_ >= kWatchdog_us; }
   hal::pc::SimulatedUsb& usb() override { return board_.usb(); }
+  const hal::pc::SimulatedFlash& images() override { return board_.image_flash(); }
   hal::pc::SimulatedFlash& flash() override { return board_.parameter_flash(); }
 
  private:
@@ -78,23 +95,27 @@ class ProgramOf : public SimulatedProgram {
     return wiring;
   }
 
-  firmware::ImageHeader image_ = image_of_simulation();
+  static constexpr std::uint32_t kWatchdog_us = 50'000;  ///< as the axis board's
+
   Board board_;
+  firmware::ImageHeader image_;
   Application application_{board_};
   firmware::ProtocolServer<Application> server_;
+  bool hangs_ = std::string_view(image_.version.data()) == kHangingVersion;
+  std::uint32_t hung_us_ = 0;
 };
 
-std::unique_ptr<SimulatedProgram> start_program(const SimulatedDeviceOptions& options,
-                                                const firmware::BootFacts& boot) {
+std::unique_ptr<SimulatedProgram> start_program(const SimulatedDeviceOptions& options, const firmware::BootFacts& facts,
+                                                const std::optional<hal::pc::SimulatedFlash>& images) {
   switch (options.drives.size()) {
     case 1:
-      return std::make_unique<ProgramOf<1>>(options, boot);
+      return std::make_unique<ProgramOf<1>>(options, facts, images);
     case 2:
-      return std::make_unique<ProgramOf<2>>(options, boot);
+      return std::make_unique<ProgramOf<2>>(options, facts, images);
     case 3:
-      return std::make_unique<ProgramOf<3>>(options, boot);
+      return std::make_unique<ProgramOf<3>>(options, facts, images);
     case 4:
-      return std::make_unique<ProgramOf<4>>(options, boot);
+      return std::make_unique<ProgramOf<4>>(options, facts, images);
     default:
       throw Failure(ExitCode::usage,
                     fmt::format("a board has 1 to {} axes, not {}", hal::kMostAxes, options.drives.size()));
@@ -111,10 +132,12 @@ SimulatedDevice::SimulatedDevice(SimulatedDeviceOptions options) : options_(std:
 
 void SimulatedDevice::power_up() {
   const bool is_reset = program_ != nullptr;
+  std::optional<hal::pc::SimulatedFlash> images;
+  if (is_reset) images = program_->images();
   program_.reset();
   if (is_reset) ++resets_;
   try {
-    program_ = start_program(options_, {is_reset ? kSoftwareReset : kPowerOn, resets_, true});
+    program_ = start_program(options_, {is_reset ? kSoftwareReset : kPowerOn, resets_, true}, images);
   } catch (const std::invalid_argument& error) {
     throw Failure(ExitCode::bad_input, fmt::format("the simulated board cannot run this drive: {}", error.what()));
   }

@@ -1,4 +1,5 @@
-// A simulated board that runs the firmware's application, and keeps its flash in a file.
+// A simulated board that runs the firmware's application, and keeps its parameters and fault log in a file; images of
+// its program last as long as it does.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +45,7 @@ class SimulatedProgram {
   virtual bool wants_restart() const = 0;
   virtual hal::pc::SimulatedUsb& usb() = 0;
   virtual hal::pc::SimulatedFlash& flash() = 0;
+  virtual const hal::pc::SimulatedFlash& images() = 0;
 };
 
 /// One thread's: program, control periods and world take turns.

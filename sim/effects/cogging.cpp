@@ -4,6 +4,7 @@
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/periodic_effect.hpp"
 
 namespace sim::effects {
 
@@ -40,13 +41,7 @@ const EffectInfo cogging{
                     .upper = 1e5,
                     .scale = Scale::coulomb,
                     .starts = {0.02}},
-                   {.id = "period",
-                    .rotary_key = "period_mm",
-                    .linear_key = "period_m",
-                    .doc = "L: travel of one period",
-                    .lower = 1e-5,
-                    .upper = 1e5,
-                    .scale = Scale::millimetre}},
+                   period_parameter()},
     .shows =
         "Residual torque is periodic in position, with the same amplitude at any speed and current and the same sign "
         "in both directions",

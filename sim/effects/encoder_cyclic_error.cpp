@@ -2,6 +2,7 @@
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/periodic_effect.hpp"
 
 namespace sim::effects {
 
@@ -20,29 +21,7 @@ const EffectInfo encoder_cyclic_error{
     .equation = "x_m = x + c cos(2 pi x/L) + s sin(2 pi x/L), and further orders of L; x: travel, x_m: reading",
     .stage = Stage::encoder,
     .periodic = true,
-    .parameters = {{.id = "cosine",
-                    .rotary_key = "cosine_mm",
-                    .linear_key = "cosine_m",
-                    .doc = "c",
-                    .lower = -1.0,
-                    .upper = 1.0,
-                    .scale = Scale::millimetre,
-                    .starts = {0.002}},
-                   {.id = "sine",
-                    .rotary_key = "sine_mm",
-                    .linear_key = "sine_m",
-                    .doc = "s",
-                    .lower = -1.0,
-                    .upper = 1.0,
-                    .scale = Scale::millimetre,
-                    .starts = {0.002}},
-                   {.id = "period",
-                    .rotary_key = "period_mm",
-                    .linear_key = "period_m",
-                    .doc = "L: travel of one period",
-                    .lower = 1e-5,
-                    .upper = 1e5,
-                    .scale = Scale::millimetre}},
+    .parameters = {position_error_parameter(true), position_error_parameter(false), period_parameter()},
     .shows =
         "Position error is periodic in position, with the same amplitude at any speed; the torque that it seems to "
         "need grows with the square of speed",

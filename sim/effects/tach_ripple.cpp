@@ -2,6 +2,7 @@
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/periodic_effect.hpp"
 
 namespace sim::effects {
 
@@ -36,13 +37,7 @@ const EffectInfo tach_ripple{
                     .lower = -0.5,
                     .upper = 0.5,
                     .starts = {0.01}},
-                   {.id = "period",
-                    .rotary_key = "period_mm",
-                    .linear_key = "period_m",
-                    .doc = "L: travel of one period",
-                    .lower = 1e-5,
-                    .upper = 1e5,
-                    .scale = Scale::millimetre}},
+                   period_parameter()},
     .shows =
         "Error of the measured speed is periodic in position and proportional to speed; the encoder does not show it",
     .along = {"position"},

@@ -1,17 +1,17 @@
 // Friction that drifts as the drive warms up.
-#include "sim/decay.hpp"
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
+#include "sim/warming.hpp"
 
 namespace sim::effects {
 
 namespace {
 
 void install_thermal_friction_drift(const EffectEntry& entry, const DataSheet&, Drive& drive) {
-  const double tau = entry.at("time_constant"), b = entry.at("viscous_change"), c = entry.at("coulomb_change");
-  const double cold_s = entry.has("cold_start") ? entry.at("cold_start") : 0.0;
-  drive.level_factor.push_back([=](double t_s, double) { return 1.0 + c * (1.0 - decay((t_s - cold_s) / tau)); });
-  drive.viscous_factor.push_back([=](double t_s) { return 1.0 + b * (1.0 - decay((t_s - cold_s) / tau)); });
+  const double b = entry.at("viscous_change"), c = entry.at("coulomb_change");
+  const Warming warming(entry);
+  drive.level_factor.push_back([=](double t_s, double) { return 1.0 + c * warming(t_s); });
+  drive.viscous_factor.push_back([=](double t_s) { return 1.0 + b * warming(t_s); });
 }
 
 }  // namespace
@@ -47,15 +47,8 @@ const EffectInfo thermal_friction_drift{
           .upper = 1e5,
           .scale = Scale::duration,
           .starts = {0.3, 1.0}},
-         {.id = "cold_start",
-          .rotary_key = "cold_start_s",
-          .linear_key = "cold_start_s",
-          .doc = "t0: time at which B and T_coul have the model's values, on the clock of the records; default 0",
-          .lower = -1e10,
-          .upper = 1e10,
-          .scale = Scale::first_stamp,
-          .starts = {1.0},
-          .optional = true}},
+         cold_start_parameter(
+             "t0: time at which B and T_coul have the model's values, on the clock of the records; default 0")},
     .shows =
         "Residual torque changes with the time since the start and has the sign of the motion. It grows with speed if "
         "viscous friction drifts",

@@ -4,6 +4,7 @@
 #include "sim/drive.hpp"
 #include "sim/effect.hpp"
 #include "sim/harmonic.hpp"
+#include "sim/periodic_effect.hpp"
 
 namespace sim::effects {
 
@@ -39,13 +40,7 @@ const EffectInfo torque_ripple{
                     .lower = -0.9,
                     .upper = 0.9,
                     .starts = {0.02}},
-                   {.id = "period",
-                    .rotary_key = "period_mm",
-                    .linear_key = "period_m",
-                    .doc = "L: travel of one period",
-                    .lower = 1e-5,
-                    .upper = 1e5,
-                    .scale = Scale::millimetre}},
+                   period_parameter()},
     .shows =
         "Residual torque is periodic in position and proportional to the current: strong during acceleration, weak "
         "while coasting",

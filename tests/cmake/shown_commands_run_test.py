@@ -23,7 +23,7 @@ WORKED_PAGE = PROJECT / "host/examples/from-log-to-model.md"  # its commands fol
 
 NOT_RUN = [
     (r"\bsudo\b|--usb\b", "as root"),
-    (r"\bflash\b|usb:|IMAGE|FILE\.bin", "a board, and an image for it"),
+    (r"\b(flash|update)\b|usb:|IMAGE|FILE\.bin", "a board, and an image for it"),
     (r"\baxistool sim\b", "does not end by itself; the board of this test is one"),
     (r"\bserve\b", "does not end by itself; host/workbench's tests run it"),
     (r"…|\b(COMMAND|KIND|MODEL)\b", "has a gap to fill in"),

@@ -6,7 +6,9 @@
 
 #include "host/device/board_client.hpp"
 #include "host/device/fault_log.hpp"
+#include "host/device/image_update.hpp"
 #include "host/exit_codes.hpp"
+#include "host/simulated_board/simulated_image.hpp"
 
 namespace {
 
@@ -49,13 +51,18 @@ class FuzzedLink : public host::ReportLink {
   hal::HidReport asked_{};
 };
 
+host::ImageFile sample_file() {
+  const std::vector<std::byte> image = host::simulated_image("fuzz");
+  return host::parse_image_file({reinterpret_cast<const char*>(image.data()), image.size()}, "fuzz");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   host::BoardClient board(std::make_unique<FuzzedLink>(data + 1, size - 1));
   try {
-    switch (data[0] % 9) {
+    switch (data[0] % 11) {
       case 0:
         board.require_same_table();
         break;
@@ -79,6 +86,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 8:
         host::fault_log_text(board.fault_log(), nullptr);
+        break;
+      case 9:
+        if (const auto seen = host::read_slots(board)) {
+          host::slots_text(*seen);
+          host::slots_json(*seen).dump();
+        }
+        break;
+      case 10:
+        host::send_image(board, sample_file(), [](std::size_t, std::size_t) {});
+        host::confirm_image(board);
         break;
       default:
         board.start_capture({});

@@ -1,11 +1,14 @@
-// Any bytes as what a host sends: the board answers every report, keeps its parameters admissible, and never enables an
-// axis that has none.
+// Any bytes as what a host sends: the board answers every report, keeps its parameters admissible, never enables an
+// axis that has none, and has a program at every reset.
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 
 #include "firmware/app/protocol/server.hpp"
+#include "firmware/app/update/boot_choice.hpp"
 #include "hal/pc/simulated_board.hpp"
+#include "host/simulated_board/simulated_image.hpp"
 
 namespace {
 
@@ -33,7 +36,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::size_t kMostReports = 64;
   hal::pc::SimulatedBoard board({small_drive(), small_drive()}, 1);
   Application application(board);
-  const firmware::ImageHeader image;
+  const auto program = host::simulated_image("fuzz");
+  std::ranges::copy(program, board.image_flash().contents()[0].begin());
+  const firmware::ImageHeader image = firmware::ImageSlots(board.image_flash()).header(0);
   firmware::ProtocolServer<Application> server(application, image, {});
   application.start();
   board.usb().plug_in();
@@ -55,5 +60,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t axis = 0; axis < hal::kAxisCount; ++axis)
       if (board.axis(axis).drive_enable().is_on() && !application.is_fitted(axis)) std::abort();
   }
+  // At the next reset, and at the one after an image was tried, which nobody confirmed.
+  firmware::BootChoice boot(board.image_flash());
+  if (boot.prepare() == firmware::BootResult::nothing || boot.prepare() != firmware::BootResult::program) std::abort();
+  if (!std::ranges::equal(board.image_flash().view(0).first(program.size()), program)) std::abort();
   return 0;
 }

@@ -16,8 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const std::string text = host::format_record(record);
   const host::Record again = host::parse_record(text, "again.csv");
-  if (again.t_s != record.t_s || again.x != record.x || again.w != record.w || again.u_V != record.u_V ||
-      host::format_record(again) != text)
+  if (again.t_s != record.t_s || again.x != record.x || again.x2 != record.x2 || again.w != record.w ||
+      again.u_V != record.u_V || host::format_record(again) != text)
     std::abort();
   try {
     sim::DataSheet sheet;

@@ -52,6 +52,8 @@ const std::set<std::string_view> kKinds = {
     "tach_lag",
     "tach_ripple",
     "encoder_cyclic_error",
+    "pitch_error",
+    "thermal_growth",
     "load_dependent_friction",
     "spring_torque",
     "voltage_limit",
@@ -138,12 +140,13 @@ TEST_P(EveryEffect, HasKeysThatEndInAUnitOrAreRatios) {
   const std::set<std::string_view> ratios = {"asymmetry",     "exponent",      "gain",           "coefficient",
                                              "damping_ratio", "load_fraction", "load_friction",  "load_viscous",
                                              "cosine",        "sine",          "viscous_change", "coulomb_change"};
-  const auto rotary_unit = testing::AnyOf(
-      EndsWith("_Nm"), EndsWith("_kg_m2"), EndsWith("_Nm_s_per_rad"), EndsWith("_rad_s"), EndsWith("_mm"),
-      EndsWith("_Nm_per_rad"), EndsWith("_Nm_per_mm"), EndsWith("_A"), EndsWith("_V"), EndsWith("_s"), EndsWith("_Hz"));
+  const auto rotary_unit =
+      testing::AnyOf(EndsWith("_Nm"), EndsWith("_kg_m2"), EndsWith("_Nm_s_per_rad"), EndsWith("_rad_s"),
+                     EndsWith("_mm"), EndsWith("_Nm_per_rad"), EndsWith("_Nm_per_mm"), EndsWith("_A"), EndsWith("_V"),
+                     EndsWith("_s"), EndsWith("_Hz"), EndsWith("_um_per_m"));
   const auto linear_unit =
       testing::AnyOf(EndsWith("_N"), EndsWith("_kg"), EndsWith("_N_s_per_m"), EndsWith("_m_s"), EndsWith("_m"),
-                     EndsWith("_N_per_m"), EndsWith("_V"), EndsWith("_s"), EndsWith("_Hz"));
+                     EndsWith("_um_per_m"), EndsWith("_N_per_m"), EndsWith("_V"), EndsWith("_s"), EndsWith("_Hz"));
   for (const ParameterInfo& parameter : GetParam()->parameters) {
     const std::string rotary(parameter.rotary_key), linear(parameter.linear_key);
     if (GetParam()->curve && parameter.id == "knot") continue;  // its unit is that of the entry's coordinate
@@ -213,6 +216,8 @@ const std::map<std::string_view, Powerless> kPowerless = {
     {"tach_lag", {{{"bandwidth", 1e9}}, 1e-6}},
     {"tach_ripple", {{{"cosine", 0.0}, {"sine", 0.0}, {"period", 10.0}}}},
     {"encoder_cyclic_error", {{{"cosine", 0.0}, {"sine", 0.0}, {"period", 10.0}}}},
+    {"pitch_error", {{{"cosine", 0.0}, {"sine", 0.0}, {"period", 10.0}}}},
+    {"thermal_growth", {{{"growth", 0.0}, {"time_constant", 5.0}}}},
     {"free_curve", {{{"knot_0", 0.0}, {"value_0", 0.0}, {"knot_1", 1.0}, {"value_1", 0.0}}}},
 };
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "tests/sim/small_drive.hpp"
 
@@ -143,6 +145,65 @@ TEST(Plant, WithoutEnableTheMotorIsFreeOfCurrent) {
 
 TEST(Plant, RefusesAnUnknownEffect) {
   EXPECT_THROW(Plant(with(quantised_drive(), "gremlins", {}), 1), std::invalid_argument);
+}
+
+/// Of a drive that drives forth, then back: what the scale reads and where the motor is meanwhile. Left alone, a motor
+/// without friction of its own would float in the gap.
+struct Ends {
+  double forth, back, motor_forth, motor_back;
+};
+
+Ends ends_of(const sim::DriveDescription& drive) {
+  Plant plant(drive, 1);
+  const auto go = [&](double u_V, double for_s) {
+    plant.set_command(u_V);
+    plant.advance(for_s);
+    return std::pair(*plant.read_load_encoder(), plant.truth().x);
+  };
+  const auto [forth, motor_forth] = go(2.0, 0.5);
+  plant.set_command(0.0);
+  plant.advance(2.0);
+  const auto [back, motor_back] = go(-2.0, 2.0);
+  return {forth, back, motor_forth, motor_back};
+}
+
+TEST(LoadEncoder, IsThereWhereTheDriveHasOne) {
+  EXPECT_FALSE(Plant(viscous_drive(), 1).read_load_encoder().has_value());
+  sim::DriveDescription drive = viscous_drive();
+  drive.data.load_encoder_resolution = 0.001;
+  EXPECT_EQ(Plant(drive, 1).read_load_encoder(), 0.0);
+}
+
+/// Catches a scale that reads the motor's travel.
+TEST(LoadEncoder, ReadsTheTableBehindItsGap) {
+  sim::DriveDescription drive = sim_test::coulomb_drive();
+  drive.data.load_encoder_resolution = 1e-6;
+  const double gap = 0.05;
+  drive = with(drive, "backlash", {{"gap", gap}, {"resonance", 200.0}, {"damping_ratio", 0.3}, {"load_fraction", 0.3}});
+  const Ends ends = ends_of(drive);
+  ASSERT_GT(ends.motor_forth, 1.0);
+  ASSERT_LT(ends.motor_back, ends.motor_forth - 1.0);
+  // Friction acts on the table, which lags behind the motor by half of the gap.
+  EXPECT_NEAR((ends.back - ends.motor_back) - (ends.forth - ends.motor_forth), gap, 0.1 * gap);
+}
+
+TEST(LoadEncoder, ReadsPitchErrorGrowthAndItsOwnErrors) {
+  sim::DriveDescription drive = viscous_drive();
+  drive.data.load_encoder_resolution = 1e-7;
+  drive.data.load_encoder_cyclic_error = 0.002;
+  drive.data.load_encoder_cyclic_period = 0.3;
+  drive.data.load_encoder_cyclic_phase_rad = 1.0;
+  drive = with(drive, "pitch_error", {{"lead_error", 50.0}, {"cosine", 0.01}, {"sine", -0.02}, {"period", 7.0}});
+  drive = with(drive, "thermal_growth", {{"growth", 0.03}, {"time_constant", 4.0}});
+  Plant plant(drive, 1);
+  plant.set_command(1.0);
+  plant.advance(1.5);
+  const double x = plant.truth().x, turns = 2.0 * std::numbers::pi * x / 7.0;
+  const double table =
+      x + 50e-6 * x + 0.01 * std::cos(turns) - 0.02 * std::sin(turns) + 0.03 * (1.0 - std::exp(-1.5 / 4.0));
+  const double reading = table + 0.002 * std::cos(2.0 * std::numbers::pi * table / 0.3 - 1.0);
+  ASSERT_GT(x, 5.0);
+  EXPECT_NEAR(*plant.read_load_encoder(), reading, 2e-7);
 }
 
 }  // namespace

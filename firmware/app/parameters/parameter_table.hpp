@@ -45,6 +45,7 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "speed per code of its A/D converter"},
     {34, axis, "tachometer.offset", real, "rad/s", "m/s", -1e4F, 1e4F, 0, while_disabled,
      "reading at standstill; subtracted"},
+    // 40 to 43 are reserved for a second encoder on the table: scale.fitted, .resolution, .reversed, .disagreement.
 
     {48, axis, "model.a12", real, "mm/(rad/s)", "m/(m/s)", 0, 100, 0, while_disabled,
      "travel in a period per speed, eq. (7)"},

@@ -54,6 +54,11 @@ enum class MessageType : std::uint8_t {
   path_rate = 0x53,
   stop_path = 0x54,
   path_state = 0x55,
+  begin_update = 0x60,
+  update_block = 0x61,
+  finish_update = 0x62,
+  confirm_update = 0x63,
+  read_slot = 0x64,
   samples = 0x70,   ///< from the board, unasked, while a capture runs
   rejected = 0x7F,  ///< from the board: a report that could not be decoded
 };
@@ -74,7 +79,7 @@ enum class Status : std::uint8_t {
   bad_value = 5,          ///< RefusedValuePayload says which and why
   unknown_parameter = 6,  ///< RefusedValuePayload says which
   drive_enabled = 7,      ///< refused while a drive is enabled; RefusedValuePayload may say which parameter
-  set_differs = 8,        ///< the staged set, or table, is not the one that was to be committed
+  set_differs = 8,        ///< the staged set, table or image is not the one that was to be committed
   wrong_state = 9,        ///< the axis is not in a state that allows this
   not_fitted = 10,
   flash_failed = 11,
@@ -91,6 +96,8 @@ enum class Status : std::uint8_t {
   others_capture = 22,  ///< another client's capture runs: wait for its end, or stop it
   no_room = 23,         ///< for another node of a path: send it later
   brown_out_off = 24,   ///< nothing moves before the chip's brown-out reset is set
+  bad_image = 25,       ///< RefusedImagePayload says why
+  on_trial = 26,        ///< nothing moves, and no update begins, before the image that runs is confirmed
 };
 
 struct IdentityPayload {
@@ -266,6 +273,7 @@ enum class Channel : std::uint8_t {
   friction = 8,             ///< scalar, V
   control = 9,              ///< scalar, V: before limits and rounding
   flags = 10,               ///< state, then fault << 8, then saturated << 16
+  // 11 is reserved: low word of the counts of a second encoder, on the table.
 };
 inline constexpr std::size_t kChannels = 11;
 inline constexpr std::size_t kWordsPerReport = 12;

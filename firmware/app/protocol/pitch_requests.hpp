@@ -29,12 +29,6 @@ class PitchRequests {
   }
 
  private:
-  template <typename Payload, typename Handler>
-  static Status with(const Message& request, Handler handler) {
-    Payload payload;
-    return request.get(payload) ? handler(payload) : Status::malformed;
-  }
-
   Status begin(const BeginTableRequest& r, Message& reply) {
     if (r.axis >= Application::kAxes || r.points == 1 || r.points > kMostPitchPoints) return Status::malformed;
     if (app_.any_enabled()) return Status::drive_enabled;
@@ -42,17 +36,17 @@ class PitchRequests {
       reply.put(limit_reply<"drive.encoder_resolution">(app_.active(), r.axis));
       return Status::bad_value;
     }
-    return status_of(app_.write_store(
-        [&](auto& store) { return store.begin_table(app_.active().size(), r.axis, r.points, r.resolution_bits); }));
+    return status_of(app_.write_flash(
+        [&] { return app_.store().begin_table(app_.active().size(), r.axis, r.points, r.resolution_bits); }));
   }
 
   Status take(const TablePointsRequest& r, Message& reply) {
     if (r.count == 0 || r.count > kPointsPerReport) return Status::malformed;
     if (app_.any_enabled()) return Status::drive_enabled;
     if (!app_.store().is_staging_table() || r.first != app_.store().staged_points()) return Status::set_differs;
-    const bool taken = app_.write_store([&](auto& store) {
+    const bool taken = app_.write_flash([&] {
       return std::all_of(r.point.begin(), r.point.begin() + r.count,
-                         [&](const PitchPoint& point) { return store.add_point(point); });
+                         [&](const PitchPoint& point) { return app_.store().add_point(point); });
     });
     if (taken) return Status::ok;
     reply.put(limit_reply<"pitch.on">(app_.active(), app_.store().staged_table().axis));

@@ -53,6 +53,13 @@ struct Message {
   bool operator==(const Message&) const = default;
 };
 
+/// Hands the payload to `handler`; malformed where the request has another length.
+template <typename Payload, typename Handler>
+Status with(const Message& request, Handler handler) {
+  Payload payload;
+  return request.get(payload) ? handler(payload) : Status::malformed;
+}
+
 inline hal::HidReport encode(const Message& message) {
   hal::HidReport report{};
   report[0] = std::byte{kProtocolVersion};

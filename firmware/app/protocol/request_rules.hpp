@@ -8,6 +8,7 @@
 #include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/protocol/pitch_messages.hpp"
 #include "firmware/app/protocol/trigger_messages.hpp"
+#include "firmware/app/protocol/update_messages.hpp"
 
 namespace firmware {
 
@@ -84,6 +85,13 @@ inline constexpr std::array kRules = std::to_array<RequestRule>({
     {MessageType::path_rate,          path_client,    true,  false, kSize<PathRateRequest>, kSize<PathRateRequest>},
     {MessageType::stop_path,          anyone,         true,  false, 0, kPayloadSize},
     {MessageType::path_state,         anyone,         true,  false, 0, 0},
+    {MessageType::begin_update,       commander,      false, false, kSize<BeginUpdateRequest>,
+                                                                    kSize<BeginUpdateRequest>},
+    {MessageType::update_block,       commander,      false, false, kSize<UpdateBlockRequest>,
+                                                                    kSize<UpdateBlockRequest>},
+    {MessageType::finish_update,      commander,      false, false, 0, 0},
+    {MessageType::confirm_update,     commander,      false, false, 0, 0},
+    {MessageType::read_slot,          anyone,         true,  false, kSize<ReadSlotRequest>, kSize<ReadSlotRequest>},
 });
 // clang-format on
 

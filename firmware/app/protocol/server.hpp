@@ -8,10 +8,12 @@
 #include "firmware/app/board_application.hpp"
 #include "firmware/app/parameters/set_crc.hpp"
 #include "firmware/app/protocol/identity_reply.hpp"
+#include "firmware/app/protocol/path_requests.hpp"
 #include "firmware/app/protocol/pitch_requests.hpp"
 #include "firmware/app/protocol/program_facts.hpp"
 #include "firmware/app/protocol/report.hpp"
 #include "firmware/app/protocol/request_rules.hpp"
+#include "firmware/app/protocol/update_requests.hpp"
 
 namespace firmware {
 
@@ -19,7 +21,7 @@ template <typename Application>
 class ProtocolServer {
  public:
   ProtocolServer(Application& application, const ImageHeader& image, const BootFacts& boot)
-      : app_(application), image_(image), boot_(boot) {}
+      : app_(application), image_(image), boot_(boot), update_(application, image) {}
 
   /// A round of the background: at most one report in and one out. Never waits.
   template <hal::UsbHid Usb>
@@ -27,6 +29,7 @@ class ProtocolServer {
     use_ = use;
     app_.path().poll();
     app_.keep_fault_log();
+    if (update_.trial_has_failed()) app_.board().restart();
     if (!usb.is_configured()) {
       reply_waits_ = false;
       app_.capture().stop();
@@ -77,16 +80,11 @@ class ProtocolServer {
  private:
   static constexpr std::size_t kAxes = Application::kAxes;
 
-  template <typename Payload, typename Handler>
-  static Status with(const Message& request, Handler handler) {
-    Payload payload;
-    return request.get(payload) ? handler(payload) : Status::malformed;
-  }
-
   Status permission(const RequestRule& rule, const Message& request) {
     if (request.length < rule.least || request.length > rule.most) return Status::malformed;
     if (restart_wanted_ && acts(rule)) return Status::restarting;
     if (boot_.lacks_brown_out_reset && rule.commands) return Status::brown_out_off;
+    if (update_.is_on_trial() && rule.commands) return Status::on_trial;
     const ClientToken client = request.asker();
     switch (rule.asker) {
       case Asker::anyone:
@@ -161,7 +159,13 @@ class ProtocolServer {
       case MessageType::path_rate:
       case MessageType::stop_path:
       case MessageType::path_state:
-        return handle_path(request, reply);
+        return PathRequests<Application>(app_).answer(request, reply);
+      case MessageType::begin_update:
+      case MessageType::update_block:
+      case MessageType::finish_update:
+      case MessageType::confirm_update:
+      case MessageType::read_slot:
+        return update_.answer(request, reply);
       case MessageType::arm_trigger:
         return with<TriggerRequest>(request, [&](const TriggerRequest& r) { return arm(r, request.asker()); });
       case MessageType::trigger_state:
@@ -199,34 +203,6 @@ class ProtocolServer {
       default:
         reply.put(app_.excitation_state());
         return Status::ok;
-    }
-  }
-
-  Status handle_path(const Message& request, Message& reply) {
-    if (request.type == MessageType::open_path)
-      return with<OpenPathRequest>(request, [&](const OpenPathRequest& r) {
-        OpenPathPayload opened;
-        const Status status = app_.open_path(r, request.asker(), opened);
-        if (status == Status::ok) reply.put(opened);
-        return status;
-      });
-    Status status = Status::ok;
-    if (request.type == MessageType::stop_path)
-      app_.path().stop();
-    else if (request.type != MessageType::path_state)
-      status = handle_own_path(request);
-    reply.put(app_.path().state());
-    return status;
-  }
-
-  Status handle_own_path(const Message& request) {
-    switch (request.type) {
-      case MessageType::path_nodes:
-        return app_.path().push(std::span(request.payload).first(request.length));
-      case MessageType::start_path:
-        return app_.path().start();
-      default:
-        return with<PathRateRequest>(request, [&](const PathRateRequest& r) { return app_.path().set_rate(r); });
     }
   }
 
@@ -478,6 +454,7 @@ class ProtocolServer {
   Application& app_;
   const ImageHeader& image_;
   BootFacts boot_;
+  UpdateRequests<Application> update_;
   ProgramUse use_{};
   hal::HidReport reply_{};
   hal::HidReport samples_{};

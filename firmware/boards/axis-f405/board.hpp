@@ -11,13 +11,13 @@
 #include "hal/cortex_m/control_shut_out.hpp"
 #include "hal/serial_queue.hpp"
 #include "hal/stm32f4/charge_pump.hpp"
+#include "hal/stm32f4/chip_flash.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
 #include "hal/stm32f4/control_timer.hpp"
 #include "hal/stm32f4/drive_lines.hpp"
 #include "hal/stm32f4/encoder_timer.hpp"
 #include "hal/stm32f4/microsecond_clock.hpp"
 #include "hal/stm32f4/option_bytes.hpp"
-#include "hal/stm32f4/parameter_flash.hpp"
 #include "hal/stm32f4/spi_port.hpp"
 #include "hal/stm32f4/supply_detector.hpp"
 #include "hal/stm32f4/tachometer_adc.hpp"
@@ -116,6 +116,7 @@ class Board {
   Serial& serial() { return serial_; }
   hal::tinyusb::HidPort& usb() { return usb_; }
   hal::stm32f4::ParameterFlash& parameter_flash() { return parameter_flash_; }
+  hal::stm32f4::ImageFlash& image_flash() { return image_flash_; }
   /// Survives a reset.
   TriggeredState& capture_state() { return boards::capture_state(); }
   std::span<std::uint16_t> capture_rows() { return boards::capture_rows(); }
@@ -171,6 +172,8 @@ class Board {
   hal::tinyusb::HidPort usb_;
   hal::stm32f4::ParameterFlash parameter_flash_{
       hal::stm32f4::flash_interface(), reinterpret_cast<std::byte*>(hal::stm32f4::ParameterFlash::kFirstAddress)};
+  hal::stm32f4::ImageFlash image_flash_{hal::stm32f4::flash_interface(),
+                                        reinterpret_cast<std::byte*>(hal::stm32f4::ImageFlash::kFirstAddress)};
   hal::stm32f4::Watchdog watchdog_{hal::stm32f4::independent_watchdog()};
   hal::stm32f4::PeriodWatchdog period_watchdog_{hal::stm32f4::window_watchdog()};
   std::uint32_t control_rate_Hz_ = 1000, period_us_ = 1000;

@@ -68,9 +68,10 @@ def residuals(
     """
     given = as_record(record)
     rows = predict(model, given, window_s)
-    measured = [name for name in ("x_mm", "x_m", "w_rad_s", "v_m_s") if name in rows.columns]
+    measured = [name for name in ("x_mm", "x_m", "x2_mm", "x2_m", "w_rad_s", "v_m_s") if name in rows.columns]
     chosen = channel or measured[0]
-    predicted = {"x_mm": "x_pred_mm", "x_m": "x_pred_m", "w_rad_s": "w_pred_rad_s", "v_m_s": "v_pred_m_s"}.get(chosen)
+    predicted = {"x_mm": "x_pred_mm", "x_m": "x_pred_m", "x2_mm": "x2_pred_mm", "x2_m": "x2_pred_m",
+                 "w_rad_s": "w_pred_rad_s", "v_m_s": "v_pred_m_s"}.get(chosen)
     if predicted is None or predicted not in rows.columns:
         raise KeyError(f"channel {chosen!r} is not predicted; there is {', '.join(measured)}")
     speed = _speed(rows)

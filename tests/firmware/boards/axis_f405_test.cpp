@@ -197,7 +197,7 @@ TEST_F(AxisBoard, SavingParametersDoesNotEndInAReset) {
   {
     const Board::ControlShutOut guard;
     board.begin_stall();
-    hal::stm32f4::ParameterFlash flash(hal::stm32f4::flash_interface(), chip.flash.sectors());
+    hal::stm32f4::ParameterFlash flash(hal::stm32f4::flash_interface(), chip.flash.sector(8));
     EXPECT_EQ(flash.erase(1), hal::FlashResult::ok);
     board.end_stall();
   }

@@ -48,7 +48,7 @@ class FlashLines : public testing::TestWithParam<Program> {
   void SetUp() override {
     if (std::getenv("AXIS_GUEST") == nullptr) GTEST_SKIP() << "runs in the guest: tests/guest/run.sh";
     if (*GetParam().path == '\0') GTEST_SKIP() << "libgpiod 2.x of Debian 13 could not be fetched";
-    image_ = folder_.write("image.bin", image_text("axis-f405"));
+    image_ = folder_.write("image.bin", flash_text("axis-f405"));
     for (const std::string& path : {folder_.path(""), folder_.write("dfu-util", kDfuUtil)})
       std::filesystem::permissions(path, std::filesystem::perms(0755));  // for a user without rights too
   }

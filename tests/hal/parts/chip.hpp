@@ -30,7 +30,7 @@ class Chip {
 
   Bus bus;
   PowerPart power;
-  FlashPart flash{bus, 8, 4};
+  FlashPart flash{bus};
   ClockPart clock{bus, power, [this] { return flash.wait_states(); }};
   PortPart port_a{bus, 'A'}, port_b{bus, 'B'}, port_c{bus, 'C'};
   TimerPart timer2{bus, 32, [this] { return clock.apb1_timers_Hz(); }};

@@ -7,17 +7,20 @@ namespace parts {
 
 namespace {
 
-constexpr std::uint32_t kSectorSize = 128 * 1024;  // table 5, sectors 5 to 11
+constexpr std::uint32_t kKilobyte = 1024;
+constexpr unsigned kSectors = 12;  // table 5: four of 16 KB, one of 64, seven of 128
+constexpr std::uint32_t kBoundaries[kSectors + 1] = {0, 16, 32, 48, 64, 128, 256, 384, 512, 640, 768, 896, 1024};
 constexpr std::uint32_t kWriteProtected = 1u << 4, kParallelismError = 1u << 6,
                         kSequenceError = 1u << 7;                             // 3.9.4
 constexpr std::uint32_t kDataCacheOn = 1u << 10, kDataCacheReset = 1u << 12;  // 3.9.1
 
 }  // namespace
 
-FlashPart::FlashPart(Bus& bus, unsigned first_sector, unsigned sectors)
-    : bus_(bus), first_sector_(first_sector), cells_(sectors * kSectorSize, std::byte{0xFF}) {
+FlashPart::FlashPart(Bus& bus) : bus_(bus), cells_(begin_of(kSectors), std::byte{0xFF}) {
   bus.attach(reinterpret_cast<std::uintptr_t>(cells_.data()), static_cast<std::uint32_t>(cells_.size()), cells_part_);
 }
+
+std::uint32_t FlashPart::begin_of(unsigned sector) { return (kBoundaries[sector] - kBoundaries[1]) * kKilobyte; }
 
 void FlashPart::reset() {
   access_ = status_ = control_ = 0;
@@ -99,9 +102,8 @@ void FlashPart::begin_erase() {
   }
   busy_until_ns_ = never_ends ? 1e30 : bus_.now_ns() + erase_ns;
   if ((access_ & kDataCacheOn) != 0) cache_is_stale_ = true;
-  if (sector < first_sector_ || (sector - first_sector_ + 1) * kSectorSize > cells_.size())
-    return bus_.complain("flash: erased a sector that holds something else");
-  std::fill_n(cells_.begin() + (sector - first_sector_) * kSectorSize, kSectorSize, std::byte{0xFF});
+  if (sector == 0 || sector >= kSectors) return bus_.complain("flash: erased a sector that holds something else");
+  std::fill(cells_.begin() + begin_of(sector), cells_.begin() + begin_of(sector + 1), std::byte{0xFF});
 }
 
 void FlashPart::program(std::uint32_t offset, std::uint32_t value) {

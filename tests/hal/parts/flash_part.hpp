@@ -10,15 +10,16 @@ namespace parts {
 
 class FlashPart : public Part {
  public:
-  /// Sectors `first_sector` and up, of 128 KB each; the first lies at sectors(), as the processor reads it.
-  FlashPart(Bus& bus, unsigned first_sector, unsigned sectors);
+  /// All sectors but the first, in which the program under test would lie.
+  explicit FlashPart(Bus& bus);
 
   std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
   void run(double now_ns) override;
   void reset() override;
 
-  std::byte* sectors() { return cells_.data(); }
+  /// As the processor reads it; the next one follows.
+  std::byte* sector(unsigned number) { return cells_.data() + begin_of(number); }
   unsigned wait_states() const { return access_ & 7u; }
   bool cache_is_stale() const { return cache_is_stale_; }
   bool is_locked() const { return locked_; }
@@ -46,9 +47,9 @@ class FlashPart : public Part {
   void begin_erase();
   void write_control(std::uint32_t value);
   bool is_busy() const { return busy_until_ns_ > 0.0; }
+  static std::uint32_t begin_of(unsigned sector);
 
   Bus& bus_;
-  unsigned first_sector_;
   std::vector<std::byte> cells_;
   Cells cells_part_{*this};
   std::uint32_t access_ = 0, status_ = 0, control_ = 0;

@@ -240,6 +240,21 @@ TEST(ImageFile, OnlyAWholeImageForThisBoardPasses) {
   EXPECT_EQ(code_of([&] { host::read_image_file(folder.write("text.bin", "hello")); }), host::ExitCode::bad_input);
 }
 
+TEST(ImageFile, MayLieBehindBootCode) {
+  const TemporaryFolder folder;
+  const auto whole = host::read_image_file(folder.write("whole.bin", flash_text("axis-f405") + "behind it"));
+  EXPECT_EQ(whole.state, firmware::ImageState::whole);
+  EXPECT_EQ(whole.begin, firmware::kBootCodeSize);
+  const std::string image = image_text("axis-f405");
+  EXPECT_TRUE(std::ranges::equal(whole.image(), std::as_bytes(std::span(image))));
+  const auto bare = host::read_image_file(folder.write("bare.bin", image));
+  EXPECT_EQ(bare.begin, 0u);
+  EXPECT_TRUE(std::ranges::equal(bare.image(), std::as_bytes(std::span(image))));
+  const auto cut = host::read_image_file(folder.write("cut.bin", flash_text("axis-f405").substr(0, 16384 + 620)));
+  EXPECT_EQ(cut.state, firmware::ImageState::wrong_size);
+  EXPECT_EQ(cut.image().size(), 620u) << "no more than there is";
+}
+
 TEST(Crc32, IsTheWorldsCrc32) {
   const std::string check = "123456789";  // the check value that every catalogue of CRCs gives
   EXPECT_EQ(firmware::crc32(std::as_bytes(std::span(check))), 0xCBF43926u);

@@ -22,3 +22,8 @@ inline std::string image_text(const char* board) {
   std::memcpy(text.data() + firmware::kImageHeaderOffset, &header, sizeof header);
   return text;
 }
+
+/// The same behind boot code, as `axistool flash` takes it.
+inline std::string flash_text(const char* board) {
+  return std::string(firmware::kBootCodeSize, 'b') + image_text(board);
+}

@@ -124,6 +124,36 @@ TEST(ReadModel, LinearDriveInMetres) {
   EXPECT_EQ(model.find("coulomb")->at("level"), 20.4);
 }
 
+TEST(ReadModel, AScaleOnTheTable) {
+  const std::string scale =
+      "[drive.load_encoder]\nresolution_mm = 0.0005\ncyclic_error_mm = 0.001\ncyclic_period_mm = 0.02\n"
+      "cyclic_phase_rad = 0.5\n";
+  const sim::DriveDescription model =
+      host::parse_model(replaced(kPaperX, "[drive.tach]", scale + "[drive.tach]"), "drive.toml");
+  EXPECT_TRUE(model.data.has_load_encoder());
+  EXPECT_EQ(model.data.load_encoder_resolution, 0.0005);
+  EXPECT_NEAR(model.data.load_encoder_error(0.02 * 0.5 / 6.283185307), 0.001, 1e-9) << "largest at its phase";
+  const sim::DriveDescription again = host::parse_model(host::format_model(model), "again.toml");
+  EXPECT_EQ(again.data.load_encoder_cyclic_error, 0.001);
+  EXPECT_EQ(again.data.load_encoder_cyclic_period, 0.02);
+  EXPECT_EQ(again.data.load_encoder_cyclic_phase_rad, 0.5);
+  const sim::DriveDescription linear = host::parse_model(
+      replaced(kLinear, "[[effect]]", "[drive.load_encoder]\nresolution_mm = 0.0005\ncyclic_phase_rad = 0\n[[effect]]"),
+      "drive.toml");
+  EXPECT_DOUBLE_EQ(linear.data.load_encoder_resolution, 5e-7);
+}
+
+TEST(ReadModel, AScaleWithoutWhatItNeeds) {
+  const auto with = [](const std::string& fields) {
+    return message_of("[drive.tach]", "[drive.load_encoder]\n" + fields + "[drive.tach]");
+  };
+  EXPECT_THAT(with("cyclic_error_mm = 0.001\ncyclic_period_mm = 0.02\n"),
+              AllOf(HasSubstr("line 15"), HasSubstr("missing field resolution_mm in [drive.load_encoder]")));
+  EXPECT_THAT(with("resolution_mm = 0.001\ncyclic_error_mm = 0.001\n"), HasSubstr("go together"));
+  EXPECT_THAT(with("resolution_mm = 0\n"), HasSubstr("out of bounds"));
+  EXPECT_THAT(with("resolution_m = 0.001\n"), AllOf(HasSubstr("resolution_m"), HasSubstr("[drive.load_encoder]")));
+}
+
 TEST(ReadModel, DataSheetAloneServesIdentification) {
   const std::string text = std::string(kPaperX).substr(0, std::string(kPaperX).find("[[effect]]"));
   EXPECT_TRUE(host::parse_drive(text, "drive.toml").effects.empty());

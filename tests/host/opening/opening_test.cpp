@@ -163,6 +163,31 @@ TEST_F(Opening, HalsamplerIsNamedByItsHalFile) {
   EXPECT_DOUBLE_EQ(opening.files[0].understood.rate_Hz, 500.0);
 }
 
+TEST_F(Opening, AScaleOnTheTableIsTheSecondPosition) {
+  std::string text = "time [s],motor position [mm],glass scale [um],current [A]\n";
+  for (int k = 0; k < kRows; ++k)
+    text += fmt::format("{:.3f},{:.5f},{:.2f},{:.4f}\n", 1e-3 * k, x_at(k),
+                        120.0 - 1e3 * (x_at(k) - 0.004 * (v_at(k) > 0.0 ? 1.0 : -1.0)), i_at(k));
+  const host::Opening opening = open({write("scale.csv", text)});
+  EXPECT_TRUE(opening.asks().empty());
+  ASSERT_EQ(opening.records().size(), 1u);
+  const host::Record& record = opening.records()[0]->record;
+  EXPECT_EQ(channels(opening.files[0])["glass scale [um]"].taken_as, "x2_mm");
+  EXPECT_DOUBLE_EQ(channels(opening.files[0])["glass scale [um]"].factor, -1e-3) << "it counts the other way";
+  ASSERT_TRUE(record.has_table_position());
+  EXPECT_NEAR(record.x2[1000] - record.x2[0], record.x[1000] - record.x[0], 0.02);
+}
+
+TEST_F(Opening, ASecondPositionThatIsNoTableIsLeftOut) {
+  std::string text = "time [s],motor position [mm],link position [mm],current [A]\n";
+  for (int k = 0; k < kRows; ++k)
+    text += fmt::format("{:.3f},{:.5f},{:.5f},{:.4f}\n", 1e-3 * k, x_at(k), 0.01 * x_at(k), i_at(k));
+  const host::Opening opening = open({write("geared.csv", text)});
+  ASSERT_EQ(opening.records().size(), 1u);
+  EXPECT_FALSE(opening.records()[0]->record.has_table_position());
+  EXPECT_THAT(channels(opening.files[0])["link position [mm]"].why, HasSubstr("--map x2_mm="));
+}
+
 /// Signals as LinuxCNC's configurations name them, of two joints: an output goes with the axis whose letter it has.
 TEST_F(Opening, HalsamplerOfTwoJointsMakesARecordOfEach) {
   std::string text, hal = "loadrt threads name1=servo period1=1000000\naddf sampler.0 servo\n";

@@ -293,4 +293,43 @@ TEST_F(BadRecord, DriveOfTheOtherKind) {
               AllOf(HasSubstr("line 4, column w_rad_s"), HasSubstr("model is of a linear one"), HasSubstr("v_m_s")));
 }
 
+/// The axis with its table's position, as `table` reads it.
+std::string with_table(const std::function<double(double x_mm)>& table, const char* column = "x2_mm") {
+  return std::string(kHeader) + "t_s,u_V,x_mm," + column + "\n" +
+         rows_of(1000, [&](int, Row r) { return fmt::format("{},{},{},{}", r.t_s, r.u_V, r.x_mm, table(r.x_mm)); });
+}
+
+TEST_F(BadRecord, TheTableIsReadInEitherUnit) {
+  EXPECT_EQ(message_of(with_table([](double x) { return x + 0.01; })), "no failure");
+  EXPECT_EQ(message_of(with_table([](double x) { return 1e-3 * x + 1e-5; }, "x2_m"),
+                       [](host::Record& record) { EXPECT_NEAR(record.x2[100], record.x[100] + 0.01, 1e-9); }),
+            "no failure");
+}
+
+TEST_F(BadRecord, TableThatStandsStill) {
+  EXPECT_THAT(message_of(with_table([](double) { return 3.0; })),
+              AllOf(HasSubstr("line 4, column x2_mm"), HasSubstr("dead channel"), HasSubstr("x_mm shows motion")));
+}
+
+TEST_F(BadRecord, TableThatRunsBackwards) {
+  EXPECT_THAT(message_of(with_table([](double x) { return 5.0 - x; })),
+              AllOf(HasSubstr("column x2_mm"), HasSubstr("runs against the motor's"), HasSubstr("turn the sign")));
+}
+
+TEST_F(BadRecord, TableInAnotherUnit) {
+  EXPECT_THAT(
+      message_of(with_table([](double x) { return 1000.0 * x + 7.0; })),
+      AllOf(HasSubstr("column x2_mm"), HasSubstr("1000 times as far"), HasSubstr("multiply the column by 0.001")));
+}
+
+TEST_F(BadRecord, TableThatIsTheMotorsPosition) {
+  EXPECT_THAT(message_of(with_table([](double x) { return x; })),
+              AllOf(HasSubstr("x2_mm"), HasSubstr("the same numbers")));
+}
+
+TEST_F(BadRecord, TableThatIsNoNumber) {
+  EXPECT_THAT(message_of(with_table([](double x) { return x > 1.99 ? std::nan("") : x + 0.01; })),
+              AllOf(HasSubstr("column 4 (x2_mm)"), HasSubstr("NaN"), HasSubstr("axistool cut")));
+}
+
 }  // namespace

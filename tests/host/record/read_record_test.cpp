@@ -128,6 +128,7 @@ TEST(WriteRecord, RoundTripsToTheLastBit) {
     record.u_V.push_back(std::sin(k * 1.7) * 1e-3);
     record.i_A.push_back(std::exp(std::sin(k * 0.9) * 5.0));
     record.x.push_back(std::round(std::sin(k * 0.01) * 5e4) * 0.00244140625);
+    record.x2.push_back(record.x.back() + 0.003 * std::sin(k * 0.02));
     record.w.push_back(std::cos(k * 0.01) / 3.0 + 0.2 * std::sin(k * 2.1));
     record.x_ref.push_back(std::sin(k * 0.01) * 122.0);
     record.w_ref.push_back(1.0 / (k + 3.0));
@@ -137,7 +138,8 @@ TEST(WriteRecord, RoundTripsToTheLastBit) {
                   {"mode", {}, std::vector<std::string>(500, "a b")}};
   for (const sim::DriveKind kind : {sim::DriveKind::rotary, sim::DriveKind::linear}) {
     record.kind = kind;
-    if (kind == sim::DriveKind::linear) record.x.clear();  // its speed is not that of the position above
+    if (kind == sim::DriveKind::linear)
+      record.x.clear(), record.x2.clear();  // its speed is not that of the position above
     const std::string path = folder.path("record.csv");
     host::write_record(record, path);
     const host::Record again = host::read_record(path);
@@ -149,6 +151,7 @@ TEST(WriteRecord, RoundTripsToTheLastBit) {
     EXPECT_EQ(again.u_V, record.u_V);
     EXPECT_EQ(again.i_A, record.i_A);
     EXPECT_EQ(again.x, record.x);
+    EXPECT_EQ(again.x2, record.x2);
     EXPECT_EQ(again.w, record.w);
     EXPECT_EQ(again.x_ref, record.x_ref);
     EXPECT_EQ(again.w_ref, record.w_ref);

@@ -1,4 +1,4 @@
-// The flash sectors that hold parameters and the fault log. RM0090, sections 3.6 and 3.9.
+// The chip's flash: sectors for images of the program, and for parameters and fault log. RM0090, sections 3.6 and 3.9.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,40 @@
 
 namespace hal::stm32f4 {
 
-/// Sectors 8 to 11 of the STM32F405RG, 128 KB each (table 5). Programs words; erasing a sector takes 1 to 2 s and
-/// stalls every access to flash, interrupts included: the watchdog must allow for it, the drives must be off.
-class ParameterFlash {
+/// Parameters and fault log: sectors 8 to 11 of the STM32F405RG, 128 KB each (table 5).
+struct ParameterSectors {
+  static constexpr std::uintptr_t kFirstAddress = 0x08080000;
+  static constexpr std::size_t kCount = 4, kSize = 128 * 1024;
+  static constexpr std::size_t offset(std::size_t sector) { return sector * kSize; }
+  static constexpr std::uint32_t first_of_chip(std::size_t sector) { return 8 + static_cast<std::uint32_t>(sector); }
+  static constexpr std::uint32_t count_of_chip(std::size_t) { return 1; }
+};
+
+/// The place where programs run, sectors 1 to 4 of 16, 16, 16 and 64 KB, and two slots that keep images, sectors 5 and
+/// 6, as much of each as the place has.
+struct ImageSectors {
+  static constexpr std::uintptr_t kFirstAddress = 0x08004000;
+  static constexpr std::size_t kCount = 3, kSize = 112 * 1024;
+  static constexpr std::size_t offset(std::size_t sector) {
+    return sector == 0 ? 0 : kSize + (sector - 1) * 128 * 1024;
+  }
+  static constexpr std::uint32_t first_of_chip(std::size_t sector) {
+    return sector == 0 ? 1 : 4 + static_cast<std::uint32_t>(sector);
+  }
+  static constexpr std::uint32_t count_of_chip(std::size_t sector) { return sector == 0 ? 4 : 1; }
+};
+
+/// Programs words; erasing a sector of 128 KB takes 1 to 2 s and stalls every access to flash, interrupts included: the
+/// watchdog must allow for it, the drives must be off.
+template <typename Map>
+class ChipFlash {
  public:
-  ParameterFlash(FlashInterface& registers, std::byte* first_sector) : registers_(registers), memory_(first_sector) {}
+  ChipFlash(FlashInterface& registers, std::byte* first_sector) : registers_(registers), memory_(first_sector) {}
 
-  static constexpr std::uintptr_t kFirstAddress = 0x08080000;  ///< of sector 8, table 5
+  static constexpr std::uintptr_t kFirstAddress = Map::kFirstAddress;
 
-  std::size_t sector_count() const { return 4; }
-  std::size_t sector_size() const { return 128 * 1024; }
+  std::size_t sector_count() const { return Map::kCount; }
+  std::size_t sector_size() const { return Map::kSize; }
   std::size_t program_size() const { return sizeof(std::uint32_t); }
 
   std::span<const std::byte> view(std::size_t sector) const { return {at(sector, 0), sector_size()}; }
@@ -44,9 +68,17 @@ class ParameterFlash {
 
   FlashResult erase(std::size_t sector) {
     if (sector >= sector_count()) return FlashResult::out_of_range;
+    FlashResult result = FlashResult::ok;
+    for (std::uint32_t part = 0; part < Map::count_of_chip(sector) && result == FlashResult::ok; ++part)
+      result = erase_of_chip(Map::first_of_chip(sector) + part);
+    return result;
+  }
+
+ private:
+  FlashResult erase_of_chip(std::uint32_t number) {
     unlock();
-    registers_.CR = FlashInterface::kSectorErase | FlashInterface::kWordParallelism |
-                    FlashInterface::sector_field(kFirstSector + static_cast<std::uint32_t>(sector));
+    registers_.CR =
+        FlashInterface::kSectorErase | FlashInterface::kWordParallelism | FlashInterface::sector_field(number);
     registers_.CR = registers_.CR | FlashInterface::kStart;
     const FlashResult result = finish();
     registers_.CR = FlashInterface::kLock;
@@ -56,13 +88,10 @@ class ParameterFlash {
     return result;
   }
 
- private:
-  static constexpr std::uint32_t kFirstSector = 8;
-
   bool contains(std::size_t sector, std::size_t offset, std::size_t size) const {
     return sector < sector_count() && offset <= sector_size() && size <= sector_size() - offset;
   }
-  std::byte* at(std::size_t sector, std::size_t offset) const { return memory_ + sector * sector_size() + offset; }
+  std::byte* at(std::size_t sector, std::size_t offset) const { return memory_ + Map::offset(sector) + offset; }
 
   void unlock() {
     registers_.KEYR = FlashInterface::kKey1;
@@ -90,6 +119,8 @@ class ParameterFlash {
   FlashInterface& registers_;
   std::byte* memory_;
 };
-static_assert(Flash<ParameterFlash>);
+using ParameterFlash = ChipFlash<ParameterSectors>;
+using ImageFlash = ChipFlash<ImageSectors>;
+static_assert(Flash<ParameterFlash> && Flash<ImageFlash>);
 
 }  // namespace hal::stm32f4

@@ -1,7 +1,8 @@
-// The parameters' sectors on flash that takes its time.
-#include "hal/stm32f4/parameter_flash.hpp"
+// The sectors of parameters and of images on flash that takes its time.
+#include "hal/stm32f4/chip_flash.hpp"
 
 #include <array>
+#include <vector>
 
 #include "tests/hal/stm32f4/on_chip.hpp"
 
@@ -16,12 +17,12 @@ class Flash : public driver_test::OnRunningChip {
     OnRunningChip::SetUp();
     flash_interface().ACR = 5u | 7u << 8;  // as start-up leaves it: caches on
   }
-  std::byte cell(std::size_t sector, std::size_t offset) { return chip.flash.sectors()[sector * kSector + offset]; }
+  std::byte cell(std::size_t sector, std::size_t offset) { return chip.flash.sector(8)[sector * kSector + offset]; }
 
   static constexpr std::size_t kSector = 128 * 1024;
   static constexpr std::array<std::byte, 8> kWords{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4},
                                                    std::byte{5}, std::byte{6}, std::byte{7}, std::byte{8}};
-  hal::stm32f4::ParameterFlash flash{flash_interface(), chip.flash.sectors()};
+  hal::stm32f4::ParameterFlash flash{flash_interface(), chip.flash.sector(8)};
 };
 
 TEST_F(Flash, ProgramsWordsAndReadsThemBack) {
@@ -66,6 +67,37 @@ TEST_F(Flash, ProtectedSectorsAreAHardwareError) {
   EXPECT_EQ(flash.erase(0), FlashResult::hardware_error);
   chip.flash.is_protected = false;
   EXPECT_EQ(flash.program(0, 0, kWords), FlashResult::ok) << "an error of before does not count";
+}
+
+/// Each sector of the chip has its number at its beginning and its end: what is erased is these and no others.
+TEST_F(Flash, ImagesHaveTheSectorsBetweenBootCodeAndParameters) {
+  hal::stm32f4::ImageFlash images{flash_interface(), chip.flash.sector(1)};
+  const auto mark_all = [&] {
+    for (unsigned number = 1; number < 12; ++number)
+      *chip.flash.sector(number) = *(chip.flash.sector(number + 1) - 1) = static_cast<std::byte>(number);
+  };
+  const auto erased = [&] {
+    std::vector<unsigned> list;
+    for (unsigned number = 1; number < 12; ++number)
+      if (*chip.flash.sector(number) == std::byte{0xFF} && *(chip.flash.sector(number + 1) - 1) == std::byte{0xFF})
+        list.push_back(number);
+    return list;
+  };
+  const std::vector<unsigned> expected[] = {{1, 2, 3, 4}, {5}, {6}};
+  const unsigned begins[] = {1, 5, 6};
+  for (std::size_t sector = 0; sector < 3; ++sector) {
+    mark_all();
+    EXPECT_EQ(images.erase(sector), FlashResult::ok);
+    EXPECT_EQ(erased(), expected[sector]);
+    EXPECT_EQ(images.view(sector).data(), chip.flash.sector(begins[sector]));
+    EXPECT_EQ(images.program(sector, 112 * 1024 - 8, kWords), FlashResult::ok);
+    EXPECT_EQ(chip.flash.sector(begins[sector])[112 * 1024 - 1], std::byte{8});
+    EXPECT_EQ(images.program(sector, 112 * 1024 - 4, kWords), FlashResult::out_of_range);
+  }
+  EXPECT_EQ(images.erase(3), FlashResult::out_of_range);
+  EXPECT_EQ(chip.flash.sector(5) - chip.flash.sector(1), 112 * 1024) << "the place for programs";
+  chip.flash.is_protected = true;
+  EXPECT_EQ(images.erase(0), FlashResult::hardware_error);
 }
 
 }  // namespace

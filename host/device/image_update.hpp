@@ -1,0 +1,47 @@
+// A board's program, updated over the cable that it talks over.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/device/board_client.hpp"
+#include "host/device/image_file.hpp"
+
+namespace host {
+
+/// The program that runs, and what the slots hold.
+struct ImageSlotsSeen {
+  firmware::SlotPayload program;
+  std::vector<firmware::SlotPayload> slots;  ///< A, B
+
+  bool is_on_trial() const;
+};
+
+/// Empty on a board that cannot be updated. Throws Failure (protocol) for an impossible answer.
+std::optional<ImageSlotsSeen> read_slots(BoardClient& board);
+
+/// A line for the program and for each slot; JSON: an entry for each slot.
+std::string slots_text(const ImageSlotsSeen& seen);
+nlohmann::json slots_json(const ImageSlotsSeen& seen);
+
+/// Bytes that have been sent, of all.
+using UpdateProgress = std::function<void(std::size_t sent, std::size_t size)>;
+
+/// Sends the image into the slot that does not run, and has the board check it. The board starts it at its next
+/// restart, on trial. Throws Failure: refused (a drive is enabled, an image is on trial), bad_input (the board refuses
+/// the image, with the cause), device_fault (its flash fails), and as BoardClient does.
+void send_image(BoardClient& board, const ImageFile& file, const UpdateProgress& progress);
+
+/// Of the image that runs: it stays.
+void confirm_image(BoardClient& board);
+
+/// Restarts the board and opens it again as soon as it answers: `open` may throw until then. A board that restarts a
+/// second time, because the new image did not start, is waited for, too. Throws what `open` threw last, after 30 s.
+BoardClient restart_and_reopen(BoardClient board, const std::function<BoardClient()>& open);
+
+}  // namespace host

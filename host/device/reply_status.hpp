@@ -1,0 +1,14 @@
+// What a board's refusals mean, in words.
+#pragma once
+
+#include <string>
+
+#include "firmware/app/protocol/report.hpp"
+
+namespace host {
+
+/// Throws Failure with cause and remedy for a status other than ok; `others` may name the programs that have the board
+/// open too.
+void require_ok(const firmware::Message& reply, const std::string& others = "");
+
+}  // namespace host

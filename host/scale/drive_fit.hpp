@@ -1,0 +1,18 @@
+// Gap, spring, friction and drag of a driven table by one joint fit.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "host/infer/evidence.hpp"
+#include "host/scale/driven_table.hpp"
+
+namespace host {
+
+/// The most probable table within bounds, beside columns whose factors are free. All starts have a gap or none, a
+/// spring or none; what they lack stays away. Levenberg-Marquardt (Ceres) from the best few of them, with the noise of
+/// infer/evidence.hpp at this correlation. `deceleration`: see shape_ranges(). Starts are at least one.
+TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, const Evidence& evidence,
+                     const Eigen::MatrixXd& others, double correlation, double deceleration);
+
+}  // namespace host

@@ -1,0 +1,121 @@
+#include "host/scale/table_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/identify/encoder_step.hpp"
+#include "host/identify/motion.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// More rows say nothing new of some dozen factors.
+constexpr std::size_t kMostRows = 2400;
+
+double mm_of(const Record& record) { return record.kind == sim::DriveKind::linear ? 1e3 : 1.0; }
+
+/// The least change of a sensor, mm; 0 where it never changes.
+double step_of(const std::vector<double>& values, double mm) {
+  double step = HUGE_VAL;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (const double change = std::abs(values[k] - values[k - 1]) * mm; change > 1e-9) step = std::min(step, change);
+  return std::isfinite(step) ? step : 0.0;
+}
+
+/// Mean speed and acceleration of each row from what the motor has at its two ends: as short as the row itself, since
+/// the effort beside them is its mean.
+void differentiate(TableRows& rows, const TableRecord& one) {
+  const double period_s = one.record->sample_period_s, row_s = period_s * static_cast<double>(one.stride);
+  const std::size_t half = std::max<std::size_t>(1, one.stride / 4), last = one.x.size() - 1;
+  const auto speed_at = [&](std::size_t sample) {
+    const std::size_t low = sample - std::min(sample, half), high = std::min(sample + half, last);
+    return (one.x[high] - one.x[low]) / (static_cast<double>(high - low) * period_s);
+  };
+  for (Index k = 0; k < one.rows; ++k) {
+    const std::size_t begin = static_cast<std::size_t>(k) * one.stride, end = std::min(begin + one.stride, last);
+    rows.v(one.first_row + k) = (one.x[end] - one.x[begin]) / (static_cast<double>(end - begin) * period_s);
+    rows.a(one.first_row + k) = (speed_at(end) - speed_at(begin)) / row_s;
+  }
+}
+
+/// A reversal counts from the encoder's own steps on.
+void note_travel(TableRows& rows, const TableRecord& one, double step) {
+  double turned = rows.x(one.first_row), farthest = turned, way = 0.0;
+  for (Index k = one.first_row; k < one.first_row + one.rows; ++k) {
+    const double x = rows.x(k);
+    if (way == 0.0 && std::abs(x - turned) > 2.0 * step) way = x > turned ? 1.0 : -1.0;
+    if (way * (x - farthest) > 0.0) farthest = x;
+    if (way != 0.0 && way * (farthest - x) > 2.0 * step) {
+      turned = std::exchange(farthest, x);
+      way = -way;
+    }
+    rows.since(k) = std::abs(x - turned);
+    rows.way(k) = way == 0.0 ? 1.0 : way;
+  }
+}
+
+}  // namespace
+
+void TableRecord::put_means(const std::vector<double>& samples, VectorXd& of_all_rows) const {
+  const Eigen::Map<const Eigen::MatrixXd> by_row(samples.data(), static_cast<Index>(stride), rows);
+  of_all_rows.segment(first_row, rows) = by_row.colwise().mean().transpose();
+}
+
+VectorXd TableRows::means(const std::function<std::vector<double>(const TableRecord&)>& of) const {
+  VectorXd all(size());
+  for (const TableRecord& one : records) one.put_means(of(one), all);
+  return all;
+}
+
+TableRows table_rows(const std::vector<const Record*>& records, const sim::DataSheet& data) {
+  TableRows rows;
+  std::size_t samples = 0;
+  bool all_have_effort = true, all_have_temperature = true;
+  for (const Record* record : records)
+    if (record->has_position() && record->has_table_position()) samples += record->size();
+  const std::size_t stride = std::max<std::size_t>(1, (samples + kMostRows - 1) / kMostRows);
+  Index count = 0;
+  for (const Record* record : records) {
+    if (!record->has_position() || !record->has_table_position() || record->size() < 4 * stride) continue;
+    TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride, {}};
+    const double mm = mm_of(*record);
+    for (double& x : one.x) x *= mm;
+    one.pusher = one.x;
+    if (record->u_V.empty() && record->i_A.empty())
+      all_have_effort = false;
+    else
+      one.effort = motor_effort(*record, data);
+    all_have_temperature = all_have_temperature && !record->temp_C.empty();
+    const double steps = std::hypot(encoder_step(*record, data) * mm, step_of(record->x2, mm));
+    rows.step_um = std::max(rows.step_um, 1e3 * steps);
+    rows.runs.push_back({count, count + one.rows});
+    count += one.rows;
+    rows.records.push_back(std::move(one));
+  }
+  rows.y.resize(count);
+  rows.since = rows.way = VectorXd::Zero(count);
+  if (count == 0) return rows;
+  rows.noise_um = std::max(rows.step_um / std::sqrt(12.0 * static_cast<double>(stride)), 1e-3);
+  rows.x = rows.means([](const TableRecord& one) { return one.x; });
+  rows.t_s = rows.means([](const TableRecord& one) { return one.record->t_s; });
+  rows.y = rows.means([](const TableRecord& one) {
+    const double mm = mm_of(*one.record);
+    std::vector<double> y(one.x.size());
+    for (std::size_t k = 0; k < y.size(); ++k)
+      y[k] = 1e3 * (mm * (one.record->x2[k] - one.record->x2[0]) - (one.x[k] - one.x[0]));
+    return y;
+  });
+  rows.v = rows.a = VectorXd::Zero(count);
+  for (const TableRecord& one : rows.records) differentiate(rows, one);
+  if (all_have_effort) rows.effort = rows.means([](const TableRecord& one) { return one.effort; });
+  if (all_have_temperature) rows.temp_C = rows.means([](const TableRecord& one) { return one.record->temp_C; });
+  for (const TableRecord& one : rows.records)
+    note_travel(rows, one, encoder_step(*one.record, data) * mm_of(*one.record));
+  return rows;
+}
+
+}  // namespace host

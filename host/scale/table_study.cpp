@@ -1,0 +1,406 @@
+#include "host/scale/table_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "host/infer/posterior.hpp"
+#include "host/parallel.hpp"
+#include "host/report/progress.hpp"
+#include "host/scale/drive_fit.hpp"
+#include "host/scale/table_effect.hpp"
+#include "sim/drive.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double rms(const VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
+}
+
+VectorXd without(const VectorXd& y, const MatrixXd& columns) {
+  return y - columns * columns.completeOrthogonalDecomposition().solve(y);
+}
+
+/// What a form's factors compare to: nothing between motor and table is larger than what is there.
+constexpr double kOneScale = 1.0;
+/// Forms of one kind that are fitted in full, of those that promise most.
+constexpr std::size_t kFormsFitted = 3;
+/// More of one kind stand in no machine that one answer helps.
+constexpr std::size_t kMostEffects = 8, kMostCyclic = 3;
+
+/// Everything chosen so far with one term more or less.
+struct Fitted {
+  TableTerm term;
+  double log_evidence = 0.0;  ///< forms averaged out, nats
+};
+
+std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind) {
+  return static_cast<std::size_t>(std::ranges::count(terms, kind, &TableTerm::kind));
+}
+
+class Search {
+ public:
+  Search(const sim::DriveDescription& model, TableRows& rows, double usual)
+      : model_(model),
+        rows_(rows),
+        usual_(usual),
+        base_(table_base(rows)),
+        evidence_(rows.y, rows.runs, table_memory(rows, usual), rows.noise_um) {
+    const sim::Drive drive(model);
+    const double to_mm = model.data.kind == sim::DriveKind::linear ? 1e3 : drive.lead;
+    if (drive.inertia > 0.0)
+      deceleration_ = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia * to_mm;
+  }
+
+  /// All terms fitted together.
+  EvidenceFit fit(const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms);
+    return evidence_.fit(columns, deviations);
+  }
+  EvidenceFit fit_from(const EvidenceFit& before, const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms);
+    return evidence_.fit_from(before, columns, deviations);
+  }
+
+  /// Near a fit: its noise and memory are where this one begins.
+  EvidenceFit fit_beside(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms);
+    return evidence_.fit(columns, deviations, {.correlation = near.correlation, .sizes = near.sizes});
+  }
+
+  /// For intervals: with what changes of the sizes do.
+  EvidenceFit fit_slopes(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
+    const auto [columns, deviations] = known(terms, true);
+    return evidence_.fit(columns, deviations,
+                         {.correlation = near.correlation, .sizes = near.sizes, .hold_sizes = true});
+  }
+
+  bool can_show(std::string_view kind) const {
+    return kind == "compliance" || kind == "backlash" || !table_forms(kind, rows_).empty();
+  }
+
+  /// The best form of a kind beside the chosen terms; the log evidence is averaged over all forms.
+  std::optional<Fitted> best_form(std::string_view kind, const std::vector<TableTerm>& chosen,
+                                  const EvidenceFit& before) const {
+    if (kind == "compliance" || kind == "backlash") return best_driven(kind, chosen, before);
+    const std::vector<TableTerm> forms = table_forms(kind, rows_);
+    if (forms.empty()) return {};
+    std::vector<double> gains(forms.size(), -HUGE_VAL);
+    for_each_in_parallel(forms.size(), [&](std::size_t f) {
+      MatrixXd columns = forms[f].quick_columns(rows_);
+      const VectorXd deviations = forms[f].deviations(columns, usual_);
+      if (!(columns.cwiseAbs().maxCoeff() > 1e-9)) return;
+      columns *= deviations.asDiagonal();
+      std::vector<int> sign(static_cast<std::size_t>(columns.cols()), 0);
+      sign.front() = forms[f].sign();
+      gains[f] = evidence_.gains(before, columns, sign, VectorXd::Constant(1, kOneScale))(0);
+    });
+    std::vector<std::size_t> order(forms.size());
+    for (std::size_t f = 0; f < order.size(); ++f) order[f] = f;
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t f) { return gains[f]; });
+    if (!std::isfinite(gains[order.front()])) return {};
+    std::vector<TableTerm> best;
+    EvidenceFit best_fit;
+    for (std::size_t k = 0; k < std::min(kFormsFitted, order.size()) && std::isfinite(gains[order[k]]); ++k) {
+      std::vector<TableTerm> all = chosen;
+      all.push_back(forms[order[k]]);
+      EvidenceFit fit = fit_from(before, all);
+      if ((!best.empty() && fit.log_evidence <= best_fit.log_evidence) || wrong_way(all, fit)) continue;
+      best = std::move(all);
+      best_fit = std::move(fit);
+    }
+    if (best.empty()) return {};
+    refine(best, best_fit);
+    if (rms_of_last(best, best_fit) < rows_.step_um / std::sqrt(12.0)) return {};
+    const double spread = log_sum(gains) - gains[order.front()] - std::log(static_cast<double>(forms.size()));
+    return Fitted{best.back(), best_fit.log_evidence + std::min(spread, 0.0)};
+  }
+
+  /// Moves what is not linear in the last term to where the evidence is largest.
+  void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
+    TableTerm& term = terms.back();
+    if (term.is_driven()) {
+      settle_drive(terms, fit.correlation, {term.drive});
+      fit = fit_beside(fit, terms);
+    } else if (term.kind == "encoder_cyclic_error" || (term.kind == "thermal_growth" && term.shape[0] > 0.0)) {
+      const double travel = rows_.x.maxCoeff() - rows_.x.minCoeff();
+      double step = term.kind == "thermal_growth" ? 0.5 : 0.1 * term.shape[0] / travel;  // relative
+      for (int round = 0; round < 6; ++round, step *= 0.5)
+        for (const double way : {1.0 + step, 1.0 / (1.0 + step)}) {
+          std::vector<TableTerm> moved = terms;
+          moved.back().shape[0] *= way;
+          EvidenceFit again = fit_beside(fit, moved);
+          if (again.log_evidence <= fit.log_evidence) continue;
+          terms = std::move(moved);
+          fit = std::move(again);
+          break;
+        }
+    }
+  }
+
+  /// Gives all driven terms the most probable drive beside the others.
+  void settle_drive(std::vector<TableTerm>& terms, double correlation, std::vector<TableDrive> starts) const {
+    std::vector<TableTerm> others = terms;
+    std::erase_if(others, [](const TableTerm& term) { return term.is_driven(); });
+    const TableDrive drive = fit_drive(std::move(starts), rows_, evidence_, known(others).first,
+                                       std::min(correlation, kMostAlike), deceleration_);
+    for (TableTerm& term : terms)
+      if (term.is_driven()) term.drive = drive;
+  }
+
+  /// From all starts: after a gap or a spring came or went.
+  void settle_drive_anew(std::vector<TableTerm>& terms, double correlation) const {
+    const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
+    if (gap || spring) settle_drive(terms, correlation, drive_starts(gap, spring, rows_, deceleration_));
+  }
+
+  /// Where the motor is, without the errors of its encoder that are among the terms.
+  void note_motor(TableRows& rows, const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    for (TableRecord& one : rows.records) one.pusher = one.x;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (terms[k].kind != "encoder_cyclic_error" || place_of(terms[k], rows_, model_) != "motor") continue;
+      const VectorXd factors = fit.factors.segment(first_column(terms, k), 2);
+      for (TableRecord& one : rows.records)
+        for (std::size_t sample = 0; sample < one.x.size(); ++sample) {
+          const double at = 2.0 * std::numbers::pi * one.x[sample] / terms[k].shape[0];
+          one.pusher[sample] += 1e-3 * (factors(0) * std::cos(at) + factors(1) * std::sin(at));
+        }
+    }
+  }
+  void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) { note_motor(rows_, terms, fit); }
+
+  /// The column at which a term's own begin.
+  Index first_column(const std::vector<TableTerm>& terms, std::size_t which) const {
+    Index first = base_.cols();
+    for (std::size_t k = 0; k < which; ++k) first += terms[k].count(rows_);
+    return first;
+  }
+
+  /// What the last term takes of x2 - x, um RMS. Less than the sensors' steps make by themselves is none of the
+  /// machine's: two grids beat against each other.
+  double rms_of_last(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    const MatrixXd own = terms.back().columns(rows_);
+    return rms(without(own * fit.factors.tail(own.cols()), base_));
+  }
+
+  bool wrong_way(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      if (terms[k].sign() > 0 && fit.factors(first_column(terms, k)) < 0.0) return true;
+    return false;
+  }
+
+ private:
+  /// More correlated noise than this is what no term explains yet; it says nothing of how sharp a reversal is.
+  static constexpr double kMostAlike = 0.2;
+
+  /// A gap or a spring, beside the other where that is chosen.
+  std::optional<Fitted> best_driven(std::string_view kind, const std::vector<TableTerm>& chosen,
+                                    const EvidenceFit& before) const {
+    std::vector<TableTerm> all = chosen;
+    all.push_back({std::string(kind), {}, {}, deceleration_});
+    settle_drive_anew(all, before.correlation);
+    const EvidenceFit fit = fit_from(before, all);
+    if (wrong_way(all, fit) || rms_of_last(all, fit) < rows_.step_um / std::sqrt(12.0)) return {};
+    return Fitted{all.back(), fit.log_evidence};
+  }
+
+  std::pair<MatrixXd, VectorXd> known(const std::vector<TableTerm>& terms, bool slopes = false) const {
+    MatrixXd columns = base_;
+    VectorXd deviations(base_.cols());
+    constexpr double kWide = 10.0;  // offsets and delays are known to nothing
+    for (Index c = 0; c < base_.cols(); ++c) deviations(c) = kWide * usual_ / std::max(rms(base_.col(c)), 1e-12);
+    for (const TableTerm& term : terms) {
+      const MatrixXd own = slopes ? term.slopes(rows_) : term.columns(rows_);
+      const VectorXd known_to = term.deviations(own, usual_);
+      columns.conservativeResize(Eigen::NoChange, columns.cols() + own.cols());
+      columns.rightCols(own.cols()) = own;
+      deviations.conservativeResize(columns.cols());
+      deviations.tail(own.cols()) = known_to;
+    }
+    return {std::move(columns), std::move(deviations)};
+  }
+
+  const sim::DriveDescription& model_;
+  TableRows& rows_;
+  double usual_;
+  MatrixXd base_;
+  Evidence evidence_;
+  double deceleration_ = 0.0;
+};
+
+/// What terms with the training rows' factors leave on the rows that judge. What belongs to a record is fitted there.
+VectorXd left_on(const TableRows& judge, const std::vector<TableTerm>& terms, const VectorXd& factors, Index base) {
+  VectorXd left = judge.y;
+  MatrixXd own = table_base(judge);
+  Index first = base;
+  for (const TableTerm& term : terms) {
+    const MatrixXd columns = term.columns(judge);
+    if (term.is_of_the_record()) {
+      own.conservativeResize(Eigen::NoChange, own.cols() + columns.cols());
+      own.rightCols(columns.cols()) = columns;
+      first += static_cast<Index>(columns.cols());  // as many in training or not: these factors are not used
+      continue;
+    }
+    left -= columns * factors.segment(first, columns.cols());
+    first += columns.cols();
+  }
+  return without(left, own);
+}
+
+/// Terms whose own number of factors does not depend on the records come first, so that left_on() finds its factors.
+void records_last(std::vector<TableTerm>& terms, std::vector<std::vector<std::string>>& groups,
+                  std::vector<double>& odds) {
+  for (std::size_t k = 0, left = terms.size(); left > 0; --left) {
+    if (!terms[k].is_of_the_record()) {
+      ++k;
+      continue;
+    }
+    std::rotate(terms.begin() + static_cast<std::ptrdiff_t>(k), terms.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                terms.end());
+    std::rotate(groups.begin() + static_cast<std::ptrdiff_t>(k), groups.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                groups.end());
+    std::rotate(odds.begin() + static_cast<std::ptrdiff_t>(k), odds.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                odds.end());
+  }
+}
+
+}  // namespace
+
+const TableEffect* TableStudy::find(std::string_view kind) const {
+  for (const TableEffect& effect : effects)
+    if (effect.group.size() == 1 && effect.kind() == kind) return &effect;
+  return nullptr;
+}
+
+std::optional<double> TableStudy::probability(std::string_view kind) const {
+  if (find(kind) != nullptr) return find(kind)->probability;
+  for (const auto& [name, odds] : absent_odds)
+    if (name == kind) return odds;
+  return {};
+}
+
+TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                       const std::vector<const Record*>& validation) {
+  TableStudy study;
+  study.train = table_rows(training, model.data);
+  if (study.empty() || !(study.train.way.minCoeff() < study.train.way.maxCoeff())) return {};
+  study.judge = table_rows(validation, model.data);
+  const bool other_channels = study.judge.has_effort() != study.train.has_effort();
+  if (study.judge.size() == 0 || other_channels) study.judge = study.train;
+  if (study.judge.temp_C.size() == 0) study.train.temp_C.resize(0);
+  take_out_known(model, study.train);
+  take_out_known(model, study.judge);
+  study.noise_um = study.train.noise_um;
+  const double usual = std::max(rms(without(study.train.y, table_base(study.train))), study.noise_um);
+  Search search(model, study.train, usual);
+  const Index base = table_base(study.train).cols();
+
+  std::vector<TableTerm> chosen;
+  std::vector<std::vector<std::string>> groups;
+  std::vector<double> odds;
+  EvidenceFit fit = search.fit(chosen);
+  Progress progress("measuring the table against the motor", std::size(kTableKinds));
+  while (chosen.size() < kMostEffects) {
+    if (!chosen.empty()) progress.add_steps(std::size(kTableKinds));
+    std::vector<Fitted> found;
+    std::vector<std::pair<std::string, double>> denied;
+    std::vector<double> logs = {std::log(kNothingMore) + fit.log_evidence};
+    for (const std::string_view kind : kTableKinds) {
+      progress.advance(1, kind);
+      if (count_of(chosen, kind) >= (kind == "encoder_cyclic_error" ? kMostCyclic : 1) || stands_in(model, kind))
+        continue;
+      if (std::optional<Fitted> best = search.best_form(kind, chosen, fit)) {
+        logs.push_back(std::log((1.0 - kNothingMore) / std::size(kTableKinds)) + best->log_evidence);
+        found.push_back(*std::move(best));
+      } else if (count_of(chosen, kind) == 0 && search.can_show(kind)) {
+        denied.emplace_back(kind, 0.0);
+      }
+    }
+    const std::vector<double> probable = posterior(logs);
+    study.absent_odds = std::move(denied);
+    std::vector<std::size_t> order(found.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      order[k] = k;
+      if (count_of(chosen, found[k].term.kind) == 0)
+        study.absent_odds.emplace_back(found[k].term.kind, probable[k + 1]);
+    }
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t k) { return probable[k + 1]; });
+    std::vector<std::string> group;
+    double held = 0.0;
+    constexpr std::size_t kMostAlike = 2;
+    for (std::size_t k = 0; k < std::min(kMostAlike, order.size()) && held < kClaimed; ++k) {
+      group.push_back(found[order[k]].term.kind);
+      held += probable[order[k] + 1];
+    }
+    if (held < kClaimed) break;
+    chosen.push_back(found[order.front()].term);
+    if (chosen.back().is_driven())
+      for (TableTerm& term : chosen)
+        if (term.is_driven()) term.drive = chosen.back().drive;
+    groups.push_back(std::move(group));
+    odds.push_back(held);
+    fit = search.fit_from(fit, chosen);
+    // What was found first was found beside what was still unknown.
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      std::rotate(chosen.begin(), chosen.begin() + 1, chosen.end());
+      std::rotate(groups.begin(), groups.begin() + 1, groups.end());
+      std::rotate(odds.begin(), odds.begin() + 1, odds.end());
+      fit = search.fit_from(fit, chosen);
+      search.refine(chosen, fit);
+      search.note_motor(chosen, fit);
+    }
+  }
+  records_last(chosen, groups, odds);
+  fit = search.fit_from(fit, chosen);
+  // Whether each is still needed beside the others; once more when one has gone.
+  std::vector<std::vector<TableTerm>> others_of(chosen.size());
+  std::vector<EvidenceFit> less_of(chosen.size());
+  for (std::size_t k = 0; k < chosen.size();) {
+    others_of[k] = chosen;
+    others_of[k].erase(others_of[k].begin() + static_cast<std::ptrdiff_t>(k));
+    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.correlation);
+    less_of[k] = search.fit(others_of[k]);
+    const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
+    const double needed = logistic(fit.log_evidence - less_of[k].log_evidence + prior);
+    if (needed >= kClaimed && !search.wrong_way(chosen, fit)) {
+      odds[k] = std::min(odds[k], needed);
+      ++k;
+      continue;
+    }
+    study.absent_odds.emplace_back(chosen[k].kind, needed);
+    groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
+    odds.erase(odds.begin() + static_cast<std::ptrdiff_t>(k));
+    chosen = others_of[k];
+    fit = less_of[k];
+    k = 0;
+  }
+  study.delay_s = -1e-3 * fit.factors(base - 1);
+  search.note_motor(study.judge, chosen, fit);
+  const MatrixXd covariance = factor_covariance(search.fit_slopes(fit, chosen), base, chosen, study.train, usual);
+  study.left = left_on(study.judge, chosen, fit.factors, base);
+  study.left_um = rms(study.left);
+  study.before_um = rms(left_on(study.judge, {}, fit.factors, base));
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    TableEffect effect = table_effect(chosen[k], fit, covariance, search.first_column(chosen, k), study.train, model);
+    // What stands in the model by itself is no other name of this one.
+    for (const std::string& kind : groups[k])
+      if (kind == chosen[k].kind || count_of(chosen, kind) == 0) effect.group.push_back(kind);
+    effect.probability = odds[k];
+    effect.before = rms(left_on(study.judge, others_of[k], less_of[k].factors, base));
+    effect.after = study.left_um;
+    const double taken = effect.before * effect.before - effect.after * effect.after;
+    effect.worth_naming = taken >= kWorthNaming * effect.before * effect.before &&
+                          taken >= kWorthOfAll * study.before_um * study.before_um;
+    study.effects.push_back(std::move(effect));
+  }
+  return study;
+}
+
+}  // namespace host

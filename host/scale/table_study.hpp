@@ -1,0 +1,67 @@
+// What a sensor on the table shows against the motor's encoder: which effects stand between them, by evidence alone,
+// and how large they are.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/scale/table_terms.hpp"
+
+namespace host {
+
+/// A value with its 95 % interval.
+struct TableSize {
+  std::string name, unit;  ///< "gap", "um"
+  double value = 0.0;
+  std::array<double, 2> ci95{};
+};
+
+struct TablePoint {
+  double x_mm = 0.0, um = 0.0, deviation_um = 0.0;
+};
+
+/// One effect that is certain.
+struct TableEffect {
+  std::vector<std::string> group;    ///< one kind, or those that these rows do not tell apart, most probable first
+  std::string place;                 ///< of a cyclic error: "motor", "scale", "scale or motor"
+  double probability = 0.0;          ///< of the group
+  double before = 0.0, after = 0.0;  ///< RMS on the rows that judge, um
+  bool worth_naming = false;         ///< by the losses of infer/posterior.hpp
+  std::vector<TableSize> sizes;
+  std::vector<TablePoint> curve;  ///< of a pitch error
+  sim::EffectEntry entry;         ///< as a model holds it; without parameters where it cannot
+  std::string words;
+
+  const std::string& kind() const { return group.front(); }
+};
+
+struct TableStudy {
+  TableRows train, judge;                 ///< the same where nothing was held back
+  double before_um = 0.0, left_um = 0.0;  ///< RMS on the rows that judge: offsets and delay alone; with all effects
+  double noise_um = 0.0;
+  double delay_s = 0.0;                                     ///< by which the table is read after the motor
+  std::vector<TableEffect> effects;                         ///< in the order in which they were found
+  std::vector<std::pair<std::string, double>> absent_odds;  ///< probability of each kind that was not found
+  Eigen::VectorXd left;                                     ///< of every row that judges, um
+
+  bool empty() const { return train.size() == 0; }
+  const TableEffect* find(std::string_view kind) const;
+  /// That this kind is missing from the model, 0..1; nothing where these records cannot say.
+  std::optional<double> probability(std::string_view kind) const;
+};
+
+/// Kinds that the model has already stand as they are. Empty where no record has a second position, or the axis does
+/// not move both ways. Throws Failure(bad_input) where the drive's constants are missing.
+TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& training,
+                       const std::vector<const Record*>& validation);
+
+/// "backlash 12.3 um (95 %: 12.0 to 12.6); …": sentences; what they leave.
+std::string table_words(const TableStudy& study);
+
+/// {"rms_um": …, "noise_um", "left_um", "found": [{"kinds", "place", "probability", "sizes": {…}, "curve": […]}]}
+nlohmann::json table_json(const TableStudy& study);
+
+}  // namespace host

@@ -1,0 +1,217 @@
+#include "host/scale/table_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "host/statistics.hpp"
+
+namespace host {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double size_of(const VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
+}
+
+MatrixXd waves(const TableRows& rows, double period, double zero, int orders) {
+  MatrixXd columns(rows.size(), 2 * orders);
+  for (int order = 1; order <= orders; ++order)
+    for (const int part : {0, 1})
+      columns.col(2 * (order - 1) + part) = rows.means([&](const TableRecord& one) {
+        std::vector<double> wave(one.x.size());
+        for (std::size_t k = 0; k < wave.size(); ++k) {
+          const double at = 2.0 * std::numbers::pi * order * (one.x[k] - zero) / period;
+          wave[k] = part == 0 ? std::cos(at) : std::sin(at);
+        }
+        return wave;
+      });
+  return columns;
+}
+
+MatrixXd growth(const TableRows& rows, double time_s) {
+  if (!(time_s > 0.0)) return rows.temp_C.array() - rows.temp_C.mean();
+  MatrixXd columns = MatrixXd::Zero(rows.size(), static_cast<Index>(rows.records.size()));
+  for (std::size_t r = 0; r < rows.records.size(); ++r) {
+    const TableRecord& one = rows.records[r];
+    for (Index k = one.first_row; k < one.first_row + one.rows; ++k)
+      columns(k, static_cast<Index>(r)) = -std::expm1(-(rows.t_s(k) - rows.t_s(one.first_row)) / time_s);
+  }
+  return columns;
+}
+
+/// Each knot's share in each row: piecewise linear functions that sum to 1.
+MatrixXd hats_over(const VectorXd& at, double low, double high, int count, bool by_factor) {
+  MatrixXd columns = MatrixXd::Zero(at.size(), count);
+  const double scale = by_factor ? std::log(high / low) : high - low;
+  for (Index k = 0; k < at.size(); ++k) {
+    const double q = std::clamp(at(k), low, high);
+    const double place = (by_factor ? std::log(q / low) : q - low) / scale * (count - 1);
+    const Index left = std::min<Index>(static_cast<Index>(place), count - 2);
+    columns(k, left + 1) = place - static_cast<double>(left);
+    columns(k, left) = 1.0 - columns(k, left + 1);
+  }
+  return columns;
+}
+
+/// A gap beside a spring leaves the shape to the spring.
+bool has_shape(const TableTerm& term) { return term.kind == "compliance" || !(term.drive.lag > 0.0); }
+
+MatrixXd beside_shape(const TableTerm& term, const TableRows& rows, const VectorXd& own, const VectorXd& all) {
+  MatrixXd columns(rows.size(), term.count(rows));
+  columns.col(0) = own;
+  if (!has_shape(term)) return columns;
+  Index next = 1;
+  for (const DriveRange& range : shape_ranges(term.drive, term.deceleration))
+    columns.col(next++) = slope_of(term.drive, range.which, range.step, rows, all);
+  return columns;
+}
+
+}  // namespace
+
+MatrixXd TableTerm::columns(const TableRows& rows) const {
+  if (is_driven()) {
+    const DrivenRows driven = drive_table(drive, rows);
+    return beside_shape(*this, rows, kind == "backlash" ? driven.gap : driven.pull, driven.all);
+  }
+  if (kind == "encoder_cyclic_error") return waves(rows, shape[0], 0.0, 1);
+  if (kind == "thermal_growth") return growth(rows, shape[0]);
+  MatrixXd columns(rows.size(), 1 + 2 * kPitchOrders);
+  columns << 1e-3 * (rows.x.array() - shape[0]).matrix(), waves(rows, kPitchPeriod * shape[1], shape[0], kPitchOrders);
+  return columns;
+}
+
+MatrixXd TableTerm::slopes(const TableRows& rows) const {
+  if (!is_driven()) return columns(rows);
+  constexpr double kStep = 0.02;  // relative
+  const VectorXd all = drive_table(drive, rows).all;
+  const DriveNumber own = kind == "backlash" ? DriveNumber::gap : DriveNumber::lag;
+  const double size = 1e3 * (kind == "backlash" ? drive.gap : drive.lag);
+  return beside_shape(*this, rows, slope_of(drive, own, kStep, rows, all) / size, all);
+}
+
+Index TableTerm::count(const TableRows& rows) const {
+  if (is_driven()) return 1 + (has_shape(*this) ? static_cast<Index>(shape_ranges(drive, 0.0).size()) : 0);
+  if (kind == "encoder_cyclic_error") return 2;
+  if (kind == "thermal_growth") return shape[0] > 0.0 ? static_cast<Index>(rows.records.size()) : 1;
+  return 1 + 2 * kPitchOrders;
+}
+
+MatrixXd TableTerm::quick_columns(const TableRows& rows) const {
+  if (kind != "encoder_cyclic_error") return columns(rows);
+  MatrixXd quick(rows.size(), 2);
+  for (const TableRecord& one : rows.records) {
+    const double row_s = one.record->sample_period_s * static_cast<double>(one.stride);
+    for (Index k = one.first_row; k < one.first_row + one.rows; ++k) {
+      const double at = 2.0 * std::numbers::pi * rows.x(k) / shape[0];
+      const double half = std::numbers::pi * rows.v(k) * row_s / shape[0];
+      const double left = std::abs(half) > 1e-6 ? std::sin(half) / half : 1.0;
+      quick(k, 0) = left * std::cos(at);
+      quick(k, 1) = left * std::sin(at);
+    }
+  }
+  return quick;
+}
+
+VectorXd TableTerm::deviations(const MatrixXd& columns, double usual) const {
+  VectorXd deviations(columns.cols());
+  for (Index c = 0; c < columns.cols(); ++c) deviations(c) = usual / std::max(size_of(columns.col(c)), 1e-12);
+  if (is_driven() && columns.cols() > 1) {
+    Index next = 1;
+    for (const DriveRange& range : shape_ranges(drive, deceleration)) deviations(next++) = range.deviation;
+  }
+  // Curves are smooth: a wave's amplitude falls with its order.
+  if (kind == "pitch_error")
+    for (Index c = 1; c < columns.cols(); ++c) deviations(c) /= static_cast<double>((c + 1) / 2);
+  return deviations;
+}
+
+std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows) {
+  std::vector<TableTerm> forms;
+  const std::string name(kind);
+  const double low = rows.x.minCoeff(), high = rows.x.maxCoeff(), travel = high - low;
+  if (kind == "pitch_error") {
+    if (travel > 0.0) forms.push_back({name, {0.5 * (low + high), travel}, {}});
+  } else if (kind == "thermal_growth") {
+    double longest_s = 0.0;
+    for (const TableRecord& one : rows.records)
+      longest_s = std::max(longest_s, rows.t_s(one.first_row + one.rows - 1) - rows.t_s(one.first_row));
+    for (const double part : {0.1, 0.3, 1.0, 10.0}) forms.push_back({name, {part * longest_s}, {}});
+    if (rows.temp_C.size() > 0 && rows.temp_C.maxCoeff() > rows.temp_C.minCoeff()) forms.push_back({name, {0.0}, {}});
+  } else if (travel > 0.0) {
+    // From where the pitch curve ends down to what the slower half of the rows resolves.
+    constexpr double kRowsAPeriod = 3.0, kMostPeriods = 4000.0;
+    std::vector<double> steps;
+    for (Index k = 1; k < rows.size(); ++k)
+      if (const double step = std::abs(rows.x(k) - rows.x(k - 1)); step > 0.1e-3) steps.push_back(step);
+    if (steps.empty()) return forms;
+    const double shortest = std::max(kRowsAPeriod * quantile(std::move(steps), 0.25), travel / kMostPeriods);
+    const double longest = kPitchPeriod * travel / (kPitchOrders + 1);
+    for (double waves = travel / longest; waves < travel / shortest; waves += 0.5)
+      forms.push_back({name, {travel / waves}, {}});
+  }
+  return forms;
+}
+
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration) {
+  // Gaps of good ball screws up to worn ones, within what is there; springs from 10 to 400 Hz with the motor held.
+  constexpr double kLeastGap_mm = 0.001, kMostGap_mm = 0.6, kLeastLag = 1.6e-7, kMostLag = 2.6e-4, kNoSlide = 1e5;
+  const double whole = 1e-3 * (rows.y.maxCoeff() - rows.y.minCoeff());
+  const double usual = deceleration > 0.0 ? deceleration : 500.0;
+  std::vector<double> gaps = {0.0}, lags = {0.0}, slower = {usual, 2.0 * usual, 4.0 * usual};
+  if (!spring) slower.push_back(kNoSlide);
+  if (gap) gaps.clear();
+  for (double free = kLeastGap_mm; gap && free < std::max(2.0 * kLeastGap_mm, std::min(kMostGap_mm, whole));
+       free *= 1.41)
+    gaps.push_back(free);
+  if (spring) lags.clear();
+  for (double lag = kLeastLag; spring && lag <= kMostLag; lag *= 1.6) lags.push_back(lag);
+  std::vector<TableDrive> starts;
+  for (const double lag : lags)
+    for (const double one : slower)
+      for (const double free : gaps) starts.push_back({.gap = free, .lag = lag, .deceleration = one});
+  return starts;
+}
+
+MatrixXd table_base(const TableRows& rows) {
+  MatrixXd base = MatrixXd::Zero(rows.size(), static_cast<Index>(rows.records.size()) + 1);
+  for (std::size_t r = 0; r < rows.records.size(); ++r)
+    base.col(static_cast<Index>(r)).segment(rows.records[r].first_row, rows.records[r].rows).setOnes();
+  base.rightCols(1) = rows.v;
+  return base;
+}
+
+Memory table_memory(const TableRows& rows, double usual) {
+  const MatrixXd base = table_base(rows);
+  MatrixXd plain(rows.size(), base.cols() + 4);
+  plain << base, rows.way, rows.a, rows.x, (rows.has_effort() ? rows.effort : VectorXd(rows.v.cwiseAbs()));
+  const Eigen::ColPivHouseholderQR<MatrixXd> others(plain);
+  Memory memory;
+  memory.columns.resize(rows.size(), 0);
+  memory.usual = usual;
+  const auto add = [&](const char* coordinate, const MatrixXd& columns) {
+    // What the effects themselves can explain is none of the memory's: Plumlee, JASA 112 (2017), eq. (5).
+    const MatrixXd left = columns - plain * others.solve(columns);
+    const Index first = memory.columns.cols();
+    memory.columns.conservativeResize(rows.size(), first + left.cols());
+    memory.columns.rightCols(left.cols()) = left;
+    memory.groups.push_back({coordinate, first, left.cols()});
+  };
+  const double travel = rows.x.maxCoeff() - rows.x.minCoeff(), top = rows.v.cwiseAbs().maxCoeff();
+  const auto by_way = rows.way.asDiagonal();
+  if (top > 0.0) add("speed", by_way * hats_over(rows.v.cwiseAbs(), 0.02 * top, top, 6, true));
+  if (travel > 0.0) {
+    add("position", by_way * hats_over(rows.x, rows.x.minCoeff(), rows.x.maxCoeff(), 8, false));
+    add("travel_since_reversal", by_way * hats_over(rows.since, 1e-4 * travel, 0.3 * travel, 8, true));
+  }
+  if (rows.has_effort() && rows.effort.maxCoeff() > rows.effort.minCoeff())
+    add("current", hats_over(rows.effort, rows.effort.minCoeff(), rows.effort.maxCoeff(), 7, false));
+  return memory;
+}
+
+}  // namespace host
