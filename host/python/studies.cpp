@@ -1,4 +1,5 @@
 // friction, plan, bode, circle, export, effects, scoreboard: what the commands of the same names call.
+#include <fmt/format.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
