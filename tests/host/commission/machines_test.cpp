@@ -41,7 +41,9 @@ Outcome commissioned(OwnBoard& board, const host::CommissionOptions& options) {
   // Its steps state the same figures for the initial model, as the commands do.
   const json diagnosed = read(folder.path("x/diagnosis.json"));
   EXPECT_EQ(read(folder.path("x/comparison.json"))["error"], diagnosed["error"]["given"]["validate"]);
-  Outcome outcome{read(folder.path("x/commission.json")), read(folder.path("x/errors.json")), {}};
+  Outcome outcome;
+  outcome.state = read(folder.path("x/commission.json"));
+  outcome.errors = read(folder.path("x/errors.json"));
   std::ifstream page(folder.path("x/page.html"));
   outcome.page.assign(std::istreambuf_iterator<char>(page), {});
   const json compared = read(folder.path("x/comparison.json")), improved = read(folder.path("x/improvement.json"));
