@@ -95,6 +95,7 @@ class Bench:
         for plant in ("05-own-plant.py", "05-own-plant.toml"):
             shutil.copy(PROJECT / "host/examples" / plant, folder)
         shutil.copy(PROJECT / "host/hil/scenarios/square.toml", folder / "mine.toml")
+        (folder / "readings.csv").write_text("x_mm,dial_mm\n0,0\n0.1,0.1\n0.2,0.2\n0.1,0.112\n0,0.012\n", "utf-8")
         (folder / "part.ngc").write_text("G21 G90 G1 F600 X1\nG1 X0\nM2\n", encoding="utf-8")
         self.lay_out("")
         self.must("axistool design x.toml -o stage-params.toml")

@@ -7,7 +7,7 @@ $python -c 'import numpy, setuptools, pip' 2> /dev/null || { echo "python3-numpy
 project=$(cd "$(dirname "$0")/../../.." && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp -r "$project/host/python" "$folder/source"
+cp -a "$project/host/python" "$folder/source"
 : "${AXIS_BUILD:?names the build tree}"
 if (cd "$folder/source" && AXIS_BUILD= $python setup.py -q build_ext > "$folder/log" 2>&1) ||
   ! grep -q 'install from its own folder' "$folder/log"; then
