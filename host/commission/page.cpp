@@ -172,8 +172,8 @@ void add_picture(Report& report, const Page& page, const std::vector<std::pair<c
   for (const auto& [file, name] : runs)
     views.push_back(
         {name, SeriesRole::residual, following_along(read_record(page.session.folder().path(file)), data), {}});
-  add_residual_plot(report, coordinate_of("position", data.kind, period), "Along the travel",
-                    {"following error", "µm"}, views, &ResidualView::force, Layout::side_by_side);
+  add_residual_plot(report, coordinate_of("position", data.kind, period), "Along the travel", {"following error", "µm"},
+                    views, &ResidualView::force, Layout::side_by_side);
 }
 
 /// "response-01.csv to response-09.csv" for consecutively numbered files.
