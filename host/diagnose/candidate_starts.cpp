@@ -227,7 +227,7 @@ bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& mod
   if (info.kind == "coulomb_asymmetry") return coulomb != nullptr && coulomb->has("level");
   if (info.kind == "viscous_asymmetry") return model.find("viscous") != nullptr;
   if (info.curve) return false;                       // names nothing: never a discovery
-  if (info.kind == "external_torque") return false;   // belongs to a time: never transfers to another record
+  if (info.kind == "external_torque") return false;   // acts at one time: no other record shows it
   if (info.stage == sim::Stage::table) return false;  // the motor does not show it
   if (set.measure == Measure::effort && info.stage == sim::Stage::tachometer) return false;
   const auto has_speed = [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); };

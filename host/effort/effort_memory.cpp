@@ -1,77 +1,16 @@
 #include "host/effort/effort_memory.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 #include <utility>
 
-#include "host/dense_solutions.hpp"
+#include "host/infer/memory_builder.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
 
-namespace {
-
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Knots from the smallest to the largest value: even steps, or steps of a constant factor.
-std::vector<double> even(double low, double high, int count) {
-  std::vector<double> knots;
-  for (int k = 0; k < count; ++k) knots.push_back(low + (high - low) * k / (count - 1));
-  return knots;
-}
-
-std::vector<double> by_factor(double low, double high, int count) {
-  std::vector<double> knots;
-  for (int k = 0; k < count; ++k) knots.push_back(low * std::pow(high / low, static_cast<double>(k) / (count - 1)));
-  return knots;
-}
-
-/// Each knot's share in each row: piecewise linear functions that sum to 1.
-MatrixXd hats(const VectorXd& at, const std::vector<double>& knots) {
-  MatrixXd columns = MatrixXd::Zero(at.size(), static_cast<Index>(knots.size()));
-  for (Index k = 0; k < at.size(); ++k) {
-    const double q = std::clamp(at(k), knots.front(), knots.back());
-    const auto above = std::ranges::upper_bound(knots.begin() + 1, knots.end() - 1, q);
-    const auto n = static_cast<Index>(above - knots.begin());
-    const auto i = static_cast<std::size_t>(n);
-    const double part = (q - knots[i - 1]) / (knots[i] - knots[i - 1]);
-    columns(k, n - 1) = 1.0 - part;
-    columns(k, n) = part;
-  }
-  return columns;
-}
-
-/// The part of the columns that others do not explain. A memory that can explain what the model can would mask it: M.
-/// Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
-MatrixXd beside(const MatrixXd& columns, const MatrixXd& others) {
-  return columns - others * least_squares_solution(others, columns);
-}
-
-class Builder {
- public:
-  void add(std::string coordinate, const MatrixXd& columns) {
-    const Index first = memory_.columns.cols();
-    for (Index c = 0; c < columns.cols(); ++c) {
-      if (columns.col(c).cwiseAbs().maxCoeff() <= 0.0) continue;
-      memory_.columns.conservativeResize(columns.rows(), memory_.columns.cols() + 1);
-      memory_.columns.rightCols(1) = columns.col(c);
-    }
-    if (memory_.columns.cols() > first)
-      memory_.groups.push_back({std::move(coordinate), first, memory_.columns.cols() - first});
-  }
-  Memory take(double usual) {
-    memory_.usual = usual;
-    return std::move(memory_);
-  }
-
- private:
-  Memory memory_;
-};
-
-}  // namespace
 
 std::vector<RowRun> runs_of(const EffortRows& rows) {
   std::vector<RowRun> runs;
@@ -96,8 +35,8 @@ Memory effort_memory(const EffortRows& rows, const VectorXd& explained, double u
   const VectorXd speed = rows.w.cwiseAbs();
   std::vector<double> sizes(speed.begin(), speed.end());
   const double top = quantile(std::move(sizes), 0.98);
-  Builder memory;
-  std::vector<double> knots = by_factor(0.02 * top, 1.2 * top, 7);
+  MemoryBuilder memory;
+  std::vector<double> knots = knots_by_factor(0.02 * top, 1.2 * top, 7);
   knots.insert(knots.begin(), 0.0);
   const MatrixXd over_speed = hats(speed, knots);
   MatrixXd by_direction(over_speed.rows(), 2 * over_speed.cols());
@@ -107,20 +46,20 @@ Memory effort_memory(const EffortRows& rows, const VectorXd& explained, double u
   plain << forward, backward, rows.w, speed;
   memory.add("speed", beside(by_direction, plain));
   if (rows.has_position && rows.x.maxCoeff() > rows.x.minCoeff()) {
-    const MatrixXd over_position = hats(rows.x, even(rows.x.minCoeff(), rows.x.maxCoeff(), 12));
+    const MatrixXd over_position = hats(rows.x, even_knots(rows.x.minCoeff(), rows.x.maxCoeff(), 12));
     memory.add("position", over_position);
     memory.add("position", direction.asDiagonal() * over_position);
     const VectorXd since = travel_since_reversal(rows);
     const double travel = rows.x.maxCoeff() - rows.x.minCoeff();
     if (since.maxCoeff() > 0.0)
       memory.add("travel_since_reversal",
-                 direction.asDiagonal() * hats(since, by_factor(1e-4 * travel, 0.3 * travel, 8)));
+                 direction.asDiagonal() * hats(since, knots_by_factor(1e-4 * travel, 0.3 * travel, 8)));
   }
   const double first_s = rows.t_s.minCoeff(), last_s = rows.t_s.maxCoeff();
-  if (last_s > first_s) memory.add("time", direction.asDiagonal() * hats(rows.t_s, even(first_s, last_s, 6)));
+  if (last_s > first_s) memory.add("time", direction.asDiagonal() * hats(rows.t_s, even_knots(first_s, last_s, 6)));
   const VectorXd load = explained.cwiseAbs();
   const VectorXd way = explained.unaryExpr([](double value) { return value > 0.0 ? 1.0 : -1.0; });
-  if (load.maxCoeff() > 0.0) memory.add("current", way.asDiagonal() * hats(load, even(0.0, load.maxCoeff(), 6)));
+  if (load.maxCoeff() > 0.0) memory.add("current", way.asDiagonal() * hats(load, even_knots(0.0, load.maxCoeff(), 6)));
   const std::size_t records = rows.signals.size();
   if (records > 1) {
     MatrixXd level = MatrixXd::Zero(rows.w.size(), static_cast<Index>(records));

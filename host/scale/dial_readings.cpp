@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "host/dense_solutions.hpp"
 #include "host/exit_codes.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/number.hpp"
@@ -124,11 +125,11 @@ DialFit fitted_from(const DialReadings& readings, double width, double first, bo
     y(k) = 1e3 * (readings.dial_mm[at] - readings.x_mm[at]) - behind(k);
     if (lead) columns(k, 1) = 1e-3 * (readings.x_mm[at] - readings.x_mm[0]);
   }
-  const Eigen::LDLT<MatrixXd> normal(columns.transpose() * columns);
-  DialFit fit{normal.solve(columns.transpose() * y), 0.0, 0.0};
+  const MatrixXd normal = gram(columns);
+  DialFit fit{symmetric_solution(normal, VectorXd(columns.transpose() * y)), 0.0, 0.0};
   fit.square = (y - columns * fit.factors).squaredNorm();
   const double noise = fit.square / std::max<double>(1.0, static_cast<double>(y.size() - columns.cols() - 1));
-  if (lead) fit.lead_deviation = std::sqrt(noise * normal.solve(MatrixXd::Identity(2, 2))(1, 1));
+  if (lead) fit.lead_deviation = std::sqrt(noise * symmetric_inverse(normal)(1, 1));
   return fit;
 }
 

@@ -1,7 +1,7 @@
 // Gap, spring, friction and drag of a driven table by one joint fit.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "host/infer/evidence.hpp"

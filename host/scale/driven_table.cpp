@@ -180,15 +180,4 @@ std::vector<DrivenRows> drive_tables(std::span<const TableDrive> drives, const T
   return found;
 }
 
-DrivenRows drive_table(const TableDrive& drive, const TableRows& rows) {
-  return drive_tables(std::span(&drive, 1), rows).front();
-}
-
-Eigen::VectorXd slope_of(const TableDrive& drive, DriveNumber which, double step, const TableRows& rows,
-                         const Eigen::VectorXd& all) {
-  TableDrive moved = drive;
-  set_number(moved, which, number_of(drive, which) + step);
-  return (drive_table(moved, rows).all - all) / step;
-}
-
 }  // namespace host

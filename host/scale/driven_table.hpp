@@ -6,7 +6,7 @@
 // All is measured against the table's own inertia, so the motor's motion alone says how the table follows.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 
@@ -49,12 +49,7 @@ struct DrivenRows {
 };
 
 /// The motor's end moves as `TableRecord::pusher` says; each record begins with the spring unbent in the gap's middle.
-DrivenRows drive_table(const TableDrive& drive, const TableRows& rows);
-/// The same of many, side by side: all with a spring or all without one. At least one.
+/// Drives are simulated side by side: all with a spring or all without one. At least one.
 std::vector<DrivenRows> drive_tables(std::span<const TableDrive> drives, const TableRows& rows);
-
-/// What a change of one number by 1 does to DrivenRows::all, um.
-Eigen::VectorXd slope_of(const TableDrive& drive, DriveNumber which, double step, const TableRows& rows,
-                         const Eigen::VectorXd& all);
 
 }  // namespace host

@@ -71,6 +71,10 @@ VectorXd TableRows::means(const std::function<std::vector<double>(const TableRec
   return all;
 }
 
+double rms(const VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
+}
+
 TableRows table_rows(const std::vector<const Record*>& records, const sim::DataSheet& data) {
   TableRows rows;
   std::size_t samples = 0;

@@ -1,7 +1,7 @@
 // Rows of what the table does against the motor: x2 - x, and the motion and force meanwhile.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <functional>
 #include <vector>
 
@@ -44,6 +44,8 @@ struct TableRows {
   /// Means over each row's samples of what `of` gives for every sample of a record.
   Eigen::VectorXd means(const std::function<std::vector<double>(const TableRecord&)>& of) const;
 };
+
+double rms(const Eigen::VectorXd& values);
 
 /// Of those records that have both positions; empty where none has. Throws Failure(bad_input) where the drive's
 /// constants are missing.

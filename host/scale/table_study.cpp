@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "host/dense_solutions.hpp"
 #include "host/infer/posterior.hpp"
 #include "host/parallel.hpp"
 #include "host/report/progress.hpp"
@@ -20,16 +21,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double rms(const VectorXd& values) {
-  return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
-}
+VectorXd without(const VectorXd& y, const MatrixXd& columns) { return y - columns * least_norm_solution(columns, y); }
 
-VectorXd without(const VectorXd& y, const MatrixXd& columns) {
-  return y - columns * columns.completeOrthogonalDecomposition().solve(y);
-}
-
-/// What a form's factors compare to: nothing between motor and table is larger than what is there.
-constexpr double kOneScale = 1.0;
 /// Forms of one kind that are fitted in full, of those that promise most.
 constexpr std::size_t kFormsFitted = 3;
 /// More of one kind stand in no machine that one answer helps.
@@ -100,7 +93,7 @@ class Search {
       columns *= deviations.asDiagonal();
       std::vector<int> sign(static_cast<std::size_t>(columns.cols()), 0);
       sign.front() = forms[f].sign();
-      gains[f] = evidence_.gains(before, columns, sign, VectorXd::Constant(1, kOneScale))(0);
+      gains[f] = evidence_.gains(before, columns, sign, VectorXd::Ones(1))(0);
     });
     std::vector<std::size_t> order(forms.size());
     for (std::size_t f = 0; f < order.size(); ++f) order[f] = f;

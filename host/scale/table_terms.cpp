@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "host/infer/memory_builder.hpp"
 #include "host/statistics.hpp"
 
 namespace host {
@@ -14,10 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-double size_of(const VectorXd& values) {
-  return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
-}
 
 MatrixXd waves(const TableRows& rows, double period, double zero, int orders) {
   MatrixXd columns(rows.size(), 2 * orders);
@@ -45,39 +42,48 @@ MatrixXd growth(const TableRows& rows, double time_s) {
   return columns;
 }
 
-/// Each knot's share in each row: piecewise linear functions that sum to 1.
-MatrixXd hats_over(const VectorXd& at, double low, double high, int count, bool by_factor) {
-  MatrixXd columns = MatrixXd::Zero(at.size(), count);
-  const double scale = by_factor ? std::log(high / low) : high - low;
-  for (Index k = 0; k < at.size(); ++k) {
-    const double q = std::clamp(at(k), low, high);
-    const double place = (by_factor ? std::log(q / low) : q - low) / scale * (count - 1);
-    const Index left = std::min<Index>(static_cast<Index>(place), count - 2);
-    columns(k, left + 1) = place - static_cast<double>(left);
-    columns(k, left) = 1.0 - columns(k, left + 1);
-  }
-  return columns;
+/// With knots by a constant factor, linear over the logarithm.
+MatrixXd log_hats(const VectorXd& at, double low, double high, int count) {
+  return hats(at.cwiseMax(low).array().log(), even_knots(std::log(low), std::log(high), count));
 }
 
 /// A gap beside a spring leaves the shape to the spring.
 bool has_shape(const TableTerm& term) { return term.kind == "compliance" || !(term.drive.lag > 0.0); }
 
-MatrixXd beside_shape(const TableTerm& term, const TableRows& rows, const VectorXd& own, const VectorXd& all) {
-  MatrixXd columns(rows.size(), term.count(rows));
-  columns.col(0) = own;
-  if (!has_shape(term)) return columns;
-  Index next = 1;
-  for (const DriveRange& range : shape_ranges(term.drive, term.deceleration))
-    columns.col(next++) = slope_of(term.drive, range.which, range.step, rows, all);
-  return columns;
+/// What a change of the drive's numbers by 1 does, um; the drive itself and all changes are simulated side by side.
+struct DrivenSlopes {
+  DrivenRows at;
+  MatrixXd slopes;
+};
+DrivenSlopes slopes_of(const TableDrive& drive, const std::vector<std::pair<DriveNumber, double>>& steps,
+                       const TableRows& rows) {
+  std::vector<TableDrive> drives(1 + steps.size(), drive);
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    set_number(drives[k + 1], steps[k].first, number_of(drive, steps[k].first) + steps[k].second);
+  std::vector<DrivenRows> driven = drive_tables(drives, rows);
+  DrivenSlopes found{std::move(driven.front()), MatrixXd(rows.size(), static_cast<Index>(steps.size()))};
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    found.slopes.col(static_cast<Index>(k)) = (driven[k + 1].all - found.at.all) / steps[k].second;
+  return found;
+}
+
+/// Numbers of the shape, with the steps of their differences.
+std::vector<std::pair<DriveNumber, double>> shape_steps(const TableTerm& term) {
+  std::vector<std::pair<DriveNumber, double>> steps;
+  if (has_shape(term))
+    for (const DriveRange& range : shape_ranges(term.drive, term.deceleration))
+      steps.emplace_back(range.which, range.step);
+  return steps;
 }
 
 }  // namespace
 
 MatrixXd TableTerm::columns(const TableRows& rows) const {
   if (is_driven()) {
-    const DrivenRows driven = drive_table(drive, rows);
-    return beside_shape(*this, rows, kind == "backlash" ? driven.gap : driven.pull, driven.all);
+    const DrivenSlopes driven = slopes_of(drive, shape_steps(*this), rows);
+    MatrixXd columns(rows.size(), 1 + driven.slopes.cols());
+    columns << (kind == "backlash" ? driven.at.gap : driven.at.pull), driven.slopes;
+    return columns;
   }
   if (kind == "encoder_cyclic_error") return waves(rows, shape[0], 0.0, 1);
   if (kind == "thermal_growth") return growth(rows, shape[0]);
@@ -89,10 +95,12 @@ MatrixXd TableTerm::columns(const TableRows& rows) const {
 MatrixXd TableTerm::slopes(const TableRows& rows) const {
   if (!is_driven()) return columns(rows);
   constexpr double kStep = 0.02;  // relative
-  const VectorXd all = drive_table(drive, rows).all;
-  const DriveNumber own = kind == "backlash" ? DriveNumber::gap : DriveNumber::lag;
-  const double size = 1e3 * (kind == "backlash" ? drive.gap : drive.lag);
-  return beside_shape(*this, rows, slope_of(drive, own, kStep, rows, all) / size, all);
+  const bool is_gap = kind == "backlash";
+  std::vector<std::pair<DriveNumber, double>> steps = shape_steps(*this);
+  steps.insert(steps.begin(), {is_gap ? DriveNumber::gap : DriveNumber::lag, kStep});
+  MatrixXd columns = slopes_of(drive, steps, rows).slopes;
+  columns.col(0) /= 1e3 * (is_gap ? drive.gap : drive.lag);
+  return columns;
 }
 
 Index TableTerm::count(const TableRows& rows) const {
@@ -120,7 +128,7 @@ MatrixXd TableTerm::quick_columns(const TableRows& rows) const {
 
 VectorXd TableTerm::deviations(const MatrixXd& columns, double usual) const {
   VectorXd deviations(columns.cols());
-  for (Index c = 0; c < columns.cols(); ++c) deviations(c) = usual / std::max(size_of(columns.col(c)), 1e-12);
+  for (Index c = 0; c < columns.cols(); ++c) deviations(c) = usual / std::max(rms(columns.col(c)), 1e-12);
   if (is_driven() && columns.cols() > 1) {
     Index next = 1;
     for (const DriveRange& range : shape_ranges(drive, deceleration)) deviations(next++) = range.deviation;
@@ -190,28 +198,20 @@ Memory table_memory(const TableRows& rows, double usual) {
   const MatrixXd base = table_base(rows);
   MatrixXd plain(rows.size(), base.cols() + 4);
   plain << base, rows.way, rows.a, rows.x, (rows.has_effort() ? rows.effort : VectorXd(rows.v.cwiseAbs()));
-  const Eigen::ColPivHouseholderQR<MatrixXd> others(plain);
-  Memory memory;
-  memory.columns.resize(rows.size(), 0);
-  memory.usual = usual;
+  MemoryBuilder memory;
   const auto add = [&](const char* coordinate, const MatrixXd& columns) {
-    // What the effects themselves can explain is none of the memory's: Plumlee, JASA 112 (2017), eq. (5).
-    const MatrixXd left = columns - plain * others.solve(columns);
-    const Index first = memory.columns.cols();
-    memory.columns.conservativeResize(rows.size(), first + left.cols());
-    memory.columns.rightCols(left.cols()) = left;
-    memory.groups.push_back({coordinate, first, left.cols()});
+    memory.add(coordinate, beside(columns, plain));
   };
   const double travel = rows.x.maxCoeff() - rows.x.minCoeff(), top = rows.v.cwiseAbs().maxCoeff();
   const auto by_way = rows.way.asDiagonal();
-  if (top > 0.0) add("speed", by_way * hats_over(rows.v.cwiseAbs(), 0.02 * top, top, 6, true));
+  if (top > 0.0) add("speed", by_way * log_hats(rows.v.cwiseAbs(), 0.02 * top, top, 6));
   if (travel > 0.0) {
-    add("position", by_way * hats_over(rows.x, rows.x.minCoeff(), rows.x.maxCoeff(), 8, false));
-    add("travel_since_reversal", by_way * hats_over(rows.since, 1e-4 * travel, 0.3 * travel, 8, true));
+    add("position", by_way * hats(rows.x, even_knots(rows.x.minCoeff(), rows.x.maxCoeff(), 8)));
+    add("travel_since_reversal", by_way * log_hats(rows.since, 1e-4 * travel, 0.3 * travel, 8));
   }
   if (rows.has_effort() && rows.effort.maxCoeff() > rows.effort.minCoeff())
-    add("current", hats_over(rows.effort, rows.effort.minCoeff(), rows.effort.maxCoeff(), 7, false));
-  return memory;
+    add("current", hats(rows.effort, even_knots(rows.effort.minCoeff(), rows.effort.maxCoeff(), 7)));
+  return memory.take(usual);
 }
 
 }  // namespace host

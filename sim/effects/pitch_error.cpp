@@ -37,15 +37,13 @@ const EffectInfo pitch_error{
                    position_error_parameter(false),
                    period_parameter()},
     .shows =
-        "Only a scale on the table or a laser sees it: x2 - x is one curve over the travel, the same in both "
-        "directions "
-        "and at any force",
+        "Only a scale on the table or a laser shows it: x2 - x is one curve over the travel, the same in both "
+        "directions and at any force",
     .along = {"position"},
     .confused_with = {"encoder_cyclic_error", "thermal_growth"},
     .separate_by =
-        "A slow run over the whole travel, both ways, with a scale on the table (x2_mm) or a dial gauge at steps; "
-        "again "
-        "after an hour: what has stayed is the screw's",
+        "A slow run over the whole travel, both ways, with a scale on the table (x2_mm) or a dial gauge at steps. "
+        "Repeat it after an hour: the part that has not changed is the screw's",
     .origin = "Screw as ground or rolled: 5 to 50 um in 300 mm (ISO 3408-3, P1 to P7); racks more",
     .remedy = "Pitch error compensation in the control; close the position loop by the scale",
     .install = install_pitch_error,

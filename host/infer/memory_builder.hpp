@@ -1,0 +1,35 @@
+// Smooth functions over coordinates, as the columns of a memory.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "host/infer/evidence.hpp"
+
+namespace host {
+
+/// Knots from `low` to `high` (> low) with equal steps, or with a constant factor (low > 0). `count` >= 2.
+std::vector<double> even_knots(double low, double high, int count);
+std::vector<double> knots_by_factor(double low, double high, int count);
+
+/// Each knot's share in each row: piecewise linear functions that sum to 1, constant beyond the knots. Knots rise, and
+/// are 2 at least.
+Eigen::MatrixXd hats(const Eigen::VectorXd& at, const std::vector<double>& knots);
+
+/// The part of the columns that others do not explain. A memory that can explain what the model can would mask it: M.
+/// Plumlee, "Bayesian calibration of inexact computer models", JASA 112 (2017), eq. (5).
+Eigen::MatrixXd beside(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& others);
+
+class MemoryBuilder {
+ public:
+  /// Adds a group without the columns that are zero.
+  void add(std::string coordinate, const Eigen::MatrixXd& columns);
+  /// `usual`: size to which the factors compare, in the unit of y.
+  Memory take(double usual);
+
+ private:
+  Memory memory_;
+};
+
+}  // namespace host
