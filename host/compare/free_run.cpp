@@ -22,7 +22,7 @@ std::optional<double> free_run_rms(const sim::DriveDescription& model, const Pre
       drive.at(record.x[kGivenSamples - 1], product / (squares * prepared.period_s * model.data.lead));
   double sum = 0.0;
   for (std::size_t k = kGivenSamples; k < record.size(); ++k) {
-    drive.step(state, prepared.u_V[k - 1], record.t_s[k - 1], prepared.period_s);
+    prepared.held.step(drive, state, k - 1);
     sum += std::pow(drive.encoder(state) - record.x[k], 2);
   }
   const double rms = std::sqrt(sum / static_cast<double>(record.size() - kGivenSamples));

@@ -128,7 +128,7 @@ void run_side_by_side(const sim::Drive& drive, const PreparedRecord& prepared, s
     for (WindowRun& run : runs) {
       if (k >= run.window->length) continue;
       const std::size_t row = run.window->begin + k;
-      drive.step(run.state, prepared.u_V[row], prepared.record->t_s[row], prepared.period_s);
+      prepared.held.step(drive, run.state, row);
       run.x[k] = drive.encoder(run.state);
       run.w[k] = drive.tachometer(run.state);
       if (run.table != nullptr) run.table[k] = drive.table(run.state, prepared.record->t_s[row] + prepared.period_s);

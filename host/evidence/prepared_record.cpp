@@ -47,6 +47,7 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
   PreparedRecord prepared{
       &record,
       command_volts(record, base.data),
+      HeldCommand(record, base.data),
       record.u_V.empty() ? base.data.torque_constant_Nm_per_A * row_noise(record.i_A) : 0.0,
       MotionSmoother(record, base.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"), friction_level),
       {},

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "host/evidence/held_command.hpp"
 #include "host/evidence/smoothed_motion.hpp"
 #include "host/record/record.hpp"
 #include "sim/drive_description.hpp"
@@ -24,7 +25,8 @@ inline constexpr double kWindow_s = 0.1;
 /// A record made ready for comparison. Refers to the record, which must outlive it.
 struct PreparedRecord {
   const Record* record;
-  std::vector<double> u_V;
+  std::vector<double> u_V;  ///< command_volts
+  HeldCommand held;         ///< the same as the drive holds it
   double effort_noise;  ///< of one row, Nm or N; 0 if it is a command, which is known exactly
   MotionSmoother smoother;
   std::vector<Window> windows;

@@ -112,8 +112,7 @@ void doubt_command(const std::vector<double>& u_V, double period_s, Observations
 
 }  // namespace
 
-std::vector<double> command_volts(const Record& record, const sim::DataSheet& data) {
-  if (!record.u_V.empty()) return record.u_V;
+double current_per_volt(const Record& record, const sim::DataSheet& data) {
   const double gain_A_per_V = data.kind == sim::DriveKind::rotary ? data.amplifier_gain_A_per_V
                               : data.torque_constant_Nm_per_A > 0.0
                                   ? data.effort_per_volt() / data.torque_constant_Nm_per_A
@@ -126,6 +125,12 @@ std::vector<double> command_volts(const Record& record, const sim::DataSheet& da
     throw Failure(ExitCode::bad_input, record.path +
                                            ": no column u_V, and i_A needs amplifier_gain_A_per_V (a linear drive: "
                                            "force_constant_N_per_A) in the model");
+  return gain_A_per_V;
+}
+
+std::vector<double> command_volts(const Record& record, const sim::DataSheet& data) {
+  if (!record.u_V.empty()) return record.u_V;
+  const double gain_A_per_V = current_per_volt(record, data);
   std::vector<double> u_V = acting_current(record);
   for (double& value : u_V) value /= gain_A_per_V;
   return u_V;

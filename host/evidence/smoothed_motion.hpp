@@ -23,8 +23,12 @@ struct SmoothedMotion {
   double hidden_creep = 0.0;   ///< speed below which it could not show any, rad/s or m/s
 };
 
-/// Commands in volts at the amplifier's input: u_V, or the logged current over the amplifier's gain. Throws
-/// Failure(bad_input) if neither is available.
+/// Amplifier gain that turns a logged current into a command, A/V. Throws
+/// Failure(bad_input) if the record has no current, or the data sheet no gain.
+double current_per_volt(const Record& record, const sim::DataSheet& data);
+
+/// Commands in volts at the amplifier's input, each the mean from its row to the next: u_V, or the logged current over
+/// the amplifier's gain. Throws Failure(bad_input) if neither is available.
 std::vector<double> command_volts(const Record& record, const sim::DataSheet& data);
 
 /// Sensitivity of one row's smoothed state to encoder readings and commands around it. The smoother is linear: one

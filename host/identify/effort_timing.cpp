@@ -184,6 +184,16 @@ std::vector<double> acting_current(const Record& record) {
   return current;
 }
 
+HeldCurrent held_current(const Record& record) {
+  const double early = EffortTiming{}.samples - effort_timing_of(record).samples, whole = std::floor(early);
+  const auto last = static_cast<std::ptrdiff_t>(record.i_A.size()) - 1, offset = static_cast<std::ptrdiff_t>(whole);
+  HeldCurrent held{{}, 1.0 - (early - whole)};
+  held.i_A.reserve(record.i_A.size() + 1);
+  for (std::ptrdiff_t k = 0; k <= last + 1; ++k)
+    held.i_A.push_back(record.i_A[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + offset, 0, last))]);
+  return held;
+}
+
 void settle_effort_timing(Record& record, const sim::DataSheet& data) {
   if (!record.u_V.empty() || record.i_A.empty() || record.header.contains(kSamplesKey)) return;
   write_timing(record, found_timing(record, data).value_or(kBelievedTiming));

@@ -38,6 +38,16 @@ void settle_effort_timing(Record& record, const sim::DataSheet& data);
 /// first and last row apply.
 std::vector<double> acting_current(const Record& record);
 
+/// A current as a drive holds it: from `change` of a period after a row on, that of the next entry acts.
+struct HeldCurrent {
+  std::vector<double> i_A;  ///< the one that acts at each row, A; one more than the record has rows
+  double change = 1.0;      ///< of a period, above 0 and at most 1
+};
+
+/// The record's current moved to where it acts, without interpolation. Friction stops an axis within a part of a row:
+/// there the mean over the row, acting_current, would give another motion than the two currents one after the other.
+HeldCurrent held_current(const Record& record);
+
 /// Whether the timing was estimated from each record, so that it contains no information on the drive.
 bool timing_explains_delays(const std::vector<const Record*>& records);
 
