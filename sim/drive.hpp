@@ -100,6 +100,10 @@ class Drive {
   /// What the encoder's reading adds to the true travel.
   double encoder_error_at(double x) const;
 
+  /// The travel at which the encoder reads `reading`. An error whose slope over the travel reaches 1 has no such
+  /// travel; the search then ends after its most steps.
+  double travel_at_reading(double reading) const;
+
   /// Travel of the table: of the load's side, with what the screw adds to it.
   double table(const DriveMotion& motion, double t_s) const {
     const double travel = second_mass ? motion.load_x : motion.x;

@@ -65,7 +65,7 @@ class Restarts {
     while (row_ < row) {
       if (errs_) {
         const double x = motion_.x[row_];
-        reading_[row_] = -drive_.encoder_error_at(x - drive_.encoder_error_at(x));
+        reading_[row_] = drive_.travel_at_reading(x) - x;
       }
       const double effort = drive_.follow(state_, prepared_.u_V[row_], motion_.x[row_ + 1], motion_.w[row_ + 1],
                                           prepared_.record->t_s[row_], prepared_.period_s);
