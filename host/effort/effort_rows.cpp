@@ -19,32 +19,32 @@ namespace {
 
 /// Below this part of a record's high speeds (95 %) an axis may stick: the force balance does not hold there.
 constexpr double kSlidingShare = 0.01;
-/// A speed that changes by less than this part within a record is steady.
-constexpr double kSteadyShare = 0.3;
+/// A speed that changes by less than this part of its median within a record is steady: friction hardly changes over
+/// it.
+constexpr double kSteadyShare = 0.5;
 /// The same for an acceleration that needs less than this part of the torque or force.
 constexpr double kIdleShare = 0.3;
 constexpr double kBlock_s = 0.5;
 /// Less sliding motion than this in total does not suffice, s.
 constexpr double kLeastSliding_s = 0.2;
 
-/// Whether a record moves at one speed a direction, starts and reversals included, so that inertia hardly shows.
+/// Whether a record moves at one speed a direction, so that inertia hardly shows. Starts and reversals are a tenth at
+/// either end of the speeds at most; two speeds, or a slow run-up, are more.
 bool is_steady(const std::vector<double>& speed, double slow, double inertia, const std::vector<double>& acceleration,
                const std::vector<double>& effort) {
-  double mean[2] = {0.0, 0.0};
-  std::size_t count[2] = {0, 0};
-  double squares = 0.0, inertial = 0.0, efforts = 0.0;
+  std::vector<double> speeds[2];
+  double inertial = 0.0, efforts = 0.0;
   for (std::size_t k = 0; k < speed.size(); ++k) {
     if (std::abs(speed[k]) <= slow) continue;
-    mean[speed[k] > 0.0 ? 0 : 1] += speed[k];
-    ++count[speed[k] > 0.0 ? 0 : 1];
-    squares += speed[k] * speed[k];
+    speeds[speed[k] > 0.0 ? 0 : 1].push_back(std::abs(speed[k]));
     inertial += std::pow(inertia * acceleration[k], 2);
     efforts += effort[k] * effort[k];
   }
-  double spread = squares;
-  for (const int side : {0, 1})
-    if (count[side] > 0) spread -= mean[side] * mean[side] / static_cast<double>(count[side]);
-  return spread <= kSteadyShare * kSteadyShare * squares && inertial <= kIdleShare * kIdleShare * efforts;
+  constexpr double kStarts = 0.1;
+  for (const std::vector<double>& side : speeds)
+    if (!side.empty() && quantile(side, 1.0 - kStarts) - quantile(side, kStarts) > kSteadyShare * quantile(side, 0.5))
+      return false;
+  return inertial <= kIdleShare * kIdleShare * efforts;
 }
 
 /// Standard deviation of the acceleration from the channel's noise below a cut-off.
