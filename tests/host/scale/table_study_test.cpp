@@ -184,6 +184,17 @@ TEST(TableStudy, SaysWhichSensorErrs) {
   EXPECT_EQ(of_motor.effects[0].place, "motor");
 }
 
+/// Catches a search that ends at what a quarter of the rows resolves: here the fastest of them are beyond many periods
+/// of the grating, and only those about the reversals are within a third of one.
+TEST(TableStudy, FindsAGratingThatOnlySlowMotionResolves) {
+  const Difference scale = [](double x, double, double) { return 0.001 * std::sin(2.0 * std::numbers::pi * x / 0.15); };
+  const host::TableStudy found = study(scale, scale);
+  ASSERT_EQ(found.effects.size(), 1U) << host::table_words(found);
+  EXPECT_EQ(found.effects[0].place, "scale");
+  EXPECT_NEAR(found.effects[0].sizes[0].value, 1.0, 0.1);
+  EXPECT_NEAR(found.effects[0].sizes[1].value, 0.15, 0.001);
+}
+
 TEST(TableStudy, WhatTheModelHoldsIsNotMissing) {
   const Difference pitch = [](double x, double, double) {
     return 40e-6 * x + 0.003 * std::sin(2.0 * std::numbers::pi * x / 90.0);
