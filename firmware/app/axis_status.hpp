@@ -1,6 +1,7 @@
 // The state of an axis, for the host.
 #pragma once
 
+#include "firmware/app/channel_words.hpp"
 #include "firmware/app/protocol/messages.hpp"
 
 namespace firmware {
@@ -16,11 +17,12 @@ AxisStatus axis_status(const Axis& axis, bool fitted, bool pitch_on) {
   status.fault = static_cast<std::uint8_t>(axis.fault());
   status.second_fault = static_cast<std::uint8_t>(axis.second_fault());
   const auto limiting = axis.limiting();
-  status.flags = static_cast<std::uint8_t>((fitted ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
-                                           (limiting.velocity_limited ? kAxisVelocityLimited : 0) |
-                                           (axis.is_at_rest() && !axis.is_homing() ? kAxisAtRest : 0) |
-                                           (axis.is_homed() ? kAxisHomed : 0) | (axis.is_homing() ? kAxisHoming : 0) |
-                                           (pitch_on && axis.is_homed() ? kAxisPitch : 0));
+  status.flags =
+      static_cast<std::uint8_t>((fitted ? kAxisFitted : 0) | (limiting.saturated ? kAxisSaturated : 0) |
+                                (limiting.velocity_limited ? kAxisVelocityLimited : 0) |
+                                (axis.is_at_rest() && !axis.is_homing() ? kAxisAtRest : 0) |
+                                (axis.is_homed() ? kAxisHomed : 0) | (axis.is_homing() ? kAxisHoming : 0) |
+                                (pitch_on && axis.is_homed() ? kAxisPitch : 0) | (has_scale(axis) ? kAxisScale : 0));
   return status;
 }
 

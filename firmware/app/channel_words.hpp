@@ -22,6 +22,21 @@ constexpr std::uint32_t bits_of(Scalar value) {
 
 }  // namespace channel_words
 
+/// Whether the hardware of a SupervisedAxis has a second encoder, on the table.
+template <typename Axis>
+constexpr bool has_scale(const Axis& axis) {
+  if constexpr (hal::TableEncoderHal<std::remove_reference_t<decltype(axis.hal())>>)
+    return axis.hal().table_encoder().read().valid;
+  else
+    return false;
+}
+
+/// Channels that a SupervisedAxis has, from the first.
+template <typename Axis>
+constexpr std::size_t channels_of(const Axis& axis) {
+  return kChannels + (has_scale(axis) ? 1 : 0);
+}
+
 /// A SupervisedAxis.
 template <typename Axis>
 std::uint32_t channel_word(const Axis& axis, Channel channel) {
@@ -49,6 +64,10 @@ std::uint32_t channel_word(const Axis& axis, Channel channel) {
       return bits_of(seen.friction_V);
     case Channel::control:
       return bits_of(seen.control_V);
+    case Channel::table_counts:
+      if constexpr (hal::TableEncoderHal<std::remove_reference_t<decltype(axis.hal())>>)
+        return axis.hal().table_encoder().read().counts;
+      break;
     case Channel::flags:
       break;
   }

@@ -38,7 +38,8 @@ class SimulatedAxis {
         tachometer_{plant, wiring.tachometer_resolution},
         dac_{plant},
         enable_{plant},
-        limits_{plant, wiring} {
+        limits_{plant, wiring},
+        table_{plant} {
     if (!(plant.data().dac_resolution_V > 0.0))
       throw std::invalid_argument(
           "the simulated board needs the D/A converter's resolution: set resolution_V under "
@@ -149,11 +150,26 @@ class SimulatedAxis {
     AxisWiring wiring_;
   };
 
+  /// The scale on the table; invalid for a drive without one.
+  class SimulatedScale {
+   public:
+    explicit SimulatedScale(sim::Plant& plant) : plant_(plant) {}
+    EncoderReading read() {
+      const auto travel = plant_.read_load_encoder();
+      if (!travel) return {};
+      return {static_cast<std::uint32_t>(std::llround(*travel / plant_.data().load_encoder_resolution)), true};
+    }
+
+   private:
+    sim::Plant& plant_;
+  };
+
   SimulatedEncoder& encoder() { return encoder_; }
   SimulatedTachometer& tachometer() { return tachometer_; }
   SimulatedDac& dac() { return dac_; }
   SimulatedEnable& drive_enable() { return enable_; }
   SimulatedLimits& limits() { return limits_; }
+  SimulatedScale& table_encoder() { return table_; }
 
  private:
   SimulatedEncoder encoder_;
@@ -161,9 +177,11 @@ class SimulatedAxis {
   SimulatedDac dac_;
   SimulatedEnable enable_;
   SimulatedLimits limits_;
+  SimulatedScale table_;
 };
 
 static_assert(AxisHal<SimulatedAxis>);
+static_assert(TableEncoderHal<SimulatedAxis>);
 static_assert(LimitInputs<SimulatedAxis::SimulatedLimits>);
 
 }  // namespace hal::pc

@@ -13,6 +13,7 @@
 #include "host/device/motion.hpp"
 #include "host/device/quantity.hpp"
 #include "host/device/triggered_capture.hpp"
+#include "host/model/model_file.hpp"
 #include "host/record/read_record.hpp"
 #include "host/report/progress.hpp"
 
@@ -21,7 +22,7 @@ namespace axistool {
 namespace {
 
 struct CaptureArguments : DeviceArguments {
-  std::string output, axis = "x", trigger, drive;
+  std::string output, axis = "x", trigger, drive, sheet;
   std::vector<std::string> channels, jogs;
   std::string before;
   double duration_s = 0.0, wait_s = 60.0;
@@ -59,6 +60,38 @@ host::CaptureSettings settings_of(const CaptureArguments& arguments, const firmw
   for (const std::string& jog : arguments.jogs) settings.jogs.push_back(host::parse_jog(jog));
   settings.duration_s = arguments.duration_s > 0.0 || !settings.jogs.empty() ? arguments.duration_s : 1.0;
   return settings;
+}
+
+/// The scale on the table is recorded where the board has one and the data sheet says what a count of it is.
+void settle_scale(const CaptureArguments& arguments, host::BoardClient& board, host::CaptureSettings& settings) {
+  constexpr firmware::Channel kScale = firmware::Channel::table_counts;
+  if (!arguments.sheet.empty())
+    settings.table_resolution = host::read_drive(arguments.sheet).data.load_encoder_resolution;
+  const bool is_asked = std::ranges::find(settings.channels, kScale) != settings.channels.end();
+  if (!is_asked && !(settings.table_resolution > 0.0)) return;
+  const bool is_there = (board.status().axis.at(settings.axis).flags & firmware::kAxisScale) != 0;
+  const std::string name = host::channel_name(kScale, settings.kind);
+  if (is_asked && !is_there)
+    throw host::Failure(host::ExitCode::refused,
+                        fmt::format("axis {} of this board has no second encoder, so there is no {}: leave it out",
+                                    arguments.axis, name));
+  if (is_asked && !(settings.table_resolution > 0.0))
+    throw host::Failure(host::ExitCode::usage,
+                        fmt::format("{} needs what a count of the scale is: --sheet DRIVE.toml, with "
+                                    "[drive.load_encoder] in it",
+                                    name));
+  const bool in_memory = arguments.last || host::is_board_trigger(arguments.trigger);
+  if (is_asked && in_memory)
+    throw host::Failure(host::ExitCode::usage,
+                        fmt::format("the board's own memory does not hold {}: leave it out, or the axis's name out of "
+                                    "the trigger",
+                                    name));
+  if (is_asked || in_memory || !arguments.channels.empty()) return;
+  if (is_there)
+    settings.channels.push_back(kScale);
+  else if (talks(arguments))
+    fmt::print(stderr, "axistool: axis {} of this board has no second encoder: the record has no {}\n", arguments.axis,
+               name);
 }
 
 const std::string& name_of_drive(const CaptureArguments& arguments) {
@@ -102,7 +135,8 @@ void run(const CaptureArguments& arguments) {
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
   const firmware::ParameterValues values = board.read_values();
-  const host::CaptureSettings settings = settings_of(arguments, values);
+  host::CaptureSettings settings = settings_of(arguments, values);
+  settle_scale(arguments, board, settings);
   if (arguments.last || host::is_board_trigger(arguments.trigger)) return run_on_board(arguments, board, settings);
   host::require_capturable(values, settings);
   if (!values.axis(settings.axis).get<"drive.fitted">() && talks(arguments))
@@ -182,6 +216,8 @@ void add_capture(CLI::App& app) {
       ->delimiter(',');
   command->add_flag("--linear", arguments->linear, "the drive is linear: m and m/s");
   command->add_option("--drive", arguments->drive, "name of the drive in the record; default: the axis");
+  add_input(*command, "--sheet", arguments->sheet,
+            "data sheet of the drive: with [drive.load_encoder] the record has the table by its scale, x2_mm");
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);
   command->footer(
@@ -190,7 +226,7 @@ void add_capture(CLI::App& app) {
       "  axistool capture -o jogs.csv --jog 20:1,-20:1\n"
       "  axistool capture -o bump.csv --trigger 'd_hat_V>0.5' --pre 0.1 --for 0.4 --channels u_V,x_mm,d_hat_V\n"
       "  axistool capture -o error.csv --trigger 'x.position_error > 20um' --pre 50ms\n"
-      "Channels beyond the default: x_err_mm, w_hat_rad_s, d_hat_V, u_friction_V, u_control_V, flags.\n"
+      "Channels beyond the default: x_err_mm, w_hat_rad_s, d_hat_V, u_friction_V, u_control_V, flags, x2_mm.\n"
       "Lost rows are counted and give exit code 5; the file keeps the gap.");
   command->callback([arguments] { run(*arguments); });
 }

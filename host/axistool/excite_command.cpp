@@ -63,6 +63,7 @@ host::ExcitationScale scale_of(const ExciteArguments& arguments, const firmware:
                                                        : arguments.linear ? sim::DriveKind::linear
                                                                           : sim::DriveKind::rotary);
   if (drive) scale.lead = static_cast<double>(values.axis(axis).get<"drive.lead">());
+  if (drive) scale.table_resolution = drive->data.load_encoder_resolution;
   return scale;
 }
 

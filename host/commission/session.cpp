@@ -67,6 +67,7 @@ ExcitationScale CommissionSession::scale(const firmware::ParameterValues& values
   scale.encoder_resolution = sheet.encoder_resolution;
   scale.dac_resolution_V = sheet.dac_resolution_V;
   scale.lead = sheet.lead;
+  scale.table_resolution = sheet.load_encoder_resolution;
   return scale;
 }
 

@@ -26,7 +26,7 @@ class CaptureRun {
         settings_(settings),
         values_(board.read_values()),
         scale_(values_.axis(settings.axis), board.identify().fixed_point != 0,
-               board.status().axis.at(settings.axis).counts()) {
+               board.status().axis.at(settings.axis).counts(), settings.table_resolution) {
     capture_.row_period_s = static_cast<double>(settings.every) / values_.get<"control.rate">();
     capture_.channel.resize(settings.channels.size());
     wanted_ = static_cast<std::size_t>(std::ceil(total_duration() / capture_.row_period_s - 1e-9));

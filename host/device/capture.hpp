@@ -40,6 +40,7 @@ struct CaptureSettings {
   std::optional<Trigger> trigger;           ///< its channel is among `channels`
   double before_s = 0.0;                    ///< kept from before the trigger
   double patience_s = 60.0;                 ///< for the trigger
+  double table_resolution = 0.0;            ///< of the scale on the table, mm (m): of the channel table_counts
   std::vector<JogStep> jogs;                ///< in turn, from the first row on; the axis is enabled
 };
 

@@ -21,7 +21,7 @@ struct ChannelNames {
   std::string_view rotary, linear;
 };
 
-constexpr std::array<ChannelNames, firmware::kChannels> kChannelNames{{
+constexpr std::array<ChannelNames, firmware::kChannels + 1> kChannelNames{{
     {Channel::dac_code, "u_V", "u_V"},
     {Channel::counts, "x_mm", "x_m"},
     {Channel::tachometer_velocity, "w_rad_s", "v_m_s"},
@@ -33,6 +33,7 @@ constexpr std::array<ChannelNames, firmware::kChannels> kChannelNames{{
     {Channel::friction, "u_friction_V", "u_friction_V"},
     {Channel::control, "u_control_V", "u_control_V"},
     {Channel::flags, "flags", "flags"},
+    {Channel::table_counts, "x2_mm", "x2_m"},
 }};
 
 std::string_view name_of(const ChannelNames& names, sim::DriveKind kind) {
@@ -68,10 +69,12 @@ std::vector<Channel> usual_channels(bool tachometer_fitted) {
   return channels;
 }
 
-ChannelScale::ChannelScale(const firmware::AxisValues& axis, bool fixed_point, std::int64_t counts_near)
+ChannelScale::ChannelScale(const firmware::AxisValues& axis, bool fixed_point, std::int64_t counts_near,
+                           double table_resolution)
     : fixed_point_(fixed_point),
       encoder_resolution_(static_cast<double>(axis.get<"drive.encoder_resolution">())),
       dac_resolution_(static_cast<double>(axis.get<"drive.dac_resolution">())),
+      table_resolution_(table_resolution),
       counts_(counts_near),
       reference_(counts_near * 256) {
   const firmware::FixedUnits<float> unit(firmware::axis_parameters<float>(axis));
@@ -96,6 +99,9 @@ double ChannelScale::operator()(Channel channel, std::uint32_t word) {
     case Channel::reference:
       reference_ = extend(reference_, word);
       return static_cast<double>(reference_) / 256.0 * encoder_resolution_;
+    case Channel::table_counts:
+      table_ = extend(table_, word);
+      return static_cast<double>(table_) * table_resolution_;
     case Channel::position_error:
       return scalar(word, length_);
     case Channel::tachometer_velocity:

@@ -24,8 +24,10 @@ std::vector<firmware::Channel> usual_channels(bool tachometer_fitted);
 /// Turns words into V, mm (m), rad/s (m/s). Positions are extended from their low words, so rows must come in order.
 class ChannelScale {
  public:
-  /// `axis`: the board's parameters; `counts_near`: the encoder's counts about when the first row is taken.
-  ChannelScale(const firmware::AxisValues& axis, bool fixed_point, std::int64_t counts_near);
+  /// `axis`: the board's parameters; `counts_near`: the encoder's counts about when the first row is taken;
+  /// `table_resolution`: of the scale on the table, mm (m), where there is one.
+  ChannelScale(const firmware::AxisValues& axis, bool fixed_point, std::int64_t counts_near,
+               double table_resolution = 0.0);
 
   double operator()(firmware::Channel channel, std::uint32_t word);
 
@@ -34,7 +36,8 @@ class ChannelScale {
 
   bool fixed_point_;
   double length_, velocity_, volts_;  ///< units of a fixed-point board's scalars
-  double encoder_resolution_, dac_resolution_;
+  double encoder_resolution_, dac_resolution_, table_resolution_;
+  std::int64_t table_ = 0;
   std::int64_t counts_, reference_;  ///< last; of the reference in 1/256 counts
 };
 

@@ -150,9 +150,13 @@ ExcitationOutcome run_excitations(BoardClient& board, std::uint8_t axis, std::si
   outcome.settings.channels = usual_channels(scale.has_tachometer);
   if (count > 1 || is_open_loop(make(0, 0.0)))
     outcome.settings.channels.resize(scale.has_tachometer ? 3 : 2);  // there is no reference, or not throughout
+  const firmware::AxisStatus status = board.status().axis.at(axis);
+  if (scale.table_resolution > 0.0 && (status.flags & firmware::kAxisScale) != 0)
+    outcome.settings.channels.push_back(Channel::table_counts);
   outcome.capture.row_period_s = 1.0 / scale.rate_Hz;
-  const std::int64_t start = board.status().axis.at(axis).counts();
-  Rows rows(board, outcome.settings, ChannelScale(values.axis(axis), board.identify().fixed_point != 0, start),
+  const std::int64_t start = status.counts();
+  Rows rows(board, outcome.settings,
+            ChannelScale(values.axis(axis), board.identify().fixed_point != 0, start, scale.table_resolution),
             outcome.capture);
   firmware::CaptureRequest capture;
   for (const Channel channel : outcome.settings.channels)

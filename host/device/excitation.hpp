@@ -42,6 +42,7 @@ struct ExcitationScale {
   double lead = 0.0;  ///< mm/rad; 1 for a linear drive; 0: not known
   double rate_Hz = 0.0;
   bool has_tachometer = true;
+  double table_resolution = 0.0;          ///< mm (m) a count of a scale on the table, recorded where the board has it
   double acceleration = 0.0, jerk = 0.0;  ///< limits of references, mm/s^2, mm/s^3 (m); of a closed loop
 };
 

@@ -45,13 +45,15 @@ Channel channel_called(std::string_view name, sim::DriveKind kind) {
   for (const ChannelWord& word : kChannelWords)
     if (word.name == name) return word.channel;
   try {
-    return channel_named(name, kind);
+    // The board's own memory does not hold the scale on the table.
+    if (const Channel channel = channel_named(name, kind); channel != Channel::table_counts) return channel;
   } catch (const Failure&) {
-    std::vector<std::string_view> names;
-    for (const ChannelWord& word : kChannelWords) names.push_back(word.name);
-    throw Failure(ExitCode::usage,
-                  fmt::format("no signal is called {}; there are {}, fault and motion", name, fmt::join(names, ", ")));
+    // The signals' own names are told below.
   }
+  std::vector<std::string_view> names;
+  for (const ChannelWord& word : kChannelWords) names.push_back(word.name);
+  throw Failure(ExitCode::usage,
+                fmt::format("no signal is called {}; there are {}, fault and motion", name, fmt::join(names, ", ")));
 }
 
 /// "20um", "0.5V"; "12" where the channel's name tells the unit, or there is none.

@@ -249,6 +249,7 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
       diagnosis.verdict.effects.empty() ? diagnosis.base_error : diagnosis.rows.error_of(diagnosis.best);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.verdict.explanation += said_by_the_motion(diagnosis);
+  if (table && table->empty()) take_back_denied_connection(diagnosis);
   diagnosis.residual = test_residuals(diagnosis.best, diagnosis.training, diagnosis.validation);
   name_coordinate(diagnosis);
   fill_found(diagnosis);

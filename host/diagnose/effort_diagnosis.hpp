@@ -30,6 +30,10 @@ std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, 
 /// Result of the forward prediction for the chosen effects, as a sentence; may be empty.
 std::string said_by_the_motion(const Diagnosis& diagnosis);
 
+/// A gap or a spring that the effort names and the prediction from the command denies, in that its error on held-back
+/// records increases, is not named: nothing between motor and table was measured. Says so.
+void take_back_denied_connection(Diagnosis& diagnosis);
+
 /// If unexplained: names the coordinate that carries most of the residual, and the share that a free curve explains.
 void name_coordinate(Diagnosis& diagnosis);
 

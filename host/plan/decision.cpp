@@ -9,6 +9,7 @@
 
 #include "host/diagnose/prepared_sets.hpp"
 #include "host/parallel.hpp"
+#include "host/plan/information.hpp"
 
 namespace host {
 
@@ -22,6 +23,33 @@ double dispersion_of(const std::vector<Rival>& rivals, const RecordSet& both) {
   double least = HUGE_VAL;
   for (const Rival& rival : rivals) least = std::min(least, chi_square_each(rival.model, both));
   return std::max(1.0, least);
+}
+
+/// What the table costs each rival beyond the motor, re-fitted to both; a scale's own errors, which all rivals lack,
+/// are dispersion.
+void add_table(Decision& decision, const RecordSet& both, const RecordSet& before) {
+  const std::size_t rivals = decision.rivals.size();
+  std::vector<Information> table(rivals), motor(rivals);
+  std::vector<double> known(rivals, 0.0);
+  double dispersion = HUGE_VAL;
+  for_each_in_parallel(rivals, [&](std::size_t k) {
+    const sim::DriveDescription& model = decision.rivals[k].model;
+    table[k] = information_of_table(model, both);
+    motor[k] = information_of_motion(model, both);
+    known[k] = information_of_table(model, before).least();
+  });
+  for (const Information& one : table)
+    dispersion = std::min(dispersion, one.least() / static_cast<double>(table_windows(both)));
+  dispersion = std::max(1.0, dispersion);
+  for (std::size_t k = 0; k < rivals; ++k) {
+    if (table[k].slope.size() == 0 || motor[k].slope.size() == 0) continue;
+    Information sum = motor[k];
+    sum *= 1.0 / decision.dispersion;
+    const double alone = sum.least();
+    table[k] *= 1.0 / dispersion;
+    sum += table[k];
+    decision.chi_square[k] += std::max(0.0, sum.least() - alone) - known[k] / dispersion;
+  }
 }
 
 }  // namespace
@@ -56,6 +84,7 @@ Decision decide_on(const std::vector<Rival>& rivals, const RecordSet& ground, co
   });
   decision.dispersion = dispersion_of(decision.rivals, both);
   for (double& square : decision.chi_square) square /= decision.dispersion;
+  if (table_windows(run) > 0) add_table(decision, both, before);
   decision.best = static_cast<std::size_t>(std::ranges::min_element(decision.chi_square) - decision.chi_square.begin());
   const double least = decision.chi_square[decision.best];
   const sim::Drive explanation(decision.rivals[decision.best].model);

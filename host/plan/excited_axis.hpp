@@ -21,7 +21,8 @@ class ExcitedAxis {
   /// period. The record's rows begin with the first piece.
   ExcitedAxis(Hal& hal, const firmware::ParameterValues& values, const sim::DriveDescription& drive,
               std::function<void()> advance)
-      : data_(drive.data),
+      : wires_(hal),
+        data_(drive.data),
         values_(values),
         rate_Hz_(static_cast<float>(1.0 / data_.sample_period_s)),
         advance_(std::move(advance)),
@@ -38,6 +39,7 @@ class ExcitedAxis {
     record_.u_V.clear();
     record_.x.clear();
     record_.w.clear();
+    record_.x2.clear();
   }
 
   /// From standstill to standstill, followed by a short rest. Its end is `refused` if the axis does not accept it.
@@ -96,10 +98,15 @@ class ExcitedAxis {
     record_.u_V.push_back(seen.dac_code * data_.dac_resolution_V);
     record_.x.push_back(static_cast<double>(seen.encoder_counts - start_counts_) * data_.encoder_resolution);
     if (data_.tach_noise_variance) record_.w.push_back(static_cast<double>(seen.tachometer_velocity));
+    if constexpr (hal::TableEncoderHal<Hal>)
+      if (const hal::EncoderReading table = wires_.table_encoder().read(); table.valid)
+        record_.x2.push_back(static_cast<double>(static_cast<std::int32_t>(table.counts)) *
+                             data_.load_encoder_resolution);
     now_us_ += static_cast<std::uint32_t>(std::lround(1e6 * data_.sample_period_s));
     advance_();
   }
 
+  Hal& wires_;
   sim::DataSheet data_;
   firmware::ParameterValues values_;
   float rate_Hz_;

@@ -15,6 +15,7 @@ struct Information {
   double square = 0.0;
 
   Information& operator+=(const Information& other);
+  Information& operator*=(double factor);
 
   /// The smallest chi^2 for any change of the parameters: that of a rival re-fitted as far as prior knowledge allows
   /// (T-optimality with a linearised inner fit; with the curvature of the training records this is the quadratic form
@@ -22,8 +23,18 @@ struct Information {
   double least() const;
 };
 
-/// At the model's parameters, on a set. Empty if the model diverges.
+/// Of motor and table, at the model's parameters, on a set. Empty if the model diverges.
 Information information_of(const sim::DriveDescription& model, const RecordSet& set);
+
+/// Of the motor alone.
+Information information_of_motion(const sim::DriveDescription& model, const RecordSet& set);
+
+/// Of x2 - x alone, where a scale on the table was recorded: over each window its mean square over the square of both
+/// sensors' steps, the records' offsets taken out. Empty where none was.
+Information information_of_table(const sim::DriveDescription& model, const RecordSet& set);
+
+/// Windows of those records: the observations of information_of_table().
+std::size_t table_windows(const RecordSet& set);
 
 /// Integrator steps of information_of().
 double steps_of_information(const sim::DriveDescription& model, const RecordSet& set);

@@ -209,17 +209,21 @@ TableEffect table_effect(const TableTerm& term, const EvidenceFit& fit, const Ma
     effect.entry.parameters = {
         {"cosine", sign * factors(0)}, {"sine", sign * factors(1)}, {"period", 1e3 * to_unit * term.shape[0]}};
   } else {
+    // What is alike over the whole travel has no place.
+    constexpr std::string_view kWhere =
+        ": of the screw, of its bearing or of the scale's own mount; one scale does not tell them apart, a thermometer "
+        "on each does";
     Index most = 0;
     factors.cwiseAbs().maxCoeff(&most);
     const double deviation = std::sqrt(own(most, most));
     if (!term.is_of_the_record()) {
       effect.sizes.push_back(size("growth", "um/K", factors(0), deviation));
-      effect.words = fmt::format("thermal growth of {}", in_words(effect.sizes[0]));
+      effect.words = fmt::format("thermal growth of {}{}", in_words(effect.sizes[0]), kWhere);
       return effect;
     }
     effect.sizes.push_back(size("growth", "um", factors(most), deviation));
-    effect.words = fmt::format("thermal growth towards {} with a time constant of {:.3g} s", in_words(effect.sizes[0]),
-                               term.shape[0]);
+    effect.words = fmt::format("thermal growth towards {} with a time constant of {:.3g} s{}",
+                               in_words(effect.sizes[0]), term.shape[0], kWhere);
     effect.entry.parameters = {{"growth", to_unit * factors(most)}, {"time_constant", term.shape[0]}};
   }
   return effect;

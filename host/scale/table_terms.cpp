@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "host/infer/memory_builder.hpp"
-#include "host/statistics.hpp"
 
 namespace host {
 
@@ -152,14 +151,20 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows)
     for (const double part : {0.1, 0.3, 1.0, 10.0}) forms.push_back({name, {part * longest_s}, {}});
     if (rows.temp_C.size() > 0 && rows.temp_C.maxCoeff() > rows.temp_C.minCoeff()) forms.push_back({name, {0.0}, {}});
   } else if (travel > 0.0) {
-    // From where the pitch curve ends down to what the slower half of the rows resolves.
-    constexpr double kRowsAPeriod = 3.0, kMostPeriods = 4000.0;
+    // From where the pitch curve ends, some waves over the travel, down to where as many waves are still resolved: the
+    // rows that resolve a wave are those of slow motion, however few.
+    constexpr double kRowsAPeriod = 3.0, kMostPeriods = 4000.0, kWaves = (kPitchOrders + 1) / kPitchPeriod;
     std::vector<double> steps;
     for (Index k = 1; k < rows.size(); ++k)
-      if (const double step = std::abs(rows.x(k) - rows.x(k - 1)); step > 0.1e-3) steps.push_back(step);
-    if (steps.empty()) return forms;
-    const double shortest = std::max(kRowsAPeriod * quantile(std::move(steps), 0.25), travel / kMostPeriods);
-    const double longest = kPitchPeriod * travel / (kPitchOrders + 1);
+      if (const double step = std::abs(rows.x(k) - rows.x(k - 1)); step > 1e-3 * rows.step_um) steps.push_back(step);
+    std::ranges::sort(steps);
+    double shortest = HUGE_VAL, resolved = 0.0;
+    for (std::size_t k = 0; k < steps.size() && !std::isfinite(shortest); ++k) {
+      resolved += steps[k];
+      if (resolved >= kWaves * kRowsAPeriod * steps[k])
+        shortest = std::max(kRowsAPeriod * steps[k], travel / kMostPeriods);
+    }
+    const double longest = travel / kWaves;
     for (double waves = travel / longest; waves < travel / shortest; waves += 0.5)
       forms.push_back({name, {travel / waves}, {}});
   }

@@ -127,7 +127,8 @@ struct AxisStatus {
 };
 inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8,
                               kAxisHomed = 16, kAxisHoming = 32,
-                              kAxisPitch = 64;  ///< the screw's error is taken off the reference
+                              kAxisPitch = 64,  ///< the screw's error is taken off the reference
+    kAxisScale = 128;                           ///< it has a second encoder, on the table
 
 /// Of the board as a whole, as the asking client sees it.
 struct BoardStatus {
@@ -273,9 +274,9 @@ enum class Channel : std::uint8_t {
   friction = 8,             ///< scalar, V
   control = 9,              ///< scalar, V: before limits and rounding
   flags = 10,               ///< state, then fault << 8, then saturated << 16
-  // 11 is reserved: low word of the counts of a second encoder, on the table.
+  table_counts = 11,        ///< low word of the counts of a second encoder, on the table; of axes with kAxisScale alone
 };
-inline constexpr std::size_t kChannels = 11;
+inline constexpr std::size_t kChannels = 11;  ///< of every axis
 inline constexpr std::size_t kWordsPerReport = 12;
 
 struct CaptureRequest {

@@ -391,7 +391,7 @@ class ProtocolServer {
   Status start_capture(const CaptureRequest& request, ClientToken client) {
     bool has_unknown = false;
     for (std::size_t axis = 0; axis < request.channels.size(); ++axis)
-      has_unknown = has_unknown || request.channels[axis] >> (axis < kAxes ? kChannels : 0) != 0;
+      has_unknown = has_unknown || request.channels[axis] >> (axis < kAxes ? channels_of(app_.axes()[axis]) : 0) != 0;
     if (request.words() == 0 || request.words() > kWordsPerReport || has_unknown || request.every == 0)
       return Status::malformed;
     app_.start_capture(request);

@@ -195,7 +195,7 @@ class SupervisedAxis {
   constexpr CountPosition table_reference() const { return axis_.table_reference(); }
   constexpr const AxisMonitors<Scalar>& monitors() const { return monitors_; }
   constexpr const CaptureRing<Scalar>& capture() const { return capture_; }
-  constexpr Hal& hal() { return hal_; }
+  constexpr Hal& hal() const { return hal_; }
 
  private:
   static constexpr bool kHasIndex = kHasIndexPulse<Hal>;

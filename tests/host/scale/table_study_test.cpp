@@ -184,6 +184,30 @@ TEST(TableStudy, SaysWhichSensorErrs) {
   EXPECT_EQ(of_motor.effects[0].place, "motor");
 }
 
+/// Catches a search that ends at what a quarter of the rows resolves: here the fastest of them are beyond many periods
+/// of the grating, and only those about the reversals are within a third of one.
+TEST(TableStudy, FindsAGratingThatOnlySlowMotionResolves) {
+  const Difference scale = [](double x, double, double) { return 0.001 * std::sin(2.0 * std::numbers::pi * x / 0.15); };
+  const host::TableStudy found = study(scale, scale);
+  ASSERT_EQ(found.effects.size(), 1U) << host::table_words(found);
+  EXPECT_EQ(found.effects[0].place, "scale");
+  EXPECT_NEAR(found.effects[0].sizes[0].value, 1.0, 0.1);
+  EXPECT_NEAR(found.effects[0].sizes[1].value, 0.15, 0.001);
+}
+
+/// Catches a drift that is taken for a pitch error or a gap, and words that say where it is, which no scale can tell.
+TEST(TableStudy, NamesAGrowthAndNotItsPlace) {
+  const Difference warming = [first = std::optional<double>()](double, double, double t_s) mutable {
+    if (!first) first = t_s;
+    return -0.012 * std::expm1(-(t_s - *first) / 6.0);
+  };
+  const host::TableStudy found = study(warming, warming);
+  ASSERT_EQ(found.effects.size(), 1U) << host::table_words(found);
+  EXPECT_EQ(found.effects[0].group, std::vector<std::string>{"thermal_growth"});
+  EXPECT_NEAR(found.effects[0].sizes[0].value, 12.0, 0.5);
+  EXPECT_NE(found.effects[0].words.find("the scale's own mount"), std::string::npos);
+}
+
 TEST(TableStudy, WhatTheModelHoldsIsNotMissing) {
   const Difference pitch = [](double x, double, double) {
     return 40e-6 * x + 0.003 * std::sin(2.0 * std::numbers::pi * x / 90.0);
