@@ -285,12 +285,15 @@ Diagnosis diagnose_quickly(const sim::DriveDescription& given, const Measurement
     throw Failure(
         ExitCode::answer_is_no,
         "the records show no force balance (no torque or force, or hardly any sliding): a first look needs it");
+  const bool decides = effort_decides(*screen, split.validation);
   Diagnosis diagnosis = diagnosis_of(model, split, std::move(screen));
   diagnosis.rows = rows;
   diagnosis.log = measured.log();
   take_figures(given, diagnosis);
-  diagnosis.verdict.explanation =
-      "First look, by the force balance alone; the search by motion may change it. " + diagnosis.verdict.explanation;
+  diagnosis.verdict.explanation = fmt::format(
+      "First look, by the force balance alone{}. {}",
+      decides ? "; the search by motion may change it" : ", whose residual is small here: the search by motion decides",
+      diagnosis.verdict.explanation);
   name_coordinate(diagnosis);
   fill_found(diagnosis);
   return diagnosis;

@@ -72,7 +72,8 @@ class Case(ServedPage):
                 return {"case": case.name, "problem": state["message"], "page": []}
             self.until("#diagnosis:not(.first-look) .verdict", 60)
             time.sleep(1)
-            self.browser.set_window_size(1280, 1100)
+            self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 1280, "height": 2000, "deviceScaleFactor": 1, "mobile": False})
+            time.sleep(0.5)
             first = self.browser.find_elements("css selector", "#diagnosis .blocks figure, #diagnosis .verdict")
             figures = [one for one in first if one.tag_name == "figure"]
             (figures or first)[0].screenshot(str(panel))
