@@ -75,14 +75,14 @@ void add_residual_spectrum(Report& report, std::span<const ResidualView> views, 
   plot.logarithmic_x = plot.logarithmic_y = true;
   for (const ResidualView& view : views) {
     ScatterSeries spectrum = spectrum_of_residual(view.force);
-    if (spectrum.x.empty()) return;
+    if (spectrum.x.empty()) continue;  // a short stretch
     if (views.size() > 1) {
       spectrum.name = view.name;
       spectrum.role = view.role;
     }
     plot.series.push_back(std::move(spectrum));
   }
-  report.add(std::move(plot));
+  if (!plot.series.empty()) report.add(std::move(plot));
 }
 
 }  // namespace host

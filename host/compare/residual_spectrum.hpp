@@ -12,7 +12,7 @@ namespace host {
 /// are left out. Empty where no window is left.
 ScatterSeries spectrum_of_residual(const ResidualEffort& samples);
 
-/// The spectra of all views in one plot; nothing where a view has none.
+/// The spectra of all views that have one, in one plot.
 void add_residual_spectrum(Report& report, std::span<const ResidualView> views, sim::DriveKind kind);
 
 }  // namespace host
