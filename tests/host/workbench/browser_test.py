@@ -277,7 +277,7 @@ class Workbench(ServedPage, unittest.TestCase):
         for button in self.browser.find_elements(By.ID, "accept-opening"):
             button.click()
         self.until("[aria-label='Role of records/validate.csv'] option[value=judge]:checked")
-        self.click("#choice button.small:not(:disabled)")
+        self.click("#choice button.small:not(:disabled):not(#swap)")
         self.until("#content .verdict")
         self.assertTrue((self.folder / "sheet-identified.toml").exists())
         self.keep("opened")
