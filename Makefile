@@ -227,6 +227,13 @@ plan-bench: ## Plan, run and decide on machines made by independent code, pair b
 	ninja -C $(BUILD) -j $(JOBS) axis_plan_bench
 	$(BUILD)/bin/axis_plan_bench $(or $(CASES),tests/data/drive-cases)
 
+.PHONY: page-bench
+page-bench: ## Cases (CASES="folder ...") through the workbench's page and the command: same verdicts, one sheet of winning panels
+	$(NEED) build test
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	AXISTOOL=$(abspath $(BUILD))/bin/axistool tests/host/workbench/page_cases.py $(BUILD)/page-bench $(or $(CASES),$(wildcard tests/data/drive-cases/single/*))
+
 .PHONY: commission-bench
 commission-bench: ## axistool commission on twenty machines whose hidden effects it is not told (ONLY="01-cogging …"), and two of them on a circle
 	$(NEED) build test

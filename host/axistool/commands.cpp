@@ -23,6 +23,7 @@ void add_all_commands(CLI::App& app) {
   add_diagnose(app);
   add_plan(app);
   add_add(app);
+  add_adjust(app);
   add_improve(app);
   add_serve(app);
   add_export(app);

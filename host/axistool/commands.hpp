@@ -59,6 +59,7 @@ void add_udev_rule(CLI::App& app);
 void add_hil(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_adjust(CLI::App& app);
 void add_diagnose(CLI::App& app);
 void add_plan(CLI::App& app);
 void add_improve(CLI::App& app);

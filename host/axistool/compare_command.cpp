@@ -30,11 +30,13 @@ struct CompareArguments {
   std::string traces;
   std::vector<double> stretch;
   double period_mm = 0.0;
+  std::vector<std::string> map;
 
   host::Focus focus() const {
     host::Focus chosen{.record = traces};
     if (!stretch.empty()) chosen.stretch = host::TimeSpan{stretch[0], stretch[1]};
     if (period_mm > 0.0) chosen.period_mm = period_mm;
+    if (!map.empty()) chosen.map = {map[0], map[1]};
     return chosen;
   }
 };
@@ -135,6 +137,9 @@ void add_compare(CLI::App& app) {
       ->expected(2);
   command->add_option("--period", arguments->period_mm, "plot the residual over one period of the travel, mm")
       ->check(CLI::PositiveNumber);
+  command->add_option("--map", arguments->map, "the two coordinates of the map of the residual: position, speed, ...")
+      ->expected(2)
+      ->check(CLI::IsMember(std::vector<std::string>(host::kMapCoordinates.begin(), host::kMapCoordinates.end())));
   command
       ->add_option("--fail-above", arguments->fail_above,
                    "exit code 1 if the combined error exceeds this multiple of the noise floor")

@@ -75,6 +75,7 @@ void print(const host::Diagnosis& diagnosis) {
 
 struct DiagnoseArguments : InsightArguments {
   std::string beliefs;  ///< a document of plan or diagnose
+  bool quick = false;
 };
 
 void run(const DiagnoseArguments& arguments) {
@@ -87,7 +88,9 @@ void run(const DiagnoseArguments& arguments) {
     decision = host::decide(records.model, *beliefs, records.measurements);
   }
   host::Diagnosis diagnosis;
-  {
+  if (arguments.quick) {
+    diagnosis = host::diagnose_quickly(records.model, records.measurements, arguments.absent);
+  } else {
     SearchProgress progress("diagnose");
     diagnosis = host::diagnose(records.model, records.measurements, progress.callback(), nullptr, arguments.absent);
   }
@@ -111,6 +114,10 @@ void add_diagnose(CLI::App& app) {
   add_output(*command, "--report", arguments->report, "write a self-contained HTML report to this file");
   add_input(*command, "--believed", arguments->beliefs,
             "prior odds: the JSON that plan or diagnose wrote before a planned run that is among --train");
+  command
+      ->add_flag("--quick", arguments->quick,
+                 "a first look: what the force balance alone shows, without the search by motion")
+      ->excludes("--believed");
   command->footer(
       "Example:\n"
       "  axistool diagnose x.toml --train steps.csv jog.csv --validate other.csv --report x.html\n"

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "host/compare/residual_figures.hpp"
+#include "host/compare/residual_spectrum.hpp"
 #include "host/evidence/measured_sensors.hpp"
 #include "host/evidence/measurement_gate.hpp"
 #include "host/exit_codes.hpp"
@@ -181,7 +182,11 @@ void add_missing_effort(std::span<const ComparedModel> models, Report& report, c
     add_residual_plot(report, over, title, {"missing " + effort, units.effort}, views, &ResidualView::force,
                       Layout::overlaid);
   }
-  if (models.size() == 1) add_residual_maps(report, std::span(views).first(1), first, period);
+  add_residual_spectrum(report, views, first.data.kind);
+  const auto [across, up] = focus.map.value_or(std::pair<std::string, std::string>("position", "speed"));
+  if (models.size() == 1 || focus.map)
+    add_residual_maps(report, std::span(views).first(models.size()), coordinate_of(across, first.data.kind, period),
+                      coordinate_of(up, first.data.kind), first.data.kind);
 }
 
 }  // namespace host

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -210,24 +211,24 @@ void add_residual_plots(Report& report, std::span<const ResidualView> views, con
                       &ResidualView::speed, layout);
 }
 
-void add_residual_maps(Report& report, std::span<const ResidualView> views, const sim::DriveDescription& model,
-                       double period) {
+void add_residual_maps(Report& report, std::span<const ResidualView> views, const ResidualCoordinate& across,
+                       const ResidualCoordinate& up, sim::DriveKind kind) {
   constexpr std::size_t kColumns = 48, kRows = 32;
   constexpr double kStrongest = 0.98;  // of the cells' magnitudes: one cell must not pale all others
-  const sim::DriveKind kind = model.data.kind;
-  const ResidualCoordinate position = coordinate_of("position", kind, period), speed = coordinate_of("speed", kind);
+  std::string title = across.axis.quantity + " and " + up.axis.quantity;
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   std::vector<HeatMap> maps;
   Values sizes;
   for (const ResidualView& view : views) {
     if (view.force.x.empty()) return;
-    const Values x = position.of(view.force), w = speed.of(view.force);
+    const Values x = across.of(view.force), y = up.of(view.force);
     HeatMap map;
-    map.title = views.size() > 1 ? "Position and speed: " + view.name : "Position and speed";
+    map.title = views.size() > 1 ? title + ": " + view.name : title;
     map.value = {"missing " + effort_name(kind), units_of(kind).effort};
-    map.x = cells_over(position.axis, x, kColumns, position.period);
-    map.y = cells_over(speed.axis, w, kRows, 0.0);
+    map.x = cells_over(across.axis, x, kColumns, across.period);
+    map.y = cells_over(up.axis, y, kRows, 0.0);
     if (map.x.count < 2 || map.y.count < 2) return;
-    map.values = means_in(map, x, w, view.force.missing);
+    map.values = means_in(map, x, y, view.force.missing);
     for (const double value : map.values)
       if (std::isfinite(value)) sizes.push_back(std::abs(value));
     maps.push_back(std::move(map));

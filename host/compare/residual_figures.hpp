@@ -62,8 +62,9 @@ void add_residual_plot(Report& report, const ResidualCoordinate& over, const std
 void add_residual_plots(Report& report, std::span<const ResidualView> views, const sim::DriveDescription& model,
                         double period, Layout layout);
 
-/// The missing torque or force over position and speed, one map a view, all with the same colours.
-void add_residual_maps(Report& report, std::span<const ResidualView> views, const sim::DriveDescription& model,
-                       double period);
+/// The missing torque or force over two coordinates, one map a view, all with the same colours. The period of `across`
+/// is that of its cells.
+void add_residual_maps(Report& report, std::span<const ResidualView> views, const ResidualCoordinate& across,
+                       const ResidualCoordinate& up, sim::DriveKind kind);
 
 }  // namespace host

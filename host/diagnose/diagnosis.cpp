@@ -18,6 +18,7 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/effort_screen.hpp"
 #include "host/evidence/measured_sensors.hpp"
+#include "host/exit_codes.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/statistics.hpp"
@@ -227,26 +228,37 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
   return unless_unexplained(*std::move(over_long_windows));
 }
 
-}  // namespace
-
-Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
-                   const Diagnosis* before, const std::vector<std::string>& known_absent) {
-  std::vector<std::string> absent = known_absent;
+/// What is no candidate: what the machine is known not to have, delays that the logged effort explains, and what a
+/// sensor on the table excludes.
+std::vector<std::string> without_excluded(std::vector<std::string> absent, const Measurements& measured,
+                                          const TableStudy* table) {
   if (timing_explains_delays(measured.training_records()))
     for (const sim::EffectInfo* effect : sim::catalogue())
       if (acts_late(*effect)) absent.emplace_back(effect->kind);
-  const std::shared_ptr<const TableStudy> table =
-      before != nullptr ? before->table
-                        : std::make_shared<TableStudy>(
-                              study_table(given, measured.training_records(), measured.validation_records()));
-  if (table)
+  if (table != nullptr)
     for (std::string& kind : absent_by_table(*table)) absent.push_back(std::move(kind));
-  Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent);
-  diagnosis.table = table;
+  return absent;
+}
+
+void take_figures(const sim::DriveDescription& given, Diagnosis& diagnosis) {
   diagnosis.given_error = diagnosis.rows.error_of(given);
   diagnosis.base_error = diagnosis.moves_enough ? diagnosis.rows.error_of(diagnosis.base) : diagnosis.given_error;
   diagnosis.best_error =
       diagnosis.verdict.effects.empty() ? diagnosis.base_error : diagnosis.rows.error_of(diagnosis.best);
+}
+
+}  // namespace
+
+Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
+                   const Diagnosis* before, const std::vector<std::string>& known_absent) {
+  const std::shared_ptr<const TableStudy> table =
+      before != nullptr ? before->table
+                        : std::make_shared<TableStudy>(
+                              study_table(given, measured.training_records(), measured.validation_records()));
+  const std::vector<std::string> absent = without_excluded(known_absent, measured, table.get());
+  Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent);
+  diagnosis.table = table;
+  take_figures(given, diagnosis);
   if (!diagnosis.moves_enough) return diagnosis;
   diagnosis.verdict.explanation += said_by_the_motion(diagnosis);
   if (table && table->empty()) take_back_denied_connection(diagnosis);
@@ -259,6 +271,32 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
     diagnosis.verdict.data_sheet.push_back(conflict.words);
     diagnosis.verdict.explanation += " " + conflict.words;
   }
+  return diagnosis;
+}
+
+Diagnosis diagnose_quickly(const sim::DriveDescription& given, const Measurements& measured,
+                           const std::vector<std::string>& known_absent) {
+  const sim::DriveDescription model = with_measured_sensors(given, measured);
+  PreparedSets split = split_sets(model, measured.training_records(), measured.validation_records());
+  split.absent = without_excluded(known_absent, measured, nullptr);
+  const FigureRows rows = figure_rows(given, measured, &split);
+  if (!split.moves_enough) throw Failure(ExitCode::answer_is_no, "the axis moved too little for a first look");
+  std::shared_ptr<const EffortScreen> screen = first_step_of(model, split);
+  if (screen->empty())
+    throw Failure(
+        ExitCode::answer_is_no,
+        "the records show no force balance (no torque or force, or hardly any sliding): a first look needs it");
+  const bool decides = effort_decides(*screen, split.validation);
+  Diagnosis diagnosis = diagnosis_of(model, split, std::move(screen));
+  diagnosis.rows = rows;
+  diagnosis.log = measured.log();
+  take_figures(given, diagnosis);
+  diagnosis.verdict.explanation = fmt::format(
+      "First look, by the force balance alone{}. {}",
+      decides ? "; the search by motion may change it" : ", whose residual is small here: the search by motion decides",
+      diagnosis.verdict.explanation);
+  name_coordinate(diagnosis);
+  fill_found(diagnosis);
   return diagnosis;
 }
 

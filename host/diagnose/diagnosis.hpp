@@ -138,4 +138,9 @@ Measure rough_measure(const sim::DriveDescription& model, const std::vector<cons
 Diagnosis diagnose(const sim::DriveDescription& model, const Measurements& measured, const ShareDone& progress = {},
                    const Diagnosis* before = nullptr, const std::vector<std::string>& absent = {});
 
+/// What the force balance alone shows, without the search by motion: most of its probabilities within a second.
+/// Throws Failure(answer_is_no) where the records show no force balance, and what diagnose() throws.
+Diagnosis diagnose_quickly(const sim::DriveDescription& model, const Measurements& measured,
+                           const std::vector<std::string>& absent = {});
+
 }  // namespace host

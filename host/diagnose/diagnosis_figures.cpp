@@ -152,7 +152,8 @@ void add_residuals(Report& report, const Diagnosis& diagnosis, const sim::DriveD
                  "Residual on validation data: mean in bins with the band that holds 80 % of the samples, forward and "
                  "backward separately. A complete model gives a flat line at zero. The line breaks where there are no "
                  "samples; the strip below shows their number.");
-  add_residual_maps(report, views, best, period);
+  add_residual_maps(report, views, coordinate_of("position", best.data.kind, period),
+                    coordinate_of("speed", best.data.kind), best.data.kind);
   add_residual_plots(report, views, best, period, Layout::side_by_side);
 }
 

@@ -104,7 +104,7 @@ std::vector<FoundEffect> found_by(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name, const std::string& path) {
+Report diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name) {
   const bool added = !diagnosis.verdict.effects.empty();
   const std::vector<FoundEffect> found = found_by(diagnosis);
   Report report("Diagnosis of " + model_name, "Which physical effect is missing from the model");
@@ -120,7 +120,11 @@ void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model
   add_residuals(report, diagnosis, diagnosis.best, added);
   add_whiteness(report, diagnosis);
   add_traces(report, diagnosis, diagnosis.best, added);
-  report.write(path);
+  return report;
+}
+
+void write_diagnosis_report(const Diagnosis& diagnosis, const std::string& model_name, const std::string& path) {
+  diagnosis_report(diagnosis, model_name).write(path);
 }
 
 }  // namespace host

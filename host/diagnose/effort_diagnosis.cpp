@@ -175,13 +175,31 @@ bool effort_decides(const EffortScreen& screen, const RecordSet& validation) {
   return !screen.chosen.empty() || is_rough(error_of(sim::Drive(screen.base.model), validation));
 }
 
+namespace {
+
+std::shared_ptr<const EffortScreen> screen_of(const sim::DriveDescription& model, const PreparedSets& sets,
+                                              std::size_t most_effects) {
+  return std::make_shared<EffortScreen>(
+      screen_effort(model, sets.training, sets.validation, most_effects, sets.absent));
+}
+
+}  // namespace
+
+std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& model, const PreparedSets& sets) {
+  return screen_of(model, sets, 1);
+}
+
 std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
                                             std::shared_ptr<const EffortScreen>& seen, bool rough) {
   if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
-  auto screen =
-      std::make_shared<EffortScreen>(screen_effort(model, sets.training, sets.validation, kMostEffects, sets.absent));
+  std::shared_ptr<const EffortScreen> screen = screen_of(model, sets, kMostEffects);
   if (!screen->empty()) seen = screen;
   if (screen->chosen.empty() && !effort_decides(*screen, sets.validation)) return {};
+  return diagnosis_of(model, sets, std::move(screen));
+}
+
+Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& sets,
+                       std::shared_ptr<const EffortScreen> screen) {
   Diagnosis diagnosis(sets);
   diagnosis.measure = Measure::effort;
   diagnosis.rough = diagnosis.by_effort = true;

@@ -27,6 +27,13 @@ bool effort_decides(const EffortScreen& screen, const RecordSet& validation);
 std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
                                             std::shared_ptr<const EffortScreen>& screen, bool rough = false);
 
+/// The diagnosis by a regression that saw something, whoever decides.
+Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& sets,
+                       std::shared_ptr<const EffortScreen> screen);
+
+/// The first step of the regression, on sets that move enough: the odds of one effect, whoever would judge the machine.
+std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& model, const PreparedSets& sets);
+
 /// Result of the forward prediction for the chosen effects, as a sentence; may be empty.
 std::string said_by_the_motion(const Diagnosis& diagnosis);
 

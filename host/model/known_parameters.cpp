@@ -26,7 +26,7 @@ std::vector<std::pair<sim::EffectEntry*, std::string>> found(sim::DriveDescripti
     if (!kind.empty() && entry.kind != kind) continue;
     for (const auto& [id, value] : entry.parameters) {
       keys.emplace_back(sim::find_effect(entry.kind)->parameter(id)->key(model.data.kind));
-      if (keys.back() == key) all.emplace_back(&entry, id);
+      if (keys.back() == key || (!kind.empty() && id == key)) all.emplace_back(&entry, id);
     }
   }
   if (all.empty())
@@ -46,6 +46,23 @@ sim::DriveDescription with_knowledge(sim::DriveDescription model, const std::vec
     if (!prior) throw Failure(ExitCode::usage, fmt::format("--prior {}: write KEY=DEVIATION, e.g. J_kg_m2=1e-4", text));
     for (const auto& [entry, id] : found(model, prior->name, "--prior"))
       entry->believed[id] = {entry->at(id), prior->value};
+  }
+  return model;
+}
+
+sim::DriveDescription with_values(sim::DriveDescription model, const std::vector<std::string>& values) {
+  for (const std::string& text : values) {
+    const std::size_t equals = text.find('=');
+    const std::optional<double> value =
+        equals == std::string::npos ? std::nullopt : parse_number(std::string_view(text).substr(equals + 1));
+    if (!value) throw Failure(ExitCode::usage, fmt::format("{}: write NAME=VALUE, e.g. cogging.cosine_Nm=0.2", text));
+    for (const auto& [entry, id] : found(model, text.substr(0, equals), "value of")) {
+      const sim::ParameterInfo& info = *sim::find_effect(entry->kind)->parameter(id);
+      if (!(*value >= info.lower && *value <= info.upper))
+        throw Failure(ExitCode::usage, fmt::format("{}: outside {:g} to {:g}", text, info.lower, info.upper));
+      entry->parameters[id] = *value;
+      entry->ci95.erase(id);
+    }
   }
   return model;
 }

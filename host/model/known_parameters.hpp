@@ -15,4 +15,9 @@ namespace host {
 sim::DriveDescription with_knowledge(sim::DriveDescription model, const std::vector<std::string>& held,
                                      const std::vector<std::string>& believed);
 
+/// The model with other values, each "NAME=VALUE": a key as above, or the parameter's name without its unit
+/// ("cogging.cosine_72"). Throws Failure(usage) for a name that the model does not hold, and for a value outside the
+/// parameter's physical bounds.
+sim::DriveDescription with_values(sim::DriveDescription model, const std::vector<std::string>& values);
+
 }  // namespace host

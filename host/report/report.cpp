@@ -22,7 +22,8 @@ namespace {
 constexpr std::size_t fewest_rows = 2000;
 
 constexpr const char* zoom_hint =
-    "Drag to zoom, drag with Shift to pan, double-click to see everything. The cursor is shared.";
+    "Drag to zoom, drag with Shift to pan, double-click to see everything. The cursor is shared; a click sets its "
+    "reference, and Δ tells the differences.";
 
 /// Nothing is fetched: the file's own scripts and styles are all that a browser may use.
 constexpr const char* content_policy =

@@ -110,12 +110,43 @@
         const chosen = data.x !== undefined && series.y !== undefined && series.y !== null && !isNaN(series.y);
         const own = panel.series[index];
         const samples = chosen && own.samples ? own.samples[own.x.indexOf(data.x)] : undefined;
-        const reading = chosen ? formatted(series.y) + (samples ? " (" + samples + " samples)" : "") : "";
+        const marked = chosen && plot.reference ? plot.reference.values.get(panel)?.[index] : undefined;
+        const apart = marked === undefined || isNaN(marked) ? "" : ", Δ " + formatted(series.y - marked);
+        const reading = chosen ? formatted(series.y) + apart + (samples ? " (" + samples + " samples)" : "") : "";
         addElement(item, "span", "reading", reading);
       });
-      if (data.x !== undefined) addElement(content, "span", "at", "at " + formatted(data.x) + (xUnit ? " " + xUnit : ""));
+      if (data.x !== undefined) addElement(content, "span", "at", "at " + formatted(data.x) + (xUnit ? " " + xUnit : "") + distance(plot, data.x, xUnit));
       return content;
     };
+  }
+
+  // From the reference that a click has set: along x, and of seconds the frequency whose period it is.
+  function distance(plot, x, xUnit) {
+    if (!plot.reference || x === plot.reference.x) return "";
+    const apart = x - plot.reference.x;
+    return ", Δ " + formatted(apart) + (xUnit === "s" ? " (" + formatted(1 / Math.abs(apart)) + " Hz)" : "");
+  }
+
+  // The last value of each series up to x.
+  function valuesUpTo(chart, x, count) {
+    const values = new Array(count).fill(NaN);
+    for (let row = 0; row < chart.numRows() && chart.getValue(row, 0) <= x; row++)
+      for (let column = 0; column < count; column++) {
+        const value = chart.getValue(row, column + 1);
+        const plain = Array.isArray(value) ? value[1] : value;
+        if (plain !== null && !isNaN(plain)) values[column] = plain;
+      }
+    return values;
+  }
+
+  // A click sets the reference of all panels of a plot; a click on it takes it away.
+  function mark(plot, chart, x) {
+    const near = plot.reference && Math.abs(chart.toDomXCoord(plot.reference.x) - chart.toDomXCoord(x)) < 6;
+    plot.reference = near ? null : { x: x, values: new Map() };
+    for (const [panel, own] of plot.drawn) {
+      if (plot.reference) plot.reference.values.set(panel, valuesUpTo(own, x, panel.series.length));
+      own.updateOptions({}); // draws the line
+    }
   }
 
   function coloursOf(panel) {
@@ -126,8 +157,10 @@
     };
   }
 
-  function keep(chart, panel, legend) {
+  function keep(chart, plot, panel, legend) {
     charts.push(chart);
+    (plot.drawn = plot.drawn || []).push([panel, chart]);
+    chart.updateOptions({ clickCallback: (event, x) => mark(plot, chart, x) }, true);
     legend.addEventListener("click", function (event) {
       const item = [...legend.querySelectorAll(":scope > span:not(.at)")].indexOf(event.target.closest(".legend > span"));
       if (item >= 0) chart.setVisibility(item, !chart.visibility()[item]);
@@ -189,9 +222,14 @@
       });
   }
 
-  // Behind the traces: the shaded spans, and a line at zero.
-  function background(spans, series) {
+  // Behind the traces: the shaded spans, a line at zero, and the reference.
+  function background(plot, spans, series) {
     return function (context, area, chart) {
+      if (plot.reference) {
+        context.fillStyle = resolved("var(--ink)");
+        context.fillRect(Math.round(chart.toDomXCoord(plot.reference.x)), area.y, 1, area.h);
+      }
+      if (chart.getOption("logscale")) return;
       drawSampleStrip(context, area, chart, series || []);
       const zero = chart.toDomYCoord(0);
       if (zero > area.y && zero < area.y + area.h) {
@@ -218,7 +256,7 @@
     let drawnWindow = null;
     let timer = 0;
     const options = commonOptions(plot, panel, elements, isLowest, "s");
-    options.underlayCallback = background(plot.shaded);
+    options.underlayCallback = background(plot, plot.shaded);
     options.series = {};
     panel.series.forEach((series) => (options.series[series.name] = { strokeWidth: series.wide ? 2.6 : 1.2 }));
     options.drawCallback = function (chart, isFirst) {
@@ -231,7 +269,7 @@
         chart.updateOptions({ file: drawnRows(x, columns, window) });
       }, 30);
     };
-    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null), options), panel, elements.legend);
+    return keep(new Dygraph(elements.canvas, drawnRows(x, columns, null), options), plot, panel, elements.legend);
   }
 
   function drawTimePlot(frame, plot) {
@@ -319,14 +357,38 @@
     options.connectSeparatedPoints = true;
     options.logscale = plot.logarithmic;
     options.axes.x.logscale = plot.logarithmicX;
-    if (!plot.logarithmic) options.underlayCallback = background([], plot.series);
+    options.underlayCallback = background(plot, [], plot.series);
     options.series = {};
     plot.series.forEach((series) => (options.series[series.name] = seriesOptions(series)));
     options.xRangePad = plot.logarithmicX ? 0 : 12;
     options.yRangePad = plot.logarithmic || plot.equal ? null : 12;
     if (plot.yRange) options.valueRange = plot.yRange;
-    const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot, elements.legend);
+    const chart = keep(new Dygraph(elements.canvas, mergedRows(plot, withBars), options), plot, plot, elements.legend);
+    if (!plot.equal) frame.axisScales = scalesOf(chart, plot, withBars);
     if (plot.equal) equaliseScales(chart, plot);
+  }
+
+  // Whether x and y are logarithmic, and how to change it: magnitudes then, without bars.
+  function scalesOf(chart, plot, withBars) {
+    const scales = { x: Boolean(plot.logarithmicX), y: Boolean(plot.logarithmic) };
+    const magnitude = (value) => (value === null ? null : Math.abs(value));
+    scales.set = function (wanted) {
+      scales.x = Boolean(wanted.x);
+      scales.y = Boolean(wanted.y);
+      const series = plot.series.map(function (one) {
+        const kept = one.x.map((x, k) => k).filter((k) => !scales.x || one.x[k] !== 0);
+        const of = (values, change) => values && kept.map((k) => change(values[k]));
+        const same = (value) => value;
+        return { x: of(one.x, scales.x ? magnitude : same), y: of(one.y, scales.y ? magnitude : same),
+          lower: scales.y && !plot.logarithmic ? null : of(one.lower, same), upper: of(one.upper, same) };
+      });
+      chart.updateOptions({
+        file: mergedRows({ series: series, logarithmic: scales.y }, withBars), logscale: scales.y, dateWindow: null, valueRange: scales.y ? null : plot.yRange || null,
+        xRangePad: scales.x ? 0 : 12, yRangePad: scales.y ? null : 12, axes: { x: { logscale: scales.x } },
+        xlabel: (scales.x && !plot.logarithmicX ? "magnitude of " : "") + plot.xLabel,
+      });
+    };
+    return scales;
   }
 
   // A unit of x as long as a unit of y: at first, with the drawing in the middle, and after every zoom, resize and reset.

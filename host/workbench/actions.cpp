@@ -11,6 +11,7 @@
 #include "host/compare/comparison_report.hpp"
 #include "host/compare/tracking_error.hpp"
 #include "host/diagnose/addition.hpp"
+#include "host/diagnose/adjustment.hpp"
 #include "host/diagnose/diagnosis_json.hpp"
 #include "host/diagnose/diagnosis_report.hpp"
 #include "host/diagnose/improvement_report.hpp"
@@ -21,12 +22,15 @@
 #include "host/identify/identification_json.hpp"
 #include "host/identify/plausibility.hpp"
 #include "host/model/effect_forms.hpp"
+#include "host/model/known_parameters.hpp"
 #include "host/model/model_file.hpp"
 #include "host/opening/opening.hpp"
 #include "host/read_file.hpp"
 #include "host/record/edit_record.hpp"
 #include "host/record/read_record.hpp"
+#include "host/report/plot_json.hpp"
 #include "host/report/text_format.hpp"
+#include "host/workbench/effect_picture.hpp"
 
 namespace host::workbench {
 
@@ -51,7 +55,8 @@ nlohmann::json identified(const Request& request, const Outputs& outputs) {
 
 nlohmann::json diagnosed(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
                          const Outputs& outputs, const ShareDone& progress) {
-  const Diagnosis diagnosis = diagnose(model, measured, progress, nullptr, request.absent);
+  const Diagnosis diagnosis = request.quick ? diagnose_quickly(model, measured, request.absent)
+                                            : diagnose(model, measured, progress, nullptr, request.absent);
   throw_if_cancelled();
   write_diagnosis_report(diagnosis, request.models.front(), outputs.report);
   return to_json(diagnosis);
@@ -63,6 +68,14 @@ nlohmann::json added(const Request& request, const sim::DriveDescription& model,
   throw_if_cancelled();
   write_model(addition.judged.model, outputs.model);
   return to_json(addition, request.kind, measured, outputs.model);
+}
+
+nlohmann::json adjusted(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
+                        const Outputs& outputs) {
+  const Adjustment adjustment = adjust(model, with_values(model, request.values), measured);
+  throw_if_cancelled();
+  write_model(adjustment.model, outputs.model);
+  return to_json(adjustment, request.values, measured, outputs.model);
 }
 
 nlohmann::json improved(const Request& request, const sim::DriveDescription& model, const Measurements& measured,
@@ -103,6 +116,38 @@ Comparison compare(const Folder& folder, const Request& request) {
   return {comparison_document(models), comparison_report(models, request.focus).html(), "", request.train[traces]};
 }
 
+Comparison compare_trial(const Folder& folder, const Request& request) {
+  if (request.task != Task::adjust) throw Failure(ExitCode::usage, "request, \"do\": expected adjust");
+  require_files(folder, request);
+  Request comparison;
+  comparison.models = {request.models.front(), folder.own_file(kTrial)};
+  comparison.train = request.validate.empty() ? request.train : request.validate;
+  comparison.accepted = request.accepted;
+  write_model(with_values(read_model(request.models.front()), request.values), comparison.models.back());
+  return compare(folder, comparison);
+}
+
+nlohmann::json look_first(const Folder& folder, const Request& request) {
+  if (!request.quick) throw Failure(ExitCode::usage, "request, \"quick\": expected true");
+  require_files(folder, request);
+  for (const std::string& kind : request.absent) known_effect(kind);
+  const sim::DriveDescription model = read_model(request.models.front());
+  const Measurements measured =
+      MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);
+  const Diagnosis diagnosis = diagnose_quickly(model, measured, request.absent);
+  return {{"document", to_json(diagnosis)},
+          {"report", diagnosis_report(diagnosis, request.models.front()).html()},
+          {"command", command_line(request, {})}};
+}
+
+nlohmann::json gallery_picture(const std::string& kind) {
+  const EffectPicture picture = picture_of(known_effect(kind));
+  return {{"plot", scatter_plot_json(picture.plot)},
+          {"title", picture.plot.title},
+          {"caption", picture.plot.caption},
+          {"stands_out", picture.stands_out}};
+}
+
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
                          const std::function<void(double)>& progress) {
   require_files(folder, request);
@@ -113,6 +158,7 @@ nlohmann::json carry_out(const Folder& folder, const Request& request, const Out
   const Measurements measured =
       MeasurementGate(model, {.accepted = request.accepted}).read(request.train, request.validate);
   if (request.task == Task::add) return added(request, model, measured, outputs);
+  if (request.task == Task::adjust) return adjusted(request, model, measured, outputs);
   if (request.task == Task::improve) return improved(request, model, measured, outputs, progress);
   return diagnosed(request, model, measured, outputs, progress);
 }

@@ -28,8 +28,20 @@ std::vector<ComparedModel> compared_models(const Folder& folder, const Request& 
 /// Throws as the command does.
 Comparison compare(const Folder& folder, const Request& request);
 
-/// Identifies, diagnoses, adds or improves, writes the outputs, and returns the document of the command's --json.
-/// Throws as the command does, and Cancelled.
+/// The comparison of the model with one that has other values, of a request to adjust: written to kTrial, nothing else.
+/// Throws as the command does.
+Comparison compare_trial(const Folder& folder, const Request& request);
+inline constexpr const char* kTrial = "trial.toml";
+
+/// Of a quick diagnosis: "document", its --json, and "report", its page. Throws as the command does.
+nlohmann::json look_first(const Folder& folder, const Request& request);
+
+/// The plot of an effect in the gallery, as report.js draws it, and how far it stands out. Throws Failure(usage) for an
+/// unknown kind.
+nlohmann::json gallery_picture(const std::string& kind);
+
+/// Identifies, diagnoses, adds, adjusts or improves, writes the outputs, and returns the document of the command's
+/// --json. Throws as the command does, and Cancelled.
 nlohmann::json carry_out(const Folder& folder, const Request& request, const Outputs& outputs,
                          const std::function<void(double)>& progress);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <utility>
@@ -26,8 +27,12 @@ std::string state_name(int id) { return fmt::format("{:04}.job.json", id); }
 std::string model_stem(const Request& request) {
   const std::string stem = std::filesystem::path(request.models.front()).replace_extension().string();
   if (request.task == Task::add) return fmt::format("{}+{}", stem, request.kind);
-  return stem + (request.task == Task::identify ? "-identified" : "-improved");
+  return stem + (request.task == Task::identify ? "-identified"
+                 : request.task == Task::adjust ? "-adjusted"
+                                                : "-improved");
 }
+
+bool is_search(const Request& request) { return request.task == Task::diagnose || request.task == Task::improve; }
 
 std::int64_t now_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -54,11 +59,13 @@ nlohmann::json read_state(const std::string& path) {
 
 Jobs::Jobs(const Folder& folder) : folder_(folder) {
   load();
-  worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+  searcher_ = std::jthread([this](const std::stop_token& stop) { work(stop, true); });
+  fitter_ = std::jthread([this](const std::stop_token& stop) { work(stop, false); });
 }
 
 Jobs::~Jobs() {
-  worker_.request_stop();
+  searcher_.request_stop();
+  fitter_.request_stop();
   const std::lock_guard lock(mutex_);
   for (const auto& item : jobs_) item.second->is_cancelled = true;
 }
@@ -92,8 +99,7 @@ int Jobs::submit(const Request& request) {
   job->request = request;
   const std::string stem = fmt::format("{:04}-{}", id, task_name(request.task));
   job->outputs.json = folder_.own_file(stem + ".json");
-  if (request.task == Task::diagnose || request.task == Task::improve)
-    job->outputs.report = folder_.own_file(stem + ".html");
+  if (is_search(request)) job->outputs.report = folder_.own_file(stem + ".html");
   if (request.task != Task::diagnose) job->outputs.model = folder_.free_name(model_stem(request), ".toml");
   for (const auto& item : jobs_)  // one that waits has no file yet
     if (!job->outputs.model.empty() && item.second->outputs.model == job->outputs.model)
@@ -115,14 +121,17 @@ void Jobs::keep(Job& job, const std::string& state, const std::string& message) 
   write_file_atomically(folder_.own_file(state_name(job.state["id"])), job.state.dump(2) + "\n");
 }
 
-void Jobs::work(const std::stop_token& stop) {
+void Jobs::work(const std::stop_token& stop, bool searches) {
+  const auto next = [&] {
+    return std::ranges::find_if(queue_, [&](int id) { return is_search(jobs_.at(id)->request) == searches; });
+  };
   while (true) {
     Job* job = nullptr;
     {
       std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, stop, [this] { return !queue_.empty(); }) || stop.stop_requested()) return;
-      job = jobs_.at(queue_.front()).get();
-      queue_.pop_front();
+      if (!changed_.wait(lock, stop, [&] { return next() != queue_.end(); }) || stop.stop_requested()) return;
+      job = jobs_.at(*next()).get();
+      queue_.erase(next());
       if (job->is_cancelled) continue;
     }
     run(*job, stop);

@@ -1,5 +1,6 @@
-// Long work, one after the other, with progress and cancel. Everything about a job is in the folder: its state in
-// workbench/0007.job.json, its results beside that, so that a reload, another page or a crash loses nothing.
+// Long work with progress and cancel: searches one after the other, and beside them fits one after the other.
+// Everything about a job is in the folder: its state in workbench/0007.job.json, its results beside that, so that a
+// reload, another page or a crash loses nothing.
 #pragma once
 
 #include <atomic>
@@ -54,7 +55,7 @@ class Jobs {
   };
 
   void load();
-  void work(const std::stop_token& stop);
+  void work(const std::stop_token& stop, bool searches);
   void run(Job& job, const std::stop_token& stop);
   void keep(Job& job, const std::string& state, const std::string& message = "");
   static nlohmann::json told(const Job& job);
@@ -64,7 +65,7 @@ class Jobs {
   std::condition_variable_any changed_;
   std::map<int, std::unique_ptr<Job>> jobs_;
   std::deque<int> queue_;
-  std::jthread worker_;  ///< last: it uses the others
+  std::jthread searcher_, fitter_;  ///< last: they use the others
 };
 
 }  // namespace host::workbench

@@ -8,6 +8,9 @@ AXIS_EMBED(axis_workbench_style, AXIS_PAGE_DIR "/workbench.css");
 AXIS_EMBED(axis_workbench_main, AXIS_PAGE_DIR "/main.js");
 AXIS_EMBED(axis_workbench_elements, AXIS_PAGE_DIR "/elements.js");
 AXIS_EMBED(axis_workbench_exchange, AXIS_PAGE_DIR "/exchange.js");
+AXIS_EMBED(axis_workbench_adjust, AXIS_PAGE_DIR "/adjust.js");
+AXIS_EMBED(axis_workbench_catalogue, AXIS_PAGE_DIR "/catalogue.js");
+AXIS_EMBED(axis_workbench_look, AXIS_PAGE_DIR "/look.js");
 AXIS_EMBED(axis_workbench_choice, AXIS_PAGE_DIR "/choice.js");
 AXIS_EMBED(axis_workbench_compare, AXIS_PAGE_DIR "/compare.js");
 AXIS_EMBED(axis_workbench_effects, AXIS_PAGE_DIR "/effects.js");
@@ -15,6 +18,7 @@ AXIS_EMBED(axis_workbench_figures, AXIS_PAGE_DIR "/figures.js");
 AXIS_EMBED(axis_workbench_gallery, AXIS_PAGE_DIR "/gallery.js");
 AXIS_EMBED(axis_workbench_jobs, AXIS_PAGE_DIR "/jobs.js");
 AXIS_EMBED(axis_workbench_opening, AXIS_PAGE_DIR "/opening.js");
+AXIS_EMBED(axis_workbench_plot_axes, AXIS_PAGE_DIR "/plot_axes.js");
 AXIS_EMBED(axis_workbench_plot_files, AXIS_PAGE_DIR "/plot_files.js");
 AXIS_EMBED(axis_workbench_report_parts, AXIS_PAGE_DIR "/report_parts.js");
 
@@ -29,6 +33,9 @@ const std::vector<PageFile>& page_files() {
       {"main.js", kScript, AXIS_PAGE_FILE(main)},
       {"elements.js", kScript, AXIS_PAGE_FILE(elements)},
       {"exchange.js", kScript, AXIS_PAGE_FILE(exchange)},
+      {"adjust.js", kScript, AXIS_PAGE_FILE(adjust)},
+      {"catalogue.js", kScript, AXIS_PAGE_FILE(catalogue)},
+      {"look.js", kScript, AXIS_PAGE_FILE(look)},
       {"choice.js", kScript, AXIS_PAGE_FILE(choice)},
       {"compare.js", kScript, AXIS_PAGE_FILE(compare)},
       {"effects.js", kScript, AXIS_PAGE_FILE(effects)},
@@ -36,6 +43,7 @@ const std::vector<PageFile>& page_files() {
       {"gallery.js", kScript, AXIS_PAGE_FILE(gallery)},
       {"jobs.js", kScript, AXIS_PAGE_FILE(jobs)},
       {"opening.js", kScript, AXIS_PAGE_FILE(opening)},
+      {"plot_axes.js", kScript, AXIS_PAGE_FILE(plot_axes)},
       {"plot_files.js", kScript, AXIS_PAGE_FILE(plot_files)},
       {"report_parts.js", kScript, AXIS_PAGE_FILE(report_parts)},
       {"dygraphs.js", kScript, assets::dygraphs_script()},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
@@ -18,9 +19,9 @@ namespace host::workbench {
 namespace {
 
 constexpr std::size_t kMostNames = 500;
-constexpr std::array kTasks{std::pair{"compare", Task::compare}, std::pair{"identify", Task::identify},
+constexpr std::array kTasks{std::pair{"compare", Task::compare},   std::pair{"identify", Task::identify},
                             std::pair{"diagnose", Task::diagnose}, std::pair{"add", Task::add},
-                            std::pair{"improve", Task::improve}};
+                            std::pair{"adjust", Task::adjust},     std::pair{"improve", Task::improve}};
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
   throw Failure(ExitCode::usage, fmt::format("request, \"{}\": {}", field, what));
@@ -55,6 +56,26 @@ std::string word_of(const std::string& text, const std::string& field) {
   return text;
 }
 
+/// "cogging.cosine_72=0.2"
+std::string value_of(const std::string& text, const std::string& field) {
+  constexpr std::size_t kLongestValue = 120;
+  const std::size_t equals = text.find('=');
+  const bool is_value = text.size() <= kLongestValue && equals != std::string::npos && equals > 0 &&
+                        std::ranges::all_of(text, [](char c) {
+                          return std::isalnum(static_cast<unsigned char>(c)) ||
+                                 std::string_view("_.=+-").find(c) != std::string_view::npos;
+                        });
+  if (!is_value || text.front() == '-') refuse(field, "expected a list of NAME=VALUE");
+  return text;
+}
+
+bool flag_of(const nlohmann::json& object, const std::string& field) {
+  const auto found = object.find(field);
+  if (found == object.end()) return false;
+  if (!found->is_boolean()) refuse(field, "expected true or false");
+  return found->get<bool>();
+}
+
 std::string file_of(const std::string& name, const std::string& field) {
   if (!is_plain_name(name)) refuse(field, "expected the name of a file below the folder");
   return name;
@@ -74,15 +95,6 @@ std::optional<TimeSpan> stretch_of(const nlohmann::json& object) {
   return stretch;
 }
 
-Focus focus_of(const nlohmann::json& object) {
-  Focus focus;
-  if (object.contains("traces")) focus.record = file_of(text_of(object, "traces"), "traces");
-  focus.stretch = stretch_of(object);
-  if (object.contains("period_mm")) focus.period_mm = number_of(object["period_mm"], "period_mm");
-  if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "expected a length above 0");
-  return focus;
-}
-
 template <typename Check>
 std::vector<std::string> list_of(const nlohmann::json& object, const std::string& field, Check check) {
   std::vector<std::string> texts;
@@ -94,6 +106,22 @@ std::vector<std::string> list_of(const nlohmann::json& object, const std::string
     texts.push_back(check(item.get<std::string>(), field));
   }
   return texts;
+}
+
+Focus focus_of(const nlohmann::json& object) {
+  Focus focus;
+  if (object.contains("traces")) focus.record = file_of(text_of(object, "traces"), "traces");
+  focus.stretch = stretch_of(object);
+  if (object.contains("period_mm")) focus.period_mm = number_of(object["period_mm"], "period_mm");
+  if (const std::vector<std::string> map = list_of(object, "map", word_of); !map.empty()) {
+    const auto is_known = [](const std::string& name) {
+      return std::ranges::find(kMapCoordinates, name) != kMapCoordinates.end();
+    };
+    if (map.size() != 2 || !std::ranges::all_of(map, is_known)) refuse("map", "expected two coordinates");
+    focus.map = {map.front(), map.back()};
+  }
+  if (focus.period_mm && !(*focus.period_mm > 0.0)) refuse("period_mm", "expected a length above 0");
+  return focus;
 }
 
 std::string options_of(const char* option, const std::vector<std::string>& values, bool one_by_one = false) {
@@ -117,22 +145,25 @@ Request parse_request(std::string_view text) {
   const nlohmann::json document = object_of(text);
   const std::string name = text_of(document, "do");
   const auto* const task = std::ranges::find(kTasks, name, &std::pair<const char*, Task>::first);
-  if (task == kTasks.end()) refuse("do", "expected compare, identify, diagnose, add or improve");
+  if (task == kTasks.end()) refuse("do", "expected compare, identify, diagnose, add, adjust or improve");
   Request request;
   request.task = task->second;
   if (request.task == Task::compare) {
-    require_known(document, {"do", "models", "records", "accept", "traces", "stretch", "period_mm"});
+    require_known(document, {"do", "models", "records", "accept", "traces", "stretch", "period_mm", "map"});
     request.models = list_of(document, "models", file_of);
     request.train = list_of(document, "records", file_of);
     request.focus = focus_of(document);
   } else {
-    require_known(document, {"do", "model", "train", "validate", "accept", "absent", "kind", "over"});
+    require_known(document,
+                  {"do", "model", "train", "validate", "accept", "absent", "kind", "over", "values", "quick"});
     request.models = {file_of(text_of(document, "model"), "model")};
     request.train = list_of(document, "train", file_of);
     request.validate = list_of(document, "validate", file_of);
     request.absent = list_of(document, "absent", word_of);
     request.kind = word_of(text_of(document, "kind"), "kind");
     request.over = word_of(text_of(document, "over"), "over");
+    request.values = list_of(document, "values", value_of);
+    request.quick = flag_of(document, "quick");
   }
   request.accepted = list_of(document, "accept", word_of);
   if (request.models.empty()) refuse("models", "expected at least one model");
@@ -140,6 +171,8 @@ Request parse_request(std::string_view text) {
     refuse(request.task == Task::compare ? "records" : "train", "expected at least one record");
   if ((request.task == Task::add) == request.kind.empty()) refuse("kind", "add needs an effect, and it alone");
   if (request.task != Task::add && !request.over.empty()) refuse("over", "belongs to add");
+  if ((request.task == Task::adjust) == request.values.empty()) refuse("values", "adjust needs some, and it alone");
+  if (request.quick && request.task != Task::diagnose) refuse("quick", "belongs to diagnose");
   const bool searches = request.task == Task::diagnose || request.task == Task::improve;
   if (!searches && !request.absent.empty()) refuse("absent", "belongs to diagnose and improve");
   if (request.task == Task::identify && !request.validate.empty()) refuse("validate", "identify takes none");
@@ -157,9 +190,7 @@ CutRequest parse_cut(std::string_view text) {
 OpenRequest parse_open(std::string_view text) {
   const nlohmann::json document = object_of(text);
   require_known(document, {"logs", "yes"});
-  const bool yes = document.contains("yes");
-  if (yes && !document["yes"].is_boolean()) refuse("yes", "expected true or false");
-  OpenRequest request{list_of(document, "logs", file_of), yes && document["yes"].get<bool>()};
+  OpenRequest request{list_of(document, "logs", file_of), flag_of(document, "yes")};
   if (request.logs.empty()) refuse("logs", "expected at least one log");
   return request;
 }
@@ -188,6 +219,7 @@ nlohmann::json to_json(const Request& request) {
     document["records"] = request.train;
     if (!request.focus.record.empty()) document["traces"] = request.focus.record;
     if (const auto& stretch = request.focus.stretch) document["stretch"] = {stretch->from_s, stretch->to_s};
+    if (request.focus.map) document["map"] = {request.focus.map->first, request.focus.map->second};
     if (request.focus.period_mm) document["period_mm"] = *request.focus.period_mm;
     return document;
   }
@@ -197,6 +229,8 @@ nlohmann::json to_json(const Request& request) {
   if (!request.absent.empty()) document["absent"] = request.absent;
   if (!request.kind.empty()) document["kind"] = request.kind;
   if (!request.over.empty()) document["over"] = request.over;
+  if (!request.values.empty()) document["values"] = request.values;
+  if (request.quick) document["quick"] = true;
   return document;
 }
 
@@ -205,6 +239,8 @@ std::string command_line(const Request& request, const Outputs& outputs) {
   if (request.task != Task::identify)
     for (const std::string& model : request.models) line += fmt::format(" {}", shell_word(model));
   if (!request.kind.empty()) line += fmt::format(" {}", shell_word(request.kind));
+  for (const std::string& value : request.values) line += fmt::format(" {}", shell_word(value));
+  if (request.quick) line += " --quick";
   if (request.task != Task::compare && request.task != Task::identify) line += " --train";
   for (const std::string& record : request.train) line += fmt::format(" {}", shell_word(record));
   if (request.task == Task::identify) line += fmt::format(" --drive {}", shell_word(request.models.front()));
@@ -213,6 +249,7 @@ std::string command_line(const Request& request, const Outputs& outputs) {
   line += output_option("--traces", request.focus.record);
   if (const auto& stretch = request.focus.stretch)
     line += fmt::format(" --stretch {} {}", stretch->from_s, stretch->to_s);
+  if (request.focus.map) line += fmt::format(" --map {} {}", request.focus.map->first, request.focus.map->second);
   if (request.focus.period_mm) line += fmt::format(" --period {}", *request.focus.period_mm);
   line += output_option("--over", request.over) + output_option("-o", outputs.model);
   return line + output_option("--json", outputs.json) + output_option("--report", outputs.report);

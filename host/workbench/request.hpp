@@ -10,7 +10,7 @@
 
 namespace host::workbench {
 
-enum class Task { compare, identify, diagnose, add, improve };
+enum class Task { compare, identify, diagnose, add, adjust, improve };
 
 std::string_view task_name(Task task);
 
@@ -21,8 +21,10 @@ struct Request {
   std::vector<std::string> models;  ///< one, but for compare
   std::vector<std::string> train;   ///< all records of a comparison
   std::vector<std::string> validate, accepted, absent;
-  std::string kind, over;  ///< of add
-  Focus focus;             ///< of compare: "traces", "stretch": [FROM, TO], "period_mm"
+  std::string kind, over;           ///< of add
+  std::vector<std::string> values;  ///< of adjust: "NAME=VALUE"
+  bool quick = false;               ///< of diagnose
+  Focus focus;                      ///< of compare: "traces", "stretch": [FROM, TO], "period_mm", "map": [ACROSS, UP]
 };
 
 inline constexpr std::size_t kLongestRequest = 65'536;

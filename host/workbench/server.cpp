@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -108,7 +109,8 @@ struct Server::Parts {
   httplib::Server http;
   int port = 0;
   std::optional<Access> access;
-  std::mutex comparing;
+  std::mutex comparing, looking, drawing;
+  std::map<std::string, nlohmann::json> pictures;  ///< of the gallery, by kind
   std::atomic<bool> is_ending = false, has_ended = false;
 
   using Handled = httplib::Server::HandlerResponse;
@@ -168,8 +170,30 @@ struct Server::Parts {
     if (request.task != Task::compare) throw Failure(ExitCode::usage, "request, \"do\": expected compare");
     const std::lock_guard one_at_a_time(comparing);
     const CancelledBy scope(&is_ending);
-    Comparison comparison = compare(folder, request);
-    send(response, {{"command", command_line(request, {})},
+    send_compared(compare(folder, request), command_line(request, {}), response);
+  }
+
+  void send_trial(const Request& request, Response& response) {
+    const std::lock_guard one_at_a_time(comparing);
+    const CancelledBy scope(&is_ending);
+    send_compared(compare_trial(folder, request),
+                  command_line(request, {fmt::format("{}/{}", kOwnFolder, kTrial), "", ""}), response);
+  }
+
+  void send_first_look(const Request& request, Response& response) {
+    const std::lock_guard one_at_a_time(looking);
+    const CancelledBy scope(&is_ending);
+    send(response, look_first(folder, request));
+  }
+
+  void send_picture(const std::string& kind, Response& response) {
+    const std::lock_guard one_at_a_time(drawing);
+    const auto drawn = pictures.find(kind);
+    send(response, drawn != pictures.end() ? drawn->second : (pictures[kind] = gallery_picture(kind)));
+  }
+
+  static void send_compared(Comparison comparison, const std::string& command, Response& response) {
+    send(response, {{"command", command},
                     {"document", std::move(comparison.document)},
                     {"report", std::move(comparison.report)},
                     {"traces", std::move(comparison.traces)},
@@ -218,6 +242,8 @@ struct Server::Parts {
     get("/api/folder", [this](const Query&, Response& response) { send_folder(response); });
     get("/api/file", [this](const Query& request, Response& response) { send_file(request, response); });
     get("/api/effects", [](const Query&, Response& response) { send(response, effects_json()); });
+    get(R"(/api/effects/([a-z_]{1,60})/picture)",
+        [this](const Query& request, Response& response) { send_picture(request.matches[1], response); });
     get("/api/jobs", [this](const Query&, Response& response) { send(response, jobs.list()); });
     get(R"(/api/jobs/(\d{1,6}))", [this](const Query& request, Response& response) {
       const std::optional<nlohmann::json> state = jobs.state(std::stoi(request.matches[1]));
@@ -231,6 +257,12 @@ struct Server::Parts {
          [this](const Query&, Response& response, const std::string& body) { submit(parse_request(body), response); });
     post("/api/compare", [this](const Query&, Response& response, const std::string& body) {
       send_comparison(parse_request(body), response);
+    });
+    post("/api/trial", [this](const Query&, Response& response, const std::string& body) {
+      send_trial(parse_request(body), response);
+    });
+    post("/api/look", [this](const Query&, Response& response, const std::string& body) {
+      send_first_look(parse_request(body), response);
     });
     post("/api/story", [this](const Query&, Response& response, const std::string& body) {
       send_story(parse_request(body), response);

@@ -31,8 +31,8 @@ BarChart ladder_of(const std::vector<json>& steps) {
     if (chart.rows.empty())
       chart.rows.push_back(row_of(request.at("model").get<std::string>(), document.at("error").at("given")));
     if (!document.contains("ladder")) {
-      chart.rows.push_back(
-          row_of("+ " + spaced(request.at("kind").get<std::string>()), document.at("error").at("after")));
+      const std::string kind = request.value("kind", "");
+      chart.rows.push_back(row_of(kind.empty() ? "adjusted" : "+ " + spaced(kind), document.at("error").at("after")));
       continue;
     }
     for (const json& rung : document.at("ladder"))

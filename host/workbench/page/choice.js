@@ -75,12 +75,32 @@ export async function giveRoles(roles) {
   await changed();
 }
 
+/** @type {{name: string, role: string, pieces: string[]}[]} records that stand cut, latest last */
+const cut = [];
+
+/** The latest record that was cut on this page, while its pieces are in use. */
+export const latestCut = () => cut.at(-1);
+
+/** That record as a whole again. */
+export function takeBack() {
+  const { name, role, pieces } = /** @type {any} */ (cut.pop());
+  return giveRoles({ ...Object.fromEntries(pieces.map((piece) => [piece, "off"])), [name]: role });
+}
+
+/** What trained judges, and the reverse. */
+function swapRoles() {
+  const other = { train: "judge", judge: "train", off: "off" };
+  for (const name of Object.keys(choice.roles)) choice.roles[name] = other[choice.roles[name]];
+  return changed();
+}
+
 /**
  * Pieces of a record take its role.
  * @param {string} name
  * @param {string[]} pieces
  */
 export function replaceRecord(name, pieces) {
+  cut.push({ name, role: choice.roles[name], pieces });
   return giveRoles({ ...Object.fromEntries(pieces.map((piece) => [piece, choice.roles[name]])), [name]: "off" });
 }
 
@@ -150,8 +170,8 @@ function logRow(name) {
   return el("li", {}, el("span", { className: "name" }, name), el("a", { href: openAddress([name]), className: "button small" }, "Open"));
 }
 
-function group(title, rows, empty) {
-  return el("section", {}, el("h2", {}, title), rows.length ? el("ul", {}, ...rows) : el("p", { className: "soft" }, empty));
+function group(title, tool, rows, empty) {
+  return el("section", {}, el("div", { className: "row" }, el("h2", {}, title), tool), rows.length ? el("ul", {}, ...rows) : el("p", { className: "soft" }, empty));
 }
 
 function render() {
@@ -160,13 +180,14 @@ function render() {
   const focused = document.activeElement && place.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
   const input = el("input", { type: "file", multiple: true, id: "add-files", className: "hidden", onchange: (event) => take(event.target.files) });
   const drop = el("div", { className: "drop" }, el("button", { type: "button", onclick: () => input.click() }, "Add files…"), el("span", { className: "soft" }, "or drop them anywhere"), input);
+  const swap = recordsAs("train").length && recordsAs("judge").length ? el("button", { type: "button", className: "small", id: "swap", title: "What trains judges, and what judges trains", onclick: swapRoles }, "Swap roles") : null;
   const logs = namesOf("log"), sheets = namesOf("sheet");
   place.replaceChildren(
     drop,
-    group("Models", namesOf("model").map(modelRow), "None yet: drop one (.toml), or identify one from records and a data sheet."),
-    group("Records", namesOf("record").map(recordRow), "None yet: drop some, or any controller's logs."),
-    ...(sheets.length ? [group("Data sheets", sheets.map(sheetRow), "")] : []),
-    ...(logs.length ? [group("Other logs", [...logs.map(logRow), ...(logs.length > 1 ? [el("li", {}, el("span", { className: "name soft" }, "of one controller"), el("a", { href: openAddress(logs), className: "button small" }, "Open all"))] : [])], "")] : [])
+    group("Models", null, namesOf("model").map(modelRow), "None yet: drop one (.toml), or identify one from records and a data sheet."),
+    group("Records", swap, namesOf("record").map(recordRow), "None yet: drop some, or any controller's logs."),
+    ...(sheets.length ? [group("Data sheets", null, sheets.map(sheetRow), "")] : []),
+    ...(logs.length ? [group("Other logs", null, [...logs.map(logRow), ...(logs.length > 1 ? [el("li", {}, el("span", { className: "name soft" }, "of one controller"), el("a", { href: openAddress(logs), className: "button small" }, "Open all"))] : [])], "")] : [])
   );
   if (focused) /** @type {HTMLElement|null} */ (place.querySelector('[aria-label="' + CSS.escape(focused) + '"]'))?.focus();
 }

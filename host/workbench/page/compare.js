@@ -1,14 +1,17 @@
 // How well the chosen models predict the chosen records, and where they fail.
-import { choice, recordsAs, replaceRecord } from "./choice.js";
-import { commandLine, el, errorBox, notice, short } from "./elements.js";
+import { choice, latestCut, recordsAs, replaceRecord, takeBack } from "./choice.js";
+import { effects } from "./catalogue.js";
+import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
 import { post } from "./exchange.js";
+import { firstLook, mostProbable } from "./look.js";
 import { plots, save } from "./plot_files.js";
 import { forgetPlots, partsOf, sectionLinks, showBlocks } from "./report_parts.js";
 
+const kCoordinates = ["position", "speed", "acceleration", "current", "time", "travel_since_reversal", "rest"], kUsualMap = ["position", "speed"];
 const kSets = [["all", "all records"], ["judge", "held back"], ["train", "training"]];
 let set = "all";
 let asked = 0;
-/** What is looked at: { traces, stretch, period_mm }, as the command's options. */
+/** What is looked at: { traces, stretch, period_mm, map }, as the command's options. */
 let focus = {};
 
 function recordsOf(name) {
@@ -22,24 +25,45 @@ function setButtons(again) {
 
 /**
  * Models on records as blocks of their report.
- * @param {Element} place
+ * @param {HTMLElement} place
  * @param {string[]} models
  * @param {string[]} records
  * @param {{focus?: any, onZoom?: (...words: any[]) => void}} [options]
  */
 export async function showComparison(place, models, records, options = {}) {
   const told = await post("/api/compare", { do: "compare", models, records, accept: choice.accepted, ...options.focus });
-  return { told, show: () => {
-    if (told.text) return place.append(el("pre", {}, told.text), commandLine(told.command));
-    const parts = partsOf(told.report);
-    const page = () => save("comparison.html", new Blob([told.report], { type: "text/html" }));
-    place.append(parts.verdict ? document.importNode(parts.verdict, true) : "", commandLine(told.command));
-    const links = el("div");
-    place.append(links);
-    const sections = sectionLinks([showBlocks(place, parts, () => true, options.onZoom)]);
-    sections.append(el("button", { type: "button", className: "apart", onclick: page }, "Save as a page"));
-    links.replaceWith(sections);
-  } };
+  return { told, show: () => drawComparison(place, told, options.onZoom) };
+}
+
+/**
+ * A comparison that came. What stands there before goes only now, and the page keeps its place.
+ * @param {HTMLElement} place
+ * @param {any} told
+ * @param {(...words: any[]) => void} [onZoom]
+ */
+export function drawComparison(place, told, onZoom) {
+  place.style.minHeight = place.offsetHeight + "px";
+  forgetPlots(place);
+  place.replaceChildren();
+  if (told.text) return place.append(el("pre", {}, told.text), commandLine(told.command));
+  const parts = partsOf(told.report);
+  const page = () => save("comparison.html", new Blob([told.report], { type: "text/html" }));
+  place.append(parts.verdict ? document.importNode(parts.verdict, true) : "", commandLine(told.command));
+  const links = el("div");
+  place.append(links);
+  const sections = sectionLinks([showBlocks(place, parts, () => true, onZoom)]);
+  sections.append(el("button", { type: "button", className: "apart", onclick: page }, "Save as a page"));
+  links.replaceWith(sections);
+  place.style.minHeight = "";
+}
+
+/** Beside the comparison: the most probable answer of the force balance, as soon as it is known. */
+async function showFirstLook(head) {
+  const [look, catalogue] = await Promise.all([firstLook(), effects()]);
+  if (!look || !head.isConnected) return;
+  const { kinds, title, probability } = mostProbable(look.document);
+  const name = title || kinds.map((kind) => catalogue.find((one) => one.kind === kind)?.title || kind).join(" + ");
+  head.append(el("a", { href: "#effects", id: "first-look", className: "soft", title: look.command }, "First look: " + name + " " + percent(probability)));
 }
 
 /** What to draw: whose traces, which period, which stretch. */
@@ -50,8 +74,11 @@ function focusTools(records, traces, again) {
     type: "number", min: "0", step: "any", value: focus.period_mm ?? "", placeholder: "model's ripple", "aria-label": "Period in mm",
     onchange: (event) => look({ period_mm: Number(event.target.value) > 0 ? Number(event.target.value) : undefined }),
   });
+  const axis = (k, name) => el("select", { "aria-label": name, onchange: (event) => look({ map: (focus.map || kUsualMap).map((one, index) => (index === k ? event.target.value : one)) }) },
+    ...kCoordinates.map((one) => el("option", { value: one, selected: (focus.map || kUsualMap)[k] === one }, one.replaceAll("_", " "))));
   const lit = focus.stretch ? el("button", { type: "button", id: "unlight", onclick: () => look({ stretch: undefined }) }, "Lit: " + focus.stretch.map(short).join(" to ") + " s ✕") : null;
-  return el("div", { className: "row focus" }, el("label", {}, "Traces of ", choose), el("label", {}, "Fold by ", period, " mm"), lit);
+  const whole = latestCut() ? el("button", { type: "button", id: "take-back", onclick: takeBack }, "Take back: " + latestCut()?.name + " as a whole") : null;
+  return el("div", { className: "row focus" }, el("label", {}, "Traces of ", choose), el("label", {}, "Fold by ", period, " mm"), el("span", {}, "Map over ", axis(0, "Map across"), " and ", axis(1, "Map up")), lit, whole);
 }
 
 async function leaveOut(record, stretch) {
@@ -93,7 +120,7 @@ export async function showCompare(place) {
   const mine = ++asked;
   if (!recordsOf(set).length) set = "all";
   const records = recordsOf(set);
-  if (!records.includes(focus.traces)) focus = { period_mm: focus.period_mm };
+  if (!records.includes(focus.traces)) focus = { period_mm: focus.period_mm, map: focus.map };
   const head = el("div", { className: "row head" }, el("h1", {}, "Compare"), setButtons(again));
   if (!choice.model || !records.length) {
     forgetPlots();
@@ -113,6 +140,7 @@ export async function showCompare(place) {
     head.append(el("a", { className: "button primary", href: "#effects/find" }, "Find the missing effect"));
     show();
     window.scrollTo(0, scrolled);
+    showFirstLook(head).catch((error) => notice(error.message));
   } catch (error) {
     if (mine !== asked) return;
     forgetPlots();

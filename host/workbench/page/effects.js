@@ -1,28 +1,25 @@
 // Which effect is missing, as cards in the order of their probability; a click adds one, and the error falls.
+import { sliders } from "./adjust.js";
+import { effects } from "./catalogue.js";
 import { choice, chosenRecords, loadFolder, workOn } from "./choice.js";
-import { showComparison } from "./compare.js";
+import { drawComparison, showComparison } from "./compare.js";
 import { commandLine, el, errorBox, notice, percent, short } from "./elements.js";
-import { fileAddress, get, post, report } from "./exchange.js";
+import { fileAddress, post, report } from "./exchange.js";
 import { errorBars, errorTable, parameterTable, probabilityBar } from "./figures.js";
 import { begin, jobs, whole } from "./jobs.js";
+import { firstLook } from "./look.js";
 import { save } from "./plot_files.js";
 import { forgetPlots, partsOf, showBlocks } from "./report_parts.js";
 
 const kShown = 0.01; // probability; less is folded away
 const documents = new Map(); // of jobs that are done: they do not change
-let catalogue = null;
+let catalogue = [];
 let next = []; // kinds of a set that are still to be added, one after the other
 let shown = 0;
 
 async function documentOf(job) {
   if (!documents.has(job.id)) documents.set(job.id, (await whole(job)).document || {});
   return documents.get(job.id);
-}
-
-/** All of axis-effects/1, fetched once. */
-export async function effects() {
-  catalogue ??= (await get("/api/effects")).effects;
-  return catalogue;
 }
 
 function titleOf(kinds) {
@@ -98,6 +95,7 @@ async function ladder(place, steps) {
     const row = (label, error) => ({ label, train: error.train.combined, validate: error.validate.combined });
     if (!rows.length) rows.push(row(job.request.model, told.error.given));
     if (job.request.do === "add") rows.push(row("+ " + titleOf([job.request.kind]), told.error.after));
+    else if (job.request.do === "adjust") rows.push(row("values set by hand", told.error.after));
     else for (const step of told.ladder.filter((one) => one.added.length)) rows.push(row("+ " + titleOf(step.added), step.error));
   }
   const last = steps.at(-1), told = await documentOf(last);
@@ -105,9 +103,26 @@ async function ladder(place, steps) {
     el("button", { type: "button", id: "undo", title: "Key U", onclick: undo }, "Undo: back to " + last.request.model),
     el("button", { type: "button", id: "story", onclick: saveStory }, "Save the story")));
   if (told.kept === "given") place.append(el("p", { className: "lead" }, "The last step predicts the held-back records worse: " + last.model + " holds the unchanged model."));
+  const { parameters, added } = await fitted(steps);
   const rotary = "x_mm" in told.error.after.train.channels || "w_rad_s" in told.error.after.train.channels;
-  place.append(el("div", { className: "pair" }, el("div", {}, errorBars(rows), errorTable(told.error.given, told.error.after)), ...(told.parameters ? [parameterTable(told.parameters, catalogue, rotary)] : [])));
+  place.append(el("div", { className: "pair" }, el("div", {}, errorBars(rows), errorTable(told.error.given, told.error.after)), ...(parameters.length ? [el("div", {}, parameterTable(parameters, catalogue, rotary))] : [])));
   place.append(commandLine(last.command));
+  return (show, restore) => {
+    if (added.length && told.kept !== "given") place.append(sliders(added, catalogue, rotary, show, restore));
+  };
+}
+
+/** The parameters of the last fit, with what was set by hand since, and those of what it added. */
+async function fitted(steps) {
+  let parameters = [], added = [];
+  for (const job of steps) {
+    const told = await documentOf(job);
+    if (told.parameters) parameters = told.parameters;
+    const set = Object.fromEntries((job.request.values || []).map((text) => text.split("=")));
+    parameters = parameters.map((one) => (one.name in set ? { ...one, value: Number(set[one.name]), determined: false } : one));
+    if (job.request.do === "add") added = [...added, job.request.kind];
+  }
+  return { parameters, added: parameters.filter((one) => added.includes(one.name.split(".")[0])) };
 }
 
 function card(candidate, told) {
@@ -129,17 +144,26 @@ function plainCard(title, share, text, action = null) {
   return el("li", { className: "card plain" }, el("h3", {}, title), probabilityBar(share), el("p", {}, text), action);
 }
 
+/** Effects that these records cannot tell apart, with the run that would. */
+function rivals(group, told) {
+  const advice = [...new Set(group.map((kind) => told.candidates.find((one) => one.kinds.at(-1) === kind)?.separate_by).filter(Boolean))];
+  const quoted = (name) => (/^[\w./+-]+$/.test(name) ? name : "'" + name.replaceAll("'", "'\\''") + "'");
+  return el("section", { className: "rivals" }, el("h3", {}, "These records cannot tell apart: " + group.map((kind) => titleOf([kind])).join(", ")),
+    ...advice.map((text) => el("p", {}, text + ".")), el("p", {}, "On a board, this command designs the run that decides, within a box that you give (--box):"),
+    commandLine(["axistool plan", quoted(choice.model), "--train", ...chosenRecords().train.map(quoted), "--rivals", group.join(","), "-o run.toml"].join(" ")));
+}
+
 function cards(told) {
   const verdict = told.verdict, tied = [verdict.effects, ...verdict.alternatives].flat();
   const useful = told.candidates.filter((one) => one.probability >= kShown || one.kinds.every((kind) => tied.includes(kind)));
   const rest = told.candidates.filter((one) => !useful.includes(one));
-  const list = useful.map((one) => card(one, told));
+  const list = useful.sort((a, b) => b.probability - a.probability).map((one) => card(one, told));
   if (verdict.probability_other > 0) list.push(plainCard("Something else", verdict.probability_other,
     (verdict.coordinate ? "Most of the residual depends on " + verdict.coordinate.replaceAll("_", " ") + (verdict.where ? ", " + verdict.where : "") + ". " : "") + "Next: " + verdict.next_experiment,
     el("div", { className: "row" }, el("button", { type: "button", onclick: () => add("free_curve") }, "Add a free curve"))));
   if (verdict.probability_nothing > 0) list.push(plainCard("Nothing is missing", verdict.probability_nothing, "Then the residual would be noise."));
   const places = [el("h2", {}, "Possible explanations"), el("ol", { className: "cards", id: "cards" }, ...list)];
-  for (const group of verdict.alternatives) places.push(el("p", { className: "lead" }, "These records cannot tell apart: " + group.map((kind) => titleOf([kind])).join(", ") + "."));
+  for (const group of verdict.alternatives) places.push(rivals(group, told));
   if (rest.length) places.push(el("details", {}, el("summary", {}, rest.length + " other tried effects are improbable"), el("ol", { className: "cards" }, ...rest.map((one) => card(one, told)))));
   return places;
 }
@@ -147,13 +171,17 @@ function cards(told) {
 /** The first panel, then the cards, then all the rest of the report. */
 async function diagnosis(place, job) {
   const [told, html] = await Promise.all([documentOf(job), report(job.report)]);
+  return explained(place, told, html, job.command, el("p", {}, el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Open the whole report")));
+}
+
+function explained(place, told, html, command, link) {
   const parts = partsOf(html);
   const second = parts.blocks.filter((block) => block.tagName === "H2")[1];
   const isFirst = (block) => block !== second && !(second && second.compareDocumentPosition(block) & Node.DOCUMENT_POSITION_FOLLOWING);
   return () => {
     place.append(parts.verdict ? document.importNode(parts.verdict, true) : "");
     if (told.verdict.effects.length || told.verdict.coordinate) showBlocks(place, parts, isFirst);
-    place.append(...cards(told), commandLine(job.command), el("p", {}, el("a", { href: fileAddress(job.report), target: "_blank", rel: "noopener" }, "Open the whole report")));
+    place.append(...cards(told), commandLine(command), link);
     const more = el("details", {}, el("summary", {}, "Errors, residuals and traces"));
     more.addEventListener("toggle", () => more.children.length === 1 && showBlocks(more, parts, (block) => !isFirst(block)), { once: true });
     place.append(more);
@@ -176,18 +204,18 @@ function head() {
  */
 export async function showEffects(place, wish) {
   const mine = ++shown;
-  if (wish === "find") {
-    history.replaceState(null, "", "#effects");
-    if (!searched() && choice.model && chosenRecords().train.length) begin(request("diagnose"));
-  }
-  await effects();
+  if (wish === "find") history.replaceState(null, "", "#effects");
+  catalogue = await effects();
+  const look = searched()?.state === "done" || searched()?.state === "failed" ? null : firstLook();
+  if (wish === "find" && !searched() && choice.model && chosenRecords().train.length) look?.finally(() => begin(request("diagnose")));
   const body = el("div"), steps = stepsTo(choice.model), draw = [];
   try {
     if (steps.length) {
-      await ladder(body, steps);
+      const drag = await ladder(body, steps);
       const before = steps.at(-1).request.model, records = chosenRecords();
       const overlay = el("div", { id: "overlay" });
-      const { show } = await showComparison(overlay, [before, choice.model], records.validate.length ? records.validate : records.train);
+      const { told, show } = await showComparison(overlay, [before, choice.model], records.validate.length ? records.validate : records.train);
+      drag((trial) => drawComparison(overlay, trial), () => drawComparison(overlay, told));
       body.append(el("h2", {}, "Before and after, on " + (records.validate.length ? "held-back" : "training") + " records"), overlay);
       draw.push(show);
     }
@@ -197,6 +225,12 @@ export async function showEffects(place, wish) {
       body.prepend(found);
       if (steps.length) body.append(found);
       draw.push(await diagnosis(found, asked));
+    } else if (look) {
+      const found = el("div", { id: "diagnosis", className: "first-look" }, el("p", { className: "lead" }, "Looking at the force balance…"));
+      if (steps.length) body.append(found);
+      else body.prepend(found);
+      look.then((told) => told && found.isConnected && (found.replaceChildren(el("p", { className: "lead" }, asked ? "First look, by the force balance alone; the search by motion is under way." : "First look, by the force balance alone. “Find the missing effect” searches the motion too.")), explained(found, told.document, told.report, told.command, "")()));
+      look.then((told) => told || found.remove());
     } else if (asked?.state === "failed")
       body.append(errorBox(Object.assign(new Error(asked.message), { log: asked.log }), (words) => (choice.accepted.push(...words), begin(request("diagnose")))));
   } catch (error) {

@@ -70,7 +70,7 @@ export function errorTable(given, after) {
  * @param {any[]} catalogue
  * @param {boolean} rotary
  */
-function keyOf(name, catalogue, rotary) {
+export function keyOf(name, catalogue, rotary) {
   const [kind, id] = name.split(".");
   const number = /_\d+$/.exec(id)?.[0] || "";
   const parameters = catalogue.find((one) => one.kind === kind)?.parameters || [];

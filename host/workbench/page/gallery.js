@@ -1,15 +1,36 @@
 // The catalogue: how each effect shows, what it is confused with, how to tell them apart, and the remedy.
 import { choice } from "./choice.js";
 import { el } from "./elements.js";
-import { add, effects } from "./effects.js";
+import { effects } from "./catalogue.js";
+import { add } from "./effects.js";
+import { get } from "./exchange.js";
+import { forgetPlots, showPlot } from "./report_parts.js";
 
-const kStages = { command: "Command and current loop", motor: "Motor", load: "Torques on the shaft", friction: "Friction", mechanics: "Masses and their connections", encoder: "Encoder", tachometer: "Tachometer" };
+const kStages = { command: "Command and current loop", motor: "Motor", load: "Torques on the shaft", friction: "Friction", mechanics: "Masses and their connections", encoder: "Encoder", tachometer: "Tachometer", table: "Table, as a scale of its own sees it" };
+
+/**
+ * What the effect leaves on a standard run of the plant; drawn when its entry opens.
+ * @param {HTMLDetailsElement} box
+ * @param {any} info
+ */
+async function drawPicture(box, info) {
+  const frame = el("div"), figure = el("figure", { className: "plot picture" }, el("p", { className: "soft" }, "Simulating it…"));
+  box.querySelector("summary").after(figure);
+  try {
+    const told = await get("/api/effects/" + info.kind + "/picture");
+    figure.replaceChildren(el("figcaption", {}, el("strong", {}, told.title), el("span", {}, told.caption)), frame);
+    if (figure.isConnected) showPlot(frame, told.plot);
+  } catch (error) {
+    figure.replaceChildren(el("p", { className: "soft" }, error.message));
+  }
+}
 
 function entry(info, catalogue) {
   const link = (kind) => el("a", { href: "#gallery/" + kind }, catalogue.find((one) => one.kind === kind)?.title || kind);
   const term = (name, ...what) => [el("dt", {}, name), el("dd", {}, ...what)];
   const confused = info.confused_with.flatMap((kind, k) => (k ? [", ", link(kind)] : [link(kind)]));
-  return el("details", { className: "effect", id: "effect-" + info.kind },
+  const opened = (event) => event.target.open && !event.target.querySelector(".picture") && drawPicture(event.target, info);
+  return el("details", { className: "effect", id: "effect-" + info.kind, ontoggle: opened },
     el("summary", {}, info.title, el("span", { className: "soft" }, " " + info.shows.split(". ")[0] + ".")),
     el("dl", {},
       ...term("How it shows", info.shows), ...term("Goes with", info.along.join(", ").replaceAll("_", " ") || "–"), ...term("Equation", el("code", {}, info.equation)),
@@ -30,6 +51,7 @@ export async function showGallery(place, kind) {
     for (const info of catalogue) document.getElementById("effect-" + info.kind).hidden = !JSON.stringify(info).toLowerCase().includes(words);
     for (const group of groups) group.hidden = !group.querySelector("details:not([hidden])");
   };
+  forgetPlots();
   place.replaceChildren(el("div", { className: "row head" }, el("h1", {}, "Gallery"), el("input", { type: "search", placeholder: "Search, e.g. reversal", "aria-label": "Search the effects", oninput: filter })),
     el("p", { className: "lead" }, "Every effect of the plant model; diagnose tests all of them."), el("div", { className: "gallery" }, ...groups));
   const opened = /** @type {HTMLDetailsElement|null} */ (document.getElementById("effect-" + kind));

@@ -55,7 +55,7 @@ export function whole(job) {
   return get("/api/jobs/" + job.id);
 }
 
-const kVerbs = { identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", improve: "Adding significant effects" };
+const kVerbs = { identify: "Identifying", diagnose: "Searching for the missing effect", add: "Fitting", adjust: "Setting values", improve: "Adding significant effects" };
 
 /** @param {any} job */
 export function titleOf(job) {

@@ -1,4 +1,5 @@
 // The reports of the commands as parts of this page: the same blocks and the same plots, drawn by the same script.
+import { axisTools } from "./plot_axes.js";
 import { fileTools, plots as plotScript } from "./plot_files.js";
 
 /**
@@ -16,12 +17,26 @@ export function partsOf(html) {
   };
 }
 
+/** @type {{box: Element, forget: () => void}[]} */
 let drawn = [];
 
-/** Takes away all plots: called before a view goes. */
-export function forgetPlots() {
-  drawn.forEach((forget) => forget());
-  drawn = [];
+/**
+ * Takes away all plots, or those in a place: called before a view goes.
+ * @param {Element} [place]
+ */
+export function forgetPlots(place) {
+  const gone = drawn.filter((one) => !place || place.contains(one.box));
+  gone.forEach((one) => one.forget());
+  drawn = drawn.filter((one) => !gone.includes(one));
+}
+
+/**
+ * One plot of data that came by themselves.
+ * @param {Element} frame in the page
+ * @param {any} plot as report.js draws it
+ */
+export function showPlot(frame, plot) {
+  drawn.push({ box: frame, forget: plotScript().draw([plot], [frame]) });
 }
 
 /**
@@ -46,7 +61,8 @@ export function showBlocks(place, parts, wanted = () => true, onZoom) {
     frame.removeAttribute("id");
     frame.closest("figure").prepend(fileTools(frame.closest("figure"), plots.at(-1)));
   }
-  drawn.push(plotScript().draw(plots, frames, onZoom));
+  drawn.push({ box, forget: plotScript().draw(plots, frames, onZoom) });
+  frames.forEach((frame, k) => frame.closest("figure").querySelector(".tools").prepend(...axisTools(frame, plots[k])));
   return box;
 }
 

@@ -51,6 +51,7 @@ TEST_F(OutputFiles, NoCommandOverwritesItsInput) {
            "diagnose" + m + " --train" + r + " --report" + r,
            "diagnose" + m + " --train" + r + " --json" + m,
            "add" + m + " cogging --train" + r + " -o" + m,
+           "adjust" + m + " inertia.J=0.01 --train" + r + " -o" + m,
            "improve" + m + " --train" + r + " -o" + r,
            "improve" + m + " --train" + r + o + " --report" + r,
            "design" + m + " -o" + m,

@@ -63,10 +63,10 @@ TEST(ResidualCoordinate, TravelIsInMillimetresForBothKindsOfDrives) {
 
 // A ripple along the travel and its direction are two cells of a map, not one.
 TEST(ResidualMaps, TellPositionAndSpeedApart) {
-  sim::DriveDescription model;
   const ResidualView view{"", SeriesRole::before, varying_friction(), {}};
   Report report("test");
-  add_residual_maps(report, {&view, 1}, model, kPeriod_mm);
+  add_residual_maps(report, {&view, 1}, coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm),
+                    coordinate_of("speed", sim::DriveKind::rotary), sim::DriveKind::rotary);
   EXPECT_NE(report.html().find("\"kind\":\"map\""), std::string::npos);
 }
 

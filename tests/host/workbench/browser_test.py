@@ -6,7 +6,6 @@ AXIS_SCREENSHOTS names a folder that keeps what it saw."""
 import json
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -14,22 +13,12 @@ import time
 import unittest
 from pathlib import Path
 
-try:
-    from selenium import webdriver
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.support.ui import WebDriverWait
-except ImportError:
-    print("python3-selenium is not installed: the workbench was not opened in a browser", file=sys.stderr)
-    sys.exit(77)
-if not shutil.which("chromium") or not shutil.which("chromedriver"):
-    print("chromium or chromium-driver is not installed: the workbench was not opened in a browser", file=sys.stderr)
-    sys.exit(77)
+from served_page import PATIENCE_S, PROGRAM, ServedPage  # ends here without a browser
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
 
-PROGRAM = os.environ["AXISTOOL"]
 CASE = Path(os.environ["AXIS_TEST_DATA"]) / "drive-cases/single/case-00"  # this machine cogs
-PATIENCE_S = 240
 
 # Drops a file on the page as a hand does; its content comes from a file input that exists for this purpose only.
 DROP = """
@@ -43,43 +32,14 @@ return [...document.querySelectorAll("#content .canvas canvas")].filter((canvas)
 """
 
 
-class Workbench(unittest.TestCase):
+class Workbench(ServedPage, unittest.TestCase):
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="axis-workbench-"))
         self.addCleanup(shutil.rmtree, self.folder)
         for name in ("model.toml", "train-jog.csv", "validate.csv"):
             shutil.copy(CASE / name, self.folder)
-        self.program = subprocess.Popen([PROGRAM, "serve", str(self.folder), "--no-browser"], stdout=subprocess.PIPE, text=True)
-        self.addCleanup(self.end)
-        self.url = self.program.stdout.readline().strip()
-        options = webdriver.ChromeOptions()
-        for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1440,1000",
-                     f"--user-data-dir={tempfile.mkdtemp(dir=self.folder.parent, prefix='axis-profile-')}"):
-            options.add_argument(word)
-        self.addCleanup(shutil.rmtree, options.arguments[-1].split("=")[1], True)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        self.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-        self.addCleanup(self.browser.quit)
-        self.browser.set_page_load_timeout(60)
-        self.browser.get(self.url)
-
-    def end(self) -> None:
-        self.program.send_signal(signal.SIGTERM)
-        self.assertEqual(self.program.wait(30), 0, "ends in order")
-        self.assertEqual(self.program.stdout.read(), "", "one line is all that it prints")
-        self.program.stdout.close()
-
-    def until(self, selector: str, patience_s: float = PATIENCE_S):
-        return WebDriverWait(self.browser, patience_s, 0.1).until(
-            lambda browser: next(iter(browser.find_elements(By.CSS_SELECTOR, selector)), None), selector)
-
-    def texts(self, selector: str) -> list[str]:
-        return [element.text for element in self.browser.find_elements(By.CSS_SELECTOR, selector)]
-
-    def click(self, selector: str) -> None:
-        element = self.until(selector)
-        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", element)
-        element.click()
+        self.open(self.folder)
+        self.addCleanup(self.close)
 
     def drop(self, path: Path) -> None:
         self.browser.execute_script("const i = document.createElement('input'); i.type = 'file'; i.id = 'test-input'; document.body.append(i);")
@@ -112,7 +72,7 @@ class Workbench(unittest.TestCase):
         self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
     def quiet(self) -> None:
-        self.assertEqual([entry["message"] for entry in self.browser.get_log("browser")], [],
+        self.assertEqual(self.messages(), [],
                          f"no console message; the page says: {self.texts('[role=alert]')}, {self.texts('#notice')}")
 
     def test_from_a_dropped_record_to_an_effect_that_was_added(self) -> None:
@@ -208,6 +168,8 @@ class Workbench(unittest.TestCase):
         WebDriverWait(browser, PATIENCE_S).until(lambda _: len(list(self.folder.glob("validate-*.csv"))) == 2)
         WebDriverWait(browser, PATIENCE_S).until(lambda _: "validate-from" in " ".join(self.texts("#content > div > .command code")))
         self.assertNotIn(" validate.csv", " ".join(self.texts("#content > div > .command code")))
+        self.click("#take-back")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: " validate.csv" in " ".join(self.texts("#content > div > .command code")))
         self.quiet()
 
     def test_every_view_by_keys_on_every_screen(self) -> None:
@@ -226,6 +188,80 @@ class Workbench(unittest.TestCase):
         self.until("#effect-backlash[open]")
         self.quiet()
 
+    def test_odds_at_first_sight_then_a_value_is_dragged_kept_and_undone(self) -> None:
+        browser = self.browser
+        (self.folder / "validate.csv").unlink()
+        (self.folder / "train-jog.csv").unlink()
+        browser.get(self.url.split("?")[0])
+        self.until("#content .lead")
+        began = time.monotonic()
+        self.drop(CASE / "validate.csv")
+        self.until("#content .blocks canvas")
+        drawn = time.monotonic() - began
+        self.until("#first-look")
+        print(f"dropped 14 s at 1 kHz: first picture after {drawn:.2f} s, odds after {time.monotonic() - began:.2f} s", file=sys.stderr)
+        self.assertIn("Cogging", self.until("#first-look").text)
+        self.assertEqual(list(self.folder.glob("workbench/*diagnose*")), [], "before any search")
+        self.click("#first-look")
+        self.assertIn("Cogging", self.until(".first-look #cards .card").text)
+        quick = next(text for text in self.texts(".first-look .command code") if "--quick" in text)
+        said = subprocess.run(quick.replace("axistool", PROGRAM, 1) + " --json -", shell=True, cwd=self.folder, check=True, stdout=subprocess.PIPE).stdout
+        odds = next(one["probability"] for one in json.loads(said)["candidates"] if one["kinds"] == ["cogging"])
+        self.assertIn("> 99 %" if odds > 0.99 else f"{100 * odds:.0f} %", self.until("#cards .card .value").text)
+        self.keep("first-look")
+
+        self.click("#cards .card button")
+        self.until("#overlay .blocks .canvas canvas")
+        verdict = self.texts("#overlay .verdict")
+        slider = self.until(".slider input[data-name='cogging.cosine']")
+        fitted = slider.get_attribute("value")
+        browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", slider)
+        began = time.monotonic()
+        browser.execute_script("arguments[0].value = 0; arguments[0].dispatchEvent(new Event('input')); arguments[0].dispatchEvent(new Event('change'));", slider)
+        WebDriverWait(browser, PATIENCE_S, 0.02).until(lambda _: "trial.toml" in " ".join(self.texts("#overlay .command code")))
+        print(f"a value dragged: the residual follows after {time.monotonic() - began:.2f} s", file=sys.stderr)
+        self.assertGreater(browser.execute_script(DRAWN), 10)
+        self.assertFalse((self.folder / "model+cogging-adjusted.toml").exists(), "a trial keeps nothing")
+        self.keep("dragged")
+        self.click("#undo-values")
+        WebDriverWait(browser, PATIENCE_S, 0.05).until(lambda _: self.texts("#overlay .verdict") == verdict)
+        self.assertEqual(slider.get_attribute("value"), fitted)
+        browser.execute_script("arguments[0].value = 0; arguments[0].dispatchEvent(new Event('input')); arguments[0].dispatchEvent(new Event('change'));", slider)
+        self.click("#keep-values:enabled")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "values set by hand" in " ".join(self.texts(".bars th")))
+        self.assertTrue((self.folder / "model+cogging-adjusted.toml").exists())
+        self.click("#undo")
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "values set by hand" not in " ".join(self.texts(".bars th")))
+        self.assertEqual(browser.execute_script("return document.querySelector('input[name=model]:checked').parentElement.textContent"), "model+cogging.toml")
+        self.quiet()
+
+    def test_axes_differences_roles_and_the_gallery(self) -> None:
+        browser = self.browser
+        self.until("#content .blocks canvas")
+        figure = "return [...document.querySelectorAll('#content figure')].find((one) => one.querySelector('strong')?.textContent === arguments[0])"
+        spectrum = browser.execute_script(figure, "Spectrum")
+        self.assertIn("Nm/√Hz", spectrum.text)
+        speed = browser.execute_script(figure, "Against speed")
+        browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", speed)
+        next(button for button in speed.find_elements(By.CSS_SELECTOR, ".tools button") if button.text == "log y").click()
+        self.assertTrue(browser.execute_script("return window.axisCharts.some((chart) => arguments[0].contains(chart.graphDiv) && chart.getOption('logscale'))", speed))
+        canvas = spectrum.find_element(By.CSS_SELECTOR, ".canvas canvas:last-of-type")
+        browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", spectrum)
+        ActionChains(browser).move_to_element_with_offset(canvas, -60, 0).click().move_by_offset(100, 0).perform()
+        self.assertIn("Δ", spectrum.find_element(By.CSS_SELECTOR, ".legend .at").text)
+        self.assertIn("Δ", spectrum.find_element(By.CSS_SELECTOR, ".legend .reading").text)
+        browser.find_element(By.CSS_SELECTOR, "[aria-label='Map up'] option[value=acceleration]").click()
+        WebDriverWait(browser, PATIENCE_S).until(lambda _: "Position and acceleration" in self.texts("#content figcaption strong"))
+        self.keep("axes")
+        self.click("#swap")
+        self.until("[aria-label='Role of validate.csv'] option[value=train]:checked")
+        self.until("[aria-label='Role of train-jog.csv'] option[value=judge]:checked")
+        browser.get(self.url.split("?")[0] + "#gallery/backlash")
+        self.until("#effect-backlash[open] .picture canvas")
+        self.assertIn("times as large", self.until("#effect-backlash .picture figcaption").text)
+        self.keep("gallery")
+        self.quiet()
+
     def test_logs_of_another_controller_become_a_model(self) -> None:
         self.until("#content .verdict")  # the files are read
         sheet = (CASE / "model.toml").read_text().split("[[effect]]")[0]
@@ -241,7 +277,7 @@ class Workbench(unittest.TestCase):
         for button in self.browser.find_elements(By.ID, "accept-opening"):
             button.click()
         self.until("[aria-label='Role of records/validate.csv'] option[value=judge]:checked")
-        self.click("#choice button.small:not(:disabled)")
+        self.click("#choice button.small:not(:disabled):not(#swap)")
         self.until("#content .verdict")
         self.assertTrue((self.folder / "sheet-identified.toml").exists())
         self.keep("opened")

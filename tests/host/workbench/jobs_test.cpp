@@ -48,19 +48,64 @@ TEST(Jobs, AComparisonIsThatOfTheCommand) {
   }
 }
 
+TEST(Jobs, AFirstLookIsThatOfTheQuickCommandAndNamesWhatCogs) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  json request = kDiagnose;
+  EXPECT_EQ(served.post("/api/look", request).first, 400) << "a whole search is a job";
+  request["quick"] = true;
+  const auto [status, told] = served.post("/api/look", request);
+  ASSERT_EQ(status, 200) << told;
+  EXPECT_EQ(told["document"]["verdict"]["effects"], json{"cogging"});
+  EXPECT_EQ(told["document"], document_of(told["command"]));
+  EXPECT_THAT(told["report"].get<std::string>(), testing::HasSubstr("What was found"));
+}
+
+TEST(Jobs, ATrialChangesNoModelAndAnAdjustmentIsThatOfTheCommand) {
+  const ServedFolder served;
+  served.copy_case("single/case-00");
+  const std::string model = host::read_file("model.toml");
+  json request = {{"do", "adjust"},
+                  {"model", "model.toml"},
+                  {"values", {"inertia.J=0.009"}},
+                  {"train", {"train-jog.csv"}},
+                  {"validate", {"validate.csv"}}};
+  const auto [status, told] = served.post("/api/trial", request);
+  ASSERT_EQ(status, 200) << told;
+  EXPECT_EQ(host::read_file("model.toml"), model);
+  const json compared = document_of("axistool compare model.toml workbench/trial.toml validate.csv");
+  EXPECT_EQ(told["document"], compared);
+  const json done = served.ended(served.post("/api/jobs", request).second["id"]);
+  ASSERT_EQ(done["state"], "done") << done;
+  EXPECT_EQ(done["model"], "model-adjusted.toml");
+  EXPECT_GT(done["document"]["error"]["after"]["validate"]["combined"].get<double>(),
+            done["document"]["error"]["given"]["validate"]["combined"].get<double>())
+      << "half as much again as this machine's inertia";
+  const std::string written = host::read_file("model-adjusted.toml");
+  EXPECT_NE(written, model);
+  EXPECT_EQ(document_of(done["command"]), done["document"]);
+  EXPECT_EQ(host::read_file("model-adjusted.toml"), written);
+  for (const char* wrong : {"inertia.J=-1", "inertia.K=1", "inertia.J=nan"}) {
+    request["values"] = {wrong};
+    EXPECT_EQ(served.post("/api/trial", request).first, 400) << wrong;
+  }
+}
+
 TEST(Jobs, WhatIsLookedAtChangesPicturesAndNoFigure) {
   const ServedFolder served;
   served.copy_case("single/case-00");
   json request = {{"do", "compare"}, {"models", {"model.toml"}}, {"records", {"train-jog.csv", "validate.csv"}}};
   const json plain = served.post("/api/compare", request).second;
   EXPECT_EQ(plain["traces"], "validate.csv") << "the larger error";
-  request.update({{"traces", "train-jog.csv"}, {"stretch", {1.0, 2.0}}, {"period_mm", 1.25}});
+  request.update(
+      {{"traces", "train-jog.csv"}, {"stretch", {1.0, 2.0}}, {"period_mm", 1.25}, {"map", {"time", "acceleration"}}});
   const auto [status, told] = served.post("/api/compare", request);
   ASSERT_EQ(status, 200) << told;
   EXPECT_EQ(told["document"], plain["document"]);
   EXPECT_EQ(told["document"], document_of(told["command"]));
-  for (const char* shown :
-       {"Measured and predicted: train-jog.csv", "Within one period of 1.25 mm", "1 to 2 s, forward"})
+  for (const char* shown : {"Measured and predicted: train-jog.csv", "Within one period of 1.25 mm",
+                            "1 to 2 s, forward", "Time since start and acceleration", "Spectrum"})
     EXPECT_THAT(told["report"].get<std::string>(), testing::HasSubstr(shown));
   request["traces"] = "train-sweep.csv";
   EXPECT_EQ(served.post("/api/compare", request).first, 400) << "not among them";

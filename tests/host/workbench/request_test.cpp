@@ -22,6 +22,12 @@ TEST(Request, BecomesTheCommandThatDoesTheSame) {
                                            "train":["r.csv","s.csv"],"validate":["v.csv"]})"),
                          {"b.toml", "j.json", ""}),
             "axistool add a.toml free_curve --train r.csv s.csv --validate v.csv --over speed -o b.toml --json j.json");
+  EXPECT_EQ(command_line(parse_request(R"({"do":"diagnose","model":"a.toml","train":["r.csv"],"quick":true})"), {}),
+            "axistool diagnose a.toml --quick --train r.csv");
+  EXPECT_EQ(command_line(parse_request(R"({"do":"adjust","model":"a.toml","values":["cogging.cosine_72=-1e-3"],
+                                           "train":["r.csv"]})"),
+                         {"b.toml", "", ""}),
+            "axistool adjust a.toml cogging.cosine_72=-1e-3 --train r.csv -o b.toml");
   EXPECT_EQ(
       command_line(parse_request(R"({"do":"diagnose","model":"$(x).toml","train":["r.csv"],"absent":["backlash"]})"),
                    {"", "j.json", "p.html"}),
@@ -46,8 +52,16 @@ TEST(Request, WhatIsNoRequestIsRefusedWithTheFieldsName) {
       {R"({"do":"diagnose","model":"../m.toml","train":["r.csv"]})", "model"},
       {R"({"do":"diagnose","model":"m.toml","train":["-o"]})", "train"},
       {R"({"do":"diagnose","model":"m.toml","train":["r.csv"],"kind":"cogging"})", "kind"},
+      {R"({"do":"diagnose","model":"m.toml","train":["r.csv"],"quick":1})", "quick"},
+      {R"({"do":"improve","model":"m.toml","train":["r.csv"],"quick":true})", "quick"},
+      {R"({"do":"diagnose","model":"m.toml","train":["r.csv"],"values":["a.b=1"]})", "values"},
+      {R"({"do":"adjust","model":"m.toml","train":["r.csv"]})", "values"},
+      {R"({"do":"adjust","model":"m.toml","train":["r.csv"],"values":["--json=x"]})", "values"},
+      {R"({"do":"adjust","model":"m.toml","train":["r.csv"],"values":["a.b=`x`"]})", "values"},
       {R"({"do":"add","model":"m.toml","train":["r.csv"]})", "kind"},
       {R"({"do":"add","model":"m.toml","train":["r.csv"],"kind":"; rm"})", "kind"},
+      {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"map":["speed"]})", "map"},
+      {R"({"do":"compare","models":["m.toml"],"records":["r.csv"],"map":["speed","colour"]})", "map"},
       {R"({"do":"add","model":"m.toml","train":["r.csv"],"kind":"cogging","output":"x"})", "output"}};
   for (const auto& [text, field] : wrong) {
     const auto [status, told] = served.post_text("/api/jobs", text);

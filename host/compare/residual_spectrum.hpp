@@ -1,0 +1,18 @@
+// The residual torque or force of a model by frequency.
+#pragma once
+
+#include <span>
+
+#include "host/compare/residual_figures.hpp"
+
+namespace host {
+
+/// Amplitude spectral density, Nm/sqrt(Hz) or N/sqrt(Hz), one-sided, over Hz: Welch's method with Hann windows of 1.28
+/// s that overlap by half. Stretches in which the axis stands count as zero, and windows that stand for more than half
+/// are left out. Empty where no window is left.
+ScatterSeries spectrum_of_residual(const ResidualEffort& samples);
+
+/// The spectra of all views that have one, in one plot.
+void add_residual_spectrum(Report& report, std::span<const ResidualView> views, sim::DriveKind kind);
+
+}  // namespace host

@@ -1,0 +1,31 @@
+// The first look: what the force balance alone says of the chosen records, seconds before the search by motion ends.
+import { choice, chosenRecords } from "./choice.js";
+import { post } from "./exchange.js";
+
+/** @type {Map<string, Promise<any>>} by request: files do not change while their names are the same */
+const looks = new Map();
+
+/**
+ * { document, report, command } of `axistool diagnose --quick`; null where the records show no force balance.
+ * @returns {Promise<any>}
+ */
+export function firstLook() {
+  const { train, validate } = chosenRecords();
+  if (!choice.model || !train.length) return Promise.resolve(null);
+  const request = { do: "diagnose", quick: true, model: choice.model, train, validate, accept: choice.accepted };
+  const key = JSON.stringify(request);
+  if (!looks.has(key)) looks.set(key, post("/api/look", request).catch(() => null));
+  return /** @type {Promise<any>} */ (looks.get(key));
+}
+
+/**
+ * The most probable answer: { kinds, probability }; no kinds for something else or nothing.
+ * @param {any} told axis-diagnosis/1
+ */
+export function mostProbable(told) {
+  const best = told.candidates.reduce((one, other) => (other.probability > one.probability ? other : one), { kinds: [], probability: 0 });
+  const { probability_other: other, probability_nothing: nothing } = told.verdict;
+  if (other > best.probability && other > nothing) return { kinds: [], title: "Something else", probability: other };
+  if (nothing > best.probability) return { kinds: [], title: "Nothing is missing", probability: nothing };
+  return { kinds: best.kinds, title: "", probability: best.probability };
+}

@@ -1,0 +1,29 @@
+// Every effect of the catalogue has a picture, and it differs from that of a machine without the effect.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sim/catalogue.hpp"
+#include "tests/host/skip_where_instrumented.hpp"
+#include "tests/host/workbench/served_folder.hpp"
+
+namespace {
+
+/// RMS residual with the effect over that without it. Two runs that differ by the tachometer's noise alone differ by a
+/// per cent.
+constexpr double kShows = 1.2;
+
+TEST(Gallery, EachEffectHasAPictureThatDiffersFromThatWithoutIt) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  const ServedFolder served;
+  for (const sim::EffectInfo* effect : sim::catalogue()) {
+    const std::string kind(effect->kind);
+    const auto [status, told] = served.get("/api/effects/" + kind + "/picture");
+    ASSERT_EQ(status, 200) << kind << told;
+    EXPECT_GT(told["stands_out"].get<double>(), kShows) << kind;
+    EXPECT_FALSE(told["plot"]["series"].empty()) << kind;
+    RecordProperty(kind, std::to_string(told["stands_out"].get<double>()));
+  }
+  EXPECT_EQ(served.get("/api/effects/nothing/picture").first, 400);
+}
+
+}  // namespace
