@@ -61,7 +61,7 @@ const std::vector<InjectionInfo>& table() {
        false,
        Needs::nothing,
        {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump, AxisFault::feedback_polarity,
-        AxisFault::following_error},
+        AxisFault::following_error, AxisFault::moved_while_starting},
        set<&AxisDefects::encoder_swapped>,
        clear<&AxisDefects::encoder_swapped>},
       {"encoder_noise",

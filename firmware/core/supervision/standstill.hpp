@@ -11,12 +11,15 @@ class Standstill {
 
   /// `play`: counts within which a closed loop holds its position (TravelMonitor), >= 2. An axis without a closed loop
   /// has an eighth of that: friction or the brake holds it, and it does not move.
-  constexpr void configure(std::int64_t play) { slack_ = 2 + (play - 2) / 8; }
+  constexpr void configure(std::int64_t play) {
+    play_ = play;
+    slack_ = 2 + (play - 2) / 8;
+  }
 
   /// Each sample of an open loop.
   constexpr void watch(std::int64_t counts) {
     if (samples_ < kSamples) ++samples_;
-    if (is_within(counts, still_at_)) return;
+    if (is_within(counts, still_at_, play_)) return;
     still_at_ = counts;
     samples_ = 0;
   }
@@ -24,7 +27,7 @@ class Standstill {
 
   /// The amplifier is being enabled.
   constexpr void begin_start(std::int64_t counts) { started_at_ = counts; }
-  constexpr bool has_moved(std::int64_t counts) const { return !is_within(counts, started_at_); }
+  constexpr bool has_moved(std::int64_t counts) const { return !is_within(counts, started_at_, slack_); }
 
   /// From now on positions are counted from another origin.
   constexpr void shift(std::int64_t origin) {
@@ -33,11 +36,11 @@ class Standstill {
   }
 
  private:
-  constexpr bool is_within(std::int64_t counts, std::int64_t place) const {
-    return counts - place <= slack_ && place - counts <= slack_;
+  static constexpr bool is_within(std::int64_t counts, std::int64_t place, std::int64_t play) {
+    return counts - place <= play && place - counts <= play;
   }
 
-  std::int64_t slack_ = 2;
+  std::int64_t play_ = 2, slack_ = 2;
   std::int64_t still_at_ = 0, started_at_ = 0;
   std::int32_t samples_ = 0;
 };
