@@ -156,14 +156,14 @@ hil: ## Run the scenarios: the firmware around simulated drives (SCENARIO=files;
 	$(BUILD)/bin/axistool hil $(or $(SCENARIO),host/hil/scenarios/*.toml) -o $(BUILD)/hil
 
 .PHONY: soak
-soak: ## A day of motion with sparks, jitter and drift, 10000 random paths, 50 commissionings killed, and 20000 trials of faults in pairs (HOURS=24, TRIALS=n)
+soak: ## A day of motion with sparks, jitter and drift, 10000 random paths, 50 commissionings killed, 20000 trials of faults and of pairs, and all pairs at every moment of enabling and disabling (HOURS=24, TRIALS=n)
 	$(NEED) build test
 	$(call configure,$(BUILD))
 	ninja -C $(BUILD) -j $(JOBS) test_firmware_app test_host_hil test_host_path test_host_commission
 	AXIS_COMMISSION_TRIALS=50 $(BUILD)/bin/test_host_commission --gtest_filter='*AnyMoment*'
 	AXIS_SOAK_HOURS=$(or $(HOURS),24) $(BUILD)/bin/test_firmware_app --gtest_filter='Soak.*'
 	AXIS_EXCITATION_TRIALS=5000 $(BUILD)/bin/test_firmware_app --gtest_filter='ExcitedBoard.*'
-	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
+	AXIS_FAULT_TRIALS=$(or $(TRIALS),20000) AXIS_FAULT_MOMENTS=1000000 $(BUILD)/bin/test_host_hil --gtest_filter='AnyFault.*:AnyTwoFaults.*'
 	AXIS_PATH_PROGRAMS=10000 $(BUILD)/bin/test_host_path --gtest_filter='*RandomPrograms*:*ThePathClock*'
 
 .PHONY: response

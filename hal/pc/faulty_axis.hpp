@@ -109,6 +109,8 @@ class FaultyAxis {
       apply();
     }
     bool is_on() const { return is_on_; }
+    /// The amplifier gives current.
+    bool drives() const { return is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted; }
     /// The stop relay removes the current of the brake as well as the enable.
     void apply() {
       axis_.sound_.drive_enable().set(drives());
@@ -117,7 +119,6 @@ class FaultyAxis {
     void pass(double duration_s) { on_for_s_ = drives() ? on_for_s_ + duration_s : 0.0; }
 
    private:
-    bool drives() const { return is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted; }
     FaultyAxis& axis_;
     bool is_on_ = false, is_brake_released_ = false;
     double on_for_s_ = 0.0;

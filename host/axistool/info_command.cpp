@@ -55,8 +55,8 @@ void describe_board(const InfoArguments& arguments) {
   const firmware::ParameterValues* known = values ? &*values : nullptr;
   std::vector<std::string> tables;  // of pitch errors, an axis each
   for (std::uint8_t axis = 0; known != nullptr && axis < status.axis.size(); ++axis)
-    tables.push_back(host::pitch_text(host::read_pitch(board, axis), known->axis(axis).get<"pitch.on">(),
-                                      host::count_mm_of(*known, axis)));
+    tables.push_back(
+        host::read_pitch_text(board, axis, known->axis(axis).get<"pitch.on">(), host::count_mm_of(*known, axis)));
   const auto slots = host::read_slots(board);
   if (!arguments.json.empty()) {
     nlohmann::json document = host::board_json(board.name(), identity, status, timing, known);

@@ -37,7 +37,7 @@ using host::Failure;
 struct RunArguments : DeviceArguments {
   std::string file, capture;
   std::vector<std::string> linear, params;
-  double feed_percent = 100.0;
+  double feed_percent = 100.0, rapid_percent = 100.0;
   bool here = false, passes_stops = false;
 };
 
@@ -91,6 +91,9 @@ Planned plan(const std::string& text, const RunArguments& arguments, const host:
   host::GcodeMachine machine;
   machine.axes = board.scale.axes.size();
   machine.home = board.home;
+  machine.feed_share = 0.01 * arguments.feed_percent;
+  machine.rapid_share = 0.01 * arguments.rapid_percent;
+  machine.fastest_mm_s = board.limits.velocity;
   Planned planned;
   planned.program = host::read_gcode(text, arguments.file, point_of(at, board.scale), machine);
   host::PathPlanOptions options;
@@ -328,7 +331,7 @@ void run(const RunArguments& arguments) {
       signals.let_in();
       line.draw(progress, held);
       const bool goes_on = at_machine.goes_on(progress);
-      return host::PathWish{held, interrupted(), static_cast<int>(std::lround(arguments.feed_percent * 10.0)), goes_on};
+      return host::PathWish{held, interrupted(), 1000, goes_on};
     });
   }
   if (!was_enabled) host::disable_and_wait(board, mask);
@@ -358,7 +361,10 @@ void add_run(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run a G-code program on the board's axes");
   add_input(*command, "FILE", arguments->file, "program (RS274/NGC)")->required();
   add_output(*command, "--capture", arguments->capture, "record to write (axis-record/1), with the contour error");
-  command->add_option("--feed", arguments->feed_percent, "feed override, %")
+  command->add_option("--feed", arguments->feed_percent, "override of the feeds F, %; limits of the axes hold")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 120.0));
+  command->add_option("--rapid", arguments->rapid_percent, "override of rapids (G0, G28), %")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 100.0));
   command->add_option("--linear", arguments->linear, "axes whose parameters are in metres")->delimiter(',');
@@ -371,6 +377,7 @@ void add_run(CLI::App& app) {
       "Examples:\n"
       "  axistool run part.ngc --dry-run              # time and extents, against the board's limits\n"
       "  axistool run part.ngc --capture part.csv\n"
+      "  axistool run part.ngc --feed 120 --rapid 25\n"
       "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30, X Y Z, N, "
       "comments;\n"
       "anything else is an error that names the line. The path is exact (G61) unless the program says G64; G64\n"

@@ -2,13 +2,17 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
+#include "firmware/app/store/pitch_check.hpp"
 #include "host/atomic_file.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/json_output.hpp"
 #include "host/axistool/parameter_commands.hpp"
+#include "host/device/pitch_table.hpp"
 #include "host/parameters/backup_file.hpp"
+#include "host/read_file.hpp"
 
 namespace axistool {
 
@@ -49,7 +53,10 @@ void backup(const StoreArguments& arguments) {
                      firmware::ValueRefusal::none;
     if (!fits) foreign.push_back(entry);
   }
-  host::write_file_atomically(arguments.file, host::format_backup(values, foreign));
+  host::PitchTables pitch;
+  for (std::size_t axis = 0; axis < values.axes(); ++axis)
+    pitch.push_back(host::read_pitch(board, static_cast<std::uint8_t>(axis)));
+  host::write_file_atomically(arguments.file, host::format_backup(values, foreign, pitch));
   if (!arguments.json.empty())
     write_json({{"format", "axis-backup/1"},
                 {"file", arguments.file},
@@ -62,18 +69,36 @@ void backup(const StoreArguments& arguments) {
     fmt::print("{} stored values do not fit this firmware's table; the file keeps them as comments\n", foreign.size());
 }
 
+/// The board refuses pitch.on without its table, and a table in other counts: the values come first, without pitch.on.
+void write_whole(host::BoardClient& board, const firmware::ParameterValues& values,
+                 const std::optional<host::PitchTables>& pitch) {
+  if (!pitch) return board.write_values(values);
+  constexpr std::uint16_t kSwitch = firmware::pitch_check::kSwitch;
+  firmware::ParameterValues without = values;
+  for (std::size_t axis = 0; axis < values.axes(); ++axis)
+    without.set(*values.place_of(firmware::ParameterKey::of_axis(axis, kSwitch)), 0.0F);
+  board.write_values(without);
+  for (std::size_t axis = 0; axis < values.axes(); ++axis) {
+    const auto number = static_cast<std::uint8_t>(axis);
+    const bool on = values.axis(axis).get<"pitch.on">();
+    if (on || (*pitch)[axis] != host::read_pitch(board, number)) host::write_pitch(board, number, (*pitch)[axis], on);
+  }
+}
+
 void restore(const StoreArguments& arguments) {
-  const std::vector<host::Assignment> list = host::read_backup(arguments.file);
+  const std::string text = host::read_file(arguments.file);
+  const std::vector<host::Assignment> list = host::parse_backup(text, arguments.file);
   host::BoardClient board = open_board(arguments);
   board.require_same_table();
   const firmware::ParameterValues before = board.read_values();
+  const std::optional<host::PitchTables> pitch = host::pitch_of_backup(text, arguments.file, before.axes());
   firmware::ParameterValues after(before.axes());
   for (const host::Assignment& one : list) host::put(after, one);
   host::require_fitting_set(after);
   const std::vector<Difference> changes = differences(before, after);
   if (!arguments.dry_run) {
     require_consent(arguments, fmt::format("Replace {} of the board's parameters and save?", changes.size()));
-    board.write_values(after);
+    write_whole(board, after, pitch);
     board.save();
   }
   if (!arguments.json.empty())
@@ -102,7 +127,8 @@ void add_save(CLI::App& app) {
 
 void add_backup(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
-  CLI::App* command = app.add_subcommand("backup", "Write all parameters of a board to a file");
+  CLI::App* command =
+      app.add_subcommand("backup", "Write all parameters and tables of pitch errors of a board to a file");
   add_output(*command, "FILE", arguments->file, "file to write (axis-params/1)")->required();
   add_device_options(*command, *arguments);
   command->footer("Example:\n  axistool backup machine-7.toml");
@@ -111,7 +137,8 @@ void add_backup(CLI::App& app) {
 
 void add_restore(CLI::App& app) {
   auto arguments = std::make_shared<StoreArguments>();
-  CLI::App* command = app.add_subcommand("restore", "Set a board to exactly the parameters of a backup, and save them");
+  CLI::App* command =
+      app.add_subcommand("restore", "Set a board to exactly the parameters and tables of a backup, and save them");
   add_input(*command, "FILE", arguments->file, "file written by backup")->required();
   add_device_options(*command, *arguments);
   add_change_options(*command, *arguments);

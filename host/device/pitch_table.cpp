@@ -34,14 +34,30 @@ double count_mm_of(const firmware::ParameterValues& values, std::size_t axis) {
   return is_linear(axis, values) ? 1000.0 * resolution : resolution;
 }
 
+namespace {
+
+firmware::TablePointsPayload read_points(BoardClient& board, std::uint8_t axis, std::size_t first) {
+  const firmware::ReadTableRequest wanted{axis, 0, static_cast<std::uint16_t>(first)};
+  firmware::TablePointsPayload part;
+  if (!ask(board, MessageType::read_table, wanted, board.patience()).get(part) ||
+      part.points > firmware::kMostPitchPoints)
+    throw Failure(ExitCode::protocol, "the board reports an impossible table of pitch errors");
+  return part;
+}
+
+std::string extent_text(std::size_t points, const firmware::PitchPoint& first, const firmware::PitchPoint& last,
+                        bool on, double count_mm) {
+  return fmt::format("{} points, {:g} to {:g} mm, {}", points, first.counts * count_mm, last.counts * count_mm,
+                     on ? "on" : "off");
+}
+
+}  // namespace
+
 PitchPoints read_pitch(BoardClient& board, std::uint8_t axis) {
   PitchPoints points;
   firmware::TablePointsPayload part;
   do {
-    const firmware::ReadTableRequest wanted{axis, 0, static_cast<std::uint16_t>(points.size())};
-    const Message reply = ask(board, MessageType::read_table, wanted, board.patience());
-    if (!reply.get(part) || part.points > firmware::kMostPitchPoints)
-      throw Failure(ExitCode::protocol, "the board reports an impossible table of pitch errors");
+    part = read_points(board, axis, points.size());
     for (const firmware::PitchPoint& point : part.point)
       if (points.size() < part.points) points.push_back(point);
   } while (points.size() < part.points);
@@ -68,9 +84,14 @@ void write_pitch(BoardClient& board, std::uint8_t axis, const PitchPoints& point
 }
 
 std::string pitch_text(const PitchPoints& points, bool on, double count_mm) {
-  if (points.empty()) return "";
-  return fmt::format("{} points, {:g} to {:g} mm, {}", points.size(), points.front().counts * count_mm,
-                     points.back().counts * count_mm, on ? "on" : "off");
+  return points.empty() ? "" : extent_text(points.size(), points.front(), points.back(), on, count_mm);
+}
+
+std::string read_pitch_text(BoardClient& board, std::uint8_t axis, bool on, double count_mm) {
+  const firmware::TablePointsPayload begin = read_points(board, axis, 0);
+  if (begin.points == 0) return "";
+  const firmware::PitchPoint last = read_points(board, axis, begin.points - 1u).point.front();
+  return extent_text(begin.points, begin.point.front(), last, on, count_mm);
 }
 
 }  // namespace host

@@ -30,5 +30,7 @@ void write_pitch(BoardClient& board, std::uint8_t axis, const PitchPoints& point
 
 /// "11 points, 0 to 400 mm, on"; empty without a table.
 std::string pitch_text(const PitchPoints& points, bool on, double count_mm);
+/// The same of a board's table, of which it reads the first points and the last.
+std::string read_pitch_text(BoardClient& board, std::uint8_t axis, bool on, double count_mm);
 
 }  // namespace host

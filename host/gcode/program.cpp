@@ -251,10 +251,17 @@ class Reader {
     if (!is_rapid && !(feed_mm_s_ > 0.0)) fail("no feed: give F, in units per minute, before the first G1, G2 or G3");
     PathMove move;
     move.curve = curve;
-    move.feed_mm_s = is_rapid ? (machine_.rapid_mm_s > 0.0 ? machine_.rapid_mm_s : 1e9) : feed_mm_s_;
+    move.feed_mm_s = is_rapid ? rapid_mm_s(curve) : feed_mm_s_ * machine_.feed_share;
     move.tolerance_mm = tolerance_mm_;
     move.line = line_;
     append(move, curve.length() / move.feed_mm_s);
+  }
+
+  /// Along a line; without an override the plan alone limits it.
+  double rapid_mm_s(const PathCurve& line) const {
+    if (!(machine_.rapid_share < 1.0) || !(line.length() > 0.0)) return 1e9;
+    const PathPoint way = (line.end() - line.begin()).cwiseAbs();
+    return machine_.rapid_share * line.length() / way.cwiseQuotient(machine_.fastest_mm_s).maxCoeff();
   }
 
   /// `least_s`: what it takes at least.

@@ -15,7 +15,9 @@ struct GcodeMachine {
   std::size_t axes = 2;                ///< X, Y and, with 3, Z
   PathPoint home = PathPoint::Zero();  ///< that G28 goes to, mm
   bool begins_anywhere = false;        ///< the start position is unknown: arcs are not checked before a line has set it
-  double rapid_mm_s = 0.0;             ///< above 0: no rapid is faster; limits of axes hold anyway
+  double feed_share = 1.0;             ///< override of the feeds F, > 0; limits of axes hold anyway
+  double rapid_share = 1.0;            ///< override of rapids, 0 to 1: of the speed that `fastest_mm_s` allows
+  PathPoint fastest_mm_s = PathPoint::Constant(1e9);  ///< each axis's, > 0
 };
 
 struct GcodeProgram {

@@ -9,6 +9,7 @@
 #include "host/hil/commissioning.hpp"
 #include "host/hil/path.hpp"
 #include "host/identify/paper_drives.hpp"
+#include "host/parameters/stopping_way.hpp"
 
 namespace host {
 
@@ -23,20 +24,35 @@ using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 /// mm.
 constexpr double kBrake_Nm = 20.0;
 
-MachineAxes design_paper_axes(bool tachometer, bool under_weight) {
+/// A tenth of the paper's friction, on the paper's screw: what is let go runs on for a metre.
+sim::DriveDescription light_drive(std::string_view name) {
+  sim::DriveDescription drive = *paper_drive(name);
+  const auto effect = [](const char* kind, std::map<std::string, double> values) {
+    return sim::EffectEntry{.kind = kind, .parameters = std::move(values), .ci95 = {}, .from = {}};
+  };
+  drive.effects = {effect("inertia", {{"J", 0.010}}), effect("viscous", {{"B", 0.001}}),
+                   effect("coulomb", {{"positive", 0.2}, {"negative", -0.2}})};
+  return drive;
+}
+
+MachineAxes design_axes(bool tachometer, bool under_weight, bool light) {
   MachineAxes made;
   for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
-    made[i].drive = *paper_drive(kAxisNames[i]);
+    made[i].drive = light ? light_drive(kAxisNames[i]) : *paper_drive(kAxisNames[i]);
     if (!tachometer) made[i].drive.data.tach_noise_variance.reset();
     made[i].parameters = contouring_parameters(made[i].drive, {.friction = true, .cancellation = under_weight});
   }
   return made;
 }
 
-MachineAxes paper_axes(const FaultTrial& trial) {
-  static const std::array<MachineAxes, 4> designed{design_paper_axes(false, false), design_paper_axes(true, false),
-                                                   design_paper_axes(false, true), design_paper_axes(true, true)};
-  MachineAxes axes = designed[(trial.tachometer ? 1u : 0u) + (trial.weight_Nm != 0.0 ? 2u : 0u)];
+MachineAxes axes_of(const FaultTrial& trial) {
+  static const std::array<MachineAxes, 8> designed = [] {
+    std::array<MachineAxes, 8> all;
+    for (unsigned i = 0; i < all.size(); ++i) all[i] = design_axes((i & 1u) != 0, (i & 2u) != 0, (i & 4u) != 0);
+    return all;
+  }();
+  MachineAxes axes =
+      designed[(trial.tachometer ? 1u : 0u) + (trial.weight_Nm != 0.0 ? 2u : 0u) + (trial.light ? 4u : 0u)];
   for (MachineAxis& axis : axes) {
     axis.parameters.acceleration_limit = static_cast<float>(trial.acceleration_mm_s2);
     axis.parameters.sequence = {.ready_input = trial.start.ready_input,
@@ -56,7 +72,7 @@ MachineAxes paper_axes(const FaultTrial& trial) {
 
 class Trial {
  public:
-  explicit Trial(const FaultTrial& trial) : trial_(trial), axes_(paper_axes(trial)), machine_(axes_, trial.seed) {}
+  explicit Trial(const FaultTrial& trial) : trial_(trial), axes_(axes_of(trial)), machine_(axes_, trial.seed) {}
 
   TrialOutcome run() {
     prepare();
@@ -68,7 +84,8 @@ class Trial {
     apply(trial_.first);
     injected_at_ = machine_.samples();
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) injected_at_mm_[i] = machine_.plant(i).truth().x;
-    const int longest = 4000 + 3 * stretch();
+    // A light axis that is let go at 250 mm/s coasts for 8 s.
+    const int longest = (trial_.light ? 14000 : 4000) + 3 * stretch();
     for (int k = 0; k < longest && !is_over(); ++k) {
       if (k == trial_.delay && trial_.second.injection != nullptr) {
         apply(trial_.second);
@@ -82,6 +99,38 @@ class Trial {
 
  private:
   MachineGroup& axes() { return machine_.axes(); }
+
+  struct Stop {
+    double begin_mm = 0.0, speed_mm_s = 0.0, acceleration_mm_s2 = 0.0, drop_speed_mm_s = 0.0, way_mm = 0.0;
+    double top_speed_mm_s = 0.0;
+    bool drives = false;
+  };
+
+  double speed_mm_s(std::size_t axis) const {
+    return std::abs(machine_.plant(axis).truth().w) * axes_[axis].drive.data.lead;
+  }
+
+  /// By the true drive and brake, from the highest speed since the fault.
+  StoppingWay by_formula(std::size_t axis) const {
+    const Stop& stop = stops_[axis];
+    StoppingFigures figures = stopping_figures(axes_[axis].drive, std::max(stop.top_speed_mm_s, 1.0),
+                                               trial_.acceleration_mm_s2, ReferenceLimits{}.jerk);
+    figures.brake = trial_.start.brake;
+    figures.brake_time_s = 1e-3 * kTrialBrake_ms;
+    figures.brake_effort = kBrake_Nm;
+    return broken_ramp_way(figures, stop.speed_mm_s, stop.top_speed_mm_s, stop.drop_speed_mm_s,
+                           stop.acceleration_mm_s2);
+  }
+
+  /// Time for which the whole command and the weight would have to act to give the axis its highest speed.
+  double gain_s(std::size_t axis) const {
+    const Stop& stop = stops_[axis];
+    const sim::DriveDescription& drive = axes_[axis].drive;
+    const double effort = drive.data.dac_limit_V * drive.data.effort_per_volt() + std::abs(trial_.weight_Nm);
+    const double usual =
+        stop.speed_mm_s + stop.acceleration_mm_s2 * stop.acceleration_mm_s2 / (2.0 * ReferenceLimits{}.jerk);
+    return std::max(0.0, stop.top_speed_mm_s - usual) * drive.effects.front().at("J") / (effort * drive.data.lead);
+  }
 
   void apply(const TrialInjection& what) { what.injection->apply(machine_, what.axis, what.value); }
 
@@ -141,7 +190,11 @@ class Trial {
   }
 
   void step() {
-    for (std::size_t i = 0; i < hal::kAxisCount; ++i) was_on_[i] = firmware::outputs_are_on(axes()[i].state());
+    std::array<double, hal::kAxisCount> speed_before{};
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
+      was_on_[i] = firmware::outputs_are_on(axes()[i].state());
+      speed_before[i] = speed_mm_s(i);
+    }
     if (place_ < path_.size())
       machine_.step_with(path_[place_++]);
     else
@@ -151,17 +204,31 @@ class Trial {
       fault_seen_ = machine_.samples();
       fault_ = axes()[i].fault();
       for (std::size_t j = 0; j < hal::kAxisCount; ++j) {
-        const sim::DriveState& truth = machine_.plant(j).truth();
-        begin_mm_[j] = truth.x;
-        must_latch_[j] = j == i || was_on_[j];
-        speed_mm_s_ = std::max(speed_mm_s_, std::abs(truth.w) * axes_[j].drive.data.lead);
+        must_latch_[j] =
+            j == i || (was_on_[j] && axes()[j].state() != SupervisorState::ready);  // it may stand just then
+        const double gained = (speed_mm_s(j) - speed_before[j]) / machine_.sample_period_s();
+        stops_[j] = {.begin_mm = machine_.plant(j).truth().x,
+                     .speed_mm_s = speed_mm_s(j),
+                     .acceleration_mm_s2 = std::clamp(gained, 0.0, trial_.acceleration_mm_s2),
+                     .top_speed_mm_s = speed_mm_s(j),
+                     .drives = true};
       }
     }
-    if (!fault_seen_) return;
-    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
-      whole_way_mm_ = std::max(whole_way_mm_, std::abs(machine_.plant(i).truth().x - injected_at_mm_[i]));
-    for (std::size_t i = 0; i < hal::kAxisCount; ++i)
-      distance_mm_ = std::max(distance_mm_, std::abs(machine_.plant(i).truth().x - begin_mm_[i]));
+    if (fault_seen_) follow_stop();
+  }
+
+  void follow_stop() {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
+      const double x = machine_.plant(i).truth().x;
+      whole_way_mm_ = std::max(whole_way_mm_, std::abs(x - injected_at_mm_[i]));
+      Stop& stop = stops_[i];
+      stop.way_mm = std::max(stop.way_mm, std::abs(x - stop.begin_mm));
+      if (stop.drives) stop.top_speed_mm_s = std::max(stop.top_speed_mm_s, speed_mm_s(i));
+      if (stop.drives && !machine_.wires(i).drive_enable().drives()) {
+        stop.drives = false;
+        stop.drop_speed_mm_s = speed_mm_s(i);
+      }
+    }
   }
 
   bool is_safe() {
@@ -191,9 +258,17 @@ class Trial {
     const double period_s = machine_.sample_period_s();
     result.reaction_s = static_cast<double>(*fault_seen_ - *injected_at_) * period_s;
     result.stop_s = static_cast<double>(machine_.samples() - *fault_seen_) * period_s;
-    result.distance_mm = distance_mm_;
     result.whole_way_mm = whole_way_mm_;
-    result.speed_mm_s = speed_mm_s_;
+    double stated_s = 0.0;
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
+      const StoppingWay stated = by_formula(i);
+      stated_s = std::max(stated_s, stated.time_s);
+      result.distance_mm = std::max(result.distance_mm, stops_[i].way_mm);
+      result.beyond_mm = std::max(result.beyond_mm, stops_[i].way_mm - stated.travel);
+      result.gain_s = std::max(result.gain_s, gain_s(i));
+      result.speed_mm_s = std::max(result.speed_mm_s, stops_[i].speed_mm_s);
+    }
+    result.beyond_s = std::max(0.0, result.stop_s - stated_s);
     return result;
   }
 
@@ -203,11 +278,12 @@ class Trial {
   std::vector<std::array<firmware::Increment, hal::kAxisCount>> path_;
   std::size_t place_ = 0;
   std::optional<std::uint64_t> injected_at_, fault_seen_;
-  std::array<double, hal::kAxisCount> begin_mm_{}, injected_at_mm_{};
+  std::array<double, hal::kAxisCount> injected_at_mm_{};
+  std::array<Stop, hal::kAxisCount> stops_{};
   std::array<bool, hal::kAxisCount> was_on_{}, must_latch_{};
   AxisFault fault_ = AxisFault::none;
   bool second_counts_ = false;  ///< the second fault came before the first was found
-  double distance_mm_ = 0.0, whole_way_mm_ = 0.0, speed_mm_s_ = 0.0;
+  double whole_way_mm_ = 0.0;
 };
 
 const char* reaction_name(firmware::FaultReaction reaction) {
@@ -233,19 +309,12 @@ std::string FaultTrial::text() const {
   std::string faults = named(first);
   if (second.injection != nullptr) faults += fmt::format(", {} samples later {}", delay, named(second));
   return fmt::format(
-      "{}, {} at {:g} mm/s ({:g} mm/s^2, {} tachometer, {} ms until {}, {} brake, {:g} Nm of weight), sample {}{}, "
+      "{}, {} at {:g} mm/s ({:g} mm/s^2, {}{} tachometer, {} ms until {}, {} brake, {:g} Nm of weight), sample {}{}, "
       "seed {}",
-      faults, kTrialMotions[static_cast<std::size_t>(motion)], speed_mm_s, acceleration_mm_s2,
+      faults, kTrialMotions[static_cast<std::size_t>(motion)], speed_mm_s, acceleration_mm_s2, light ? "light, " : "",
       tachometer ? "with" : "without", start.ready_ms, start.ready_input ? "late" : "ready",
       start.brake ? "with" : "without", weight_Nm, sample,
       motion == TrialMotion::stopping ? fmt::format(" and {}", since_disable) : "", seed);
-}
-
-StatedStop stated_stop(const FaultTrial& trial, double speed_mm_s) {
-  const double jerk_time_s = trial.acceleration_mm_s2 / ReferenceLimits{}.jerk;
-  const double ramp_s = speed_mm_s / trial.acceleration_mm_s2 + jerk_time_s;
-  const double brake_s = trial.start.brake ? 1e-3 * kTrialBrake_ms : 0.0;
-  return {speed_mm_s * ramp_s / 2.0 + kStatedExtra_mm, ramp_s + kStatedExtra_s + brake_s};
 }
 
 TrialOutcome run_trial(const FaultTrial& trial) { return Trial(trial).run(); }
@@ -262,8 +331,9 @@ std::string fault_page() {
   page += fmt::format(
       "\n# What each injected fault does\n\nSimulated on the paper's axes, jogging at 250 mm/s when it happens (or "
       "first moved after it: then the reaction counts from the injection, the motion included). Stated for every "
-      "trial, one fault or two: both axes stand within the way of a ramp from the speed that they had, and {:g} mm, in "
-      "the ramp's time and {:g} s.\n\n| injection | while | fault | reaction, ms | stop, ms | distance, mm |\n"
+      "trial, one fault or two: each axis stands within the way by formula (README, \"The board\") along its ramp, and "
+      "from the speed at which the amplifier stops driving, if it does, and {:g} mm, in the formula's time and {:g} "
+      "s.\n\n| injection | while | fault | reaction, ms | stop, ms | distance, mm |\n"
       "|---|---|---|---|---|---|\n",
       kStatedExtra_mm, kStatedExtra_s);
   for (const InjectionInfo& info : injections()) {

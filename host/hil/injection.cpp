@@ -61,7 +61,7 @@ const std::vector<InjectionInfo>& table() {
        false,
        Needs::nothing,
        {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump, AxisFault::feedback_polarity,
-        AxisFault::following_error},
+        AxisFault::following_error, AxisFault::moved_while_starting},
        set<&AxisDefects::encoder_swapped>,
        clear<&AxisDefects::encoder_swapped>},
       {"encoder_noise",
@@ -91,7 +91,7 @@ const std::vector<InjectionInfo>& table() {
        0,
        false,
        Needs::nothing,
-       {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump},
+       {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump, AxisFault::limit_cycle},
        set<&AxisDefects::tachometer_dead>,
        clear<&AxisDefects::tachometer_dead>},
       {"tachometer_reversed",
@@ -111,7 +111,7 @@ const std::vector<InjectionInfo>& table() {
        26,
        false,
        Needs::nothing,
-       {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump},
+       {AxisFault::encoder_tachometer_disagreement, AxisFault::encoder_jump, AxisFault::command_without_motion},
        [](Machine& m, std::size_t axis, double value) {
          m.wires(axis).defects.tachometer_offset = whole(value / hal::pc::AxisWiring{}.tachometer_resolution);
        },

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <span>
@@ -10,13 +11,15 @@
 #include "firmware/app/crc32.hpp"
 #include "host/exit_codes.hpp"
 #include "host/parameters/parameter_names.hpp"
-#include "host/read_file.hpp"
 
 namespace host {
 
 namespace {
 
 constexpr std::string_view kCountKey = "count = ", kCrcKey = "crc32 = \"0x";
+constexpr std::string_view kPitchHead =
+    "# Tables of pitch errors: axis, counts from home, forward, backward (2^-16 counts)";
+constexpr std::string_view kPitchKey = "#pitch ";
 
 /// Programs whose backups had no CRC knew boards of two axes.
 constexpr std::size_t kOldBoard = firmware::parameter_rows::kBoardRows + 2 * firmware::parameter_rows::kAxisRows;
@@ -76,11 +79,16 @@ std::optional<Seal> seal_of(std::string_view text) {
 
 }  // namespace
 
-std::string format_backup(const firmware::ParameterValues& values, const std::vector<firmware::StoredEntry>& foreign) {
+std::string format_backup(const firmware::ParameterValues& values, const std::vector<firmware::StoredEntry>& foreign,
+                          const PitchTables& pitch) {
   std::string sealed = parameter_lines(values);
   if (!foreign.empty()) sealed += "\n# In the board's flash, but unknown to this table (key, bits):\n";
   for (const firmware::StoredEntry& entry : foreign)
     sealed += fmt::format("# {:#06x} {:#010x}\n", entry.key, entry.value_bits);
+  if (!pitch.empty()) sealed += fmt::format("\n{}\n", kPitchHead);
+  for (std::size_t axis = 0; axis < pitch.size(); ++axis)
+    for (const firmware::PitchPoint& one : pitch[axis])
+      sealed += fmt::format("{}{} {} {} {}\n", kPitchKey, axis, one.counts, one.forward, one.backward);
   return fmt::format(
       "# Parameters of an axis board, table {:#010x}. To change values, `axistool set-params` takes a file that was "
       "edited;\n# `axistool restore` takes this one as it is.\nformat = \"axis-params/1\"\n{}{}\n{}{:08x}\"\n{}",
@@ -106,6 +114,29 @@ std::vector<Assignment> parse_backup(std::string_view text, std::string_view nam
   return list;
 }
 
-std::vector<Assignment> read_backup(const std::string& path) { return parse_backup(read_file(path), path); }
+std::optional<PitchTables> pitch_of_backup(std::string_view text, std::string_view name, std::size_t axes) {
+  std::optional<PitchTables> tables;
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line(text.substr(begin, end - begin));
+    begin = end + 1;
+    if (line.starts_with(kPitchHead)) tables.emplace(axes);
+    if (!line.starts_with(kPitchKey)) continue;
+    std::size_t axis = 0;
+    firmware::PitchPoint one;
+    const bool is_read = std::sscanf(line.c_str() + kPitchKey.size(), "%zu %d %d %d", &axis, &one.counts, &one.forward,
+                                     &one.backward) == 4;
+    auto* table = is_read && tables && axis < axes ? &(*tables)[axis] : nullptr;
+    if (table == nullptr || !is_valid(one) || table->size() == firmware::kMostPitchPoints ||
+        (!table->empty() && !may_follow(table->back(), one)))
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{}:{}: no point of a table of pitch errors that this board takes. Nothing was "
+                                "restored: use another copy, or axistool pitch",
+                                name, number + 1));
+    table->push_back(one);
+  }
+  return tables;
+}
 
 }  // namespace host

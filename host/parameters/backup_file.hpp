@@ -1,21 +1,29 @@
 // All parameters of a board in a file with a checksum.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "firmware/core/compensation/pitch_table.hpp"
 #include "host/parameters/parameter_file.hpp"
 
 namespace host {
 
+using PitchTables = std::vector<std::vector<firmware::PitchPoint>>;  ///< an axis each
+
 /// A file of parameters (`axis-params/1`), each with unit and meaning, headed by their count and the CRC-32 of all that
-/// follows it. `foreign`: entries of a board's flash that the table does not have; they stand in comments.
+/// follows it. `foreign`: entries of a board's flash that the table does not have. `pitch`: each axis's table of pitch
+/// errors. Both stand in comments, so that the file remains one of parameters.
 std::string format_backup(const firmware::ParameterValues& values,
-                          const std::vector<firmware::StoredEntry>& foreign = {});
+                          const std::vector<firmware::StoredEntry>& foreign = {}, const PitchTables& pitch = {});
 
 /// Reads a backup. Throws Failure(bad_input) where count or CRC tell that it was cut or changed; where it has neither,
 /// as those of older programs, unless it names every parameter to its last line's end.
-std::vector<Assignment> read_backup(const std::string& path);
 std::vector<Assignment> parse_backup(std::string_view text, std::string_view name);
+
+/// The tables of a backup that parse_backup() takes, an axis each; none of programs that did not keep them. Throws
+/// Failure(bad_input) for a line that is no point, or points that no board takes.
+std::optional<PitchTables> pitch_of_backup(std::string_view text, std::string_view name, std::size_t axes);
 
 }  // namespace host

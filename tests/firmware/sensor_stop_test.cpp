@@ -157,6 +157,20 @@ TEST_F(SensorStop, ADriveThatDoesNotObeyIsLetGo) {
   EXPECT_LT(found.longest_s, 0.03);
 }
 
+/// A stuck converter drives a standing axis whose encoder is dead: the encoder shows rest, the tachometer the motion.
+TEST_F(SensorStop, AnAxisThatRunsAwayFromASilentEncoderIsLetGo) {
+  DrivenAxis axis(parameters());
+  std::uint32_t at = 0;
+  stop(axis, 5.0f, [&](DrivenAxis& a, int k) {
+    if (k == 0) at = a.io.encoder().reading.counts;
+    a.io.encoder().reading.counts = at;
+    a.amplifier_offset_V = -8.0;
+    if (k == 40) {
+      EXPECT_FALSE(a.io.drive_enable().on);
+    }
+  });
+}
+
 TEST_F(SensorStop, TheBrakeHoldsBeforeTheEnableDrops) {
   auto p = parameters();
   p.sequence = {

@@ -180,7 +180,8 @@ struct CommandEffect {
       {.fault = AxisFault::command_without_motion,
        .name = "command_without_motion",
        .cause = "the encoder shows no motion although the command should have moved the axis: a dead encoder, a "
-                "blocked axis, or a motor with no or wrong current",
+                "blocked axis, a brake that holds, a motor with no or wrong current, or a tachometer that reads a "
+                "motion which is none",
        .remedy = "turn the shaft by hand and watch the position; free the axis; check the motor's leads and the "
                  "encoder's coupling",
        .reaction = FaultReaction::drop_enable,
@@ -211,9 +212,10 @@ struct Oscillation {
   static constexpr std::array kFaults = std::to_array<FaultInfo>({
       {.fault = AxisFault::limit_cycle,
        .name = "limit_cycle",
-       .cause = "the command oscillates without commanded motion: the loop is unstable or nearly so",
-       .remedy = "design the gains again with less bandwidth; check inertia, delay and resonances; raise the limit "
-                 "only if the tachometer's noise is the cause",
+       .cause = "the command oscillates without commanded motion: the loop is unstable or nearly so, or its "
+                "tachometer is dead",
+       .remedy = "turn the shaft by hand and watch the tachometer; design the gains again with less bandwidth; check "
+                 "inertia, delay and resonances; raise the limit only if the tachometer's noise is the cause",
        .reaction = FaultReaction::drop_enable},
   });
   template <typename Scalar>

@@ -19,7 +19,8 @@ enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
 /// alone: neither estimator nor the other sensor has a part in it. `load` is what the command was on average, a weight
 /// above all. A drive that slows down by itself takes the reference along. One that is faster than the reference by
 /// twice the difference that sensors may have, or runs the other way by as much, or takes all that the converter has
-/// for kMostSaturated, is not under control: the enable drops.
+/// for kMostSaturated, is not under control: the enable drops. So does one whose sensors diverged near rest, where
+/// neither is known to be the wrong one, if the tachometer then gains as much.
 template <typename Scalar>
 class SensorStop {
  public:
@@ -44,7 +45,7 @@ class SensorStop {
       return TrustedSensor::encoder;
     if (!tachometer_fitted_) return TrustedSensor::none;
     if (fault != AxisFault::encoder_tachometer_disagreement) return TrustedSensor::tachometer;
-    if (Traits::magnitude(seen.reference_velocity) <= astray_) return TrustedSensor::encoder;
+    if (is_slow(seen)) return TrustedSensor::encoder;
     const bool forward = seen.reference_velocity > Scalar(0);
     const auto along = [forward](Scalar velocity) { return forward ? velocity : Scalar(0) - velocity; };
     const Scalar least = along(seen.reference_velocity) * Scalar(0.125f);
@@ -52,8 +53,10 @@ class SensorStop {
   }
 
   /// `load_V`: the command's mean.
-  constexpr void begin(TrustedSensor trusted, const AxisTelemetry<Scalar>& seen, Scalar load_V) {
+  constexpr void begin(TrustedSensor trusted, AxisFault fault, const AxisTelemetry<Scalar>& seen, Scalar load_V) {
     trusted_ = trusted;
+    is_doubtful_ = fault == AxisFault::encoder_tachometer_disagreement && uses_encoder() && is_slow(seen);
+    doubtful_most_ = Traits::magnitude(seen.tachometer_velocity) + astray_;
     velocity_ = reference_ = measured(seen);
     error_ = Scalar(0);
     load_V_ = load_V;
@@ -80,6 +83,7 @@ class SensorStop {
     const bool forward = reference_ > Scalar(0);
     const Scalar beyond = Scalar(0) - (forward ? lacking : Scalar(0) - lacking);
     const Scalar astray = reference_ == Scalar(0) ? Traits::magnitude(velocity_) : beyond;
+    if (is_doubtful_ && Traits::magnitude(seen.tachometer_velocity) > doubtful_most_) return false;
     return saturated_samples_ <= kMostSaturated && astray <= astray_ && Traits::magnitude(change) <= astray_ &&
            Traits::is_finite(wanted_V);
   }
@@ -92,6 +96,9 @@ class SensorStop {
   using Traits = ScalarTraits<Scalar>;
   static constexpr std::int32_t kMostSaturated = 5;  ///< samples
 
+  constexpr bool is_slow(const AxisTelemetry<Scalar>& seen) const {
+    return Traits::magnitude(seen.reference_velocity) <= astray_;
+  }
   constexpr Scalar encoder_velocity(const AxisTelemetry<Scalar>& seen) const {
     return Traits::times(seen.encoder_travel, velocity_per_count_);
   }
@@ -112,10 +119,10 @@ class SensorStop {
 
   StateFeedbackGain<Scalar> Kc_{};
   Scalar travel_per_velocity_{}, velocity_per_count_{}, slower_{}, ramp_V_{}, astray_{}, limit_V_{};
-  Scalar velocity_{}, reference_{}, error_{}, load_V_{}, ahead_V_{}, command_V_{};
+  Scalar velocity_{}, reference_{}, error_{}, load_V_{}, ahead_V_{}, command_V_{}, doubtful_most_{};
   std::int32_t samples_at_rest_ = 0, saturated_samples_ = 0;
   TrustedSensor trusted_ = TrustedSensor::none;
-  bool tachometer_fitted_ = true;
+  bool tachometer_fitted_ = true, is_doubtful_ = false;
 };
 
 }  // namespace firmware

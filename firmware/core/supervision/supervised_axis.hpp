@@ -406,7 +406,7 @@ class SupervisedAxis {
     const AxisTelemetry<Scalar>& seen = axis_.telemetry();
     const TrustedSensor trusted = sensor_stop_.trusted_after(found, seen);
     if (!seen.enabled || axis_.is_open_loop() || trusted == TrustedSensor::none) return false;
-    sensor_stop_.begin(trusted, seen, monitors_.effort().load_V());
+    sensor_stop_.begin(trusted, found, seen, monitors_.effort().load_V());
     is_guided_ = true;
     return true;
   }

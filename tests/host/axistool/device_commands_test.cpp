@@ -112,6 +112,21 @@ TEST_F(DeviceCommands, ABackupIsRestoredBitByBit) {
   EXPECT_EQ(run("diff-params " + file("backup.toml")).exit_code, 0);
 }
 
+TEST_F(DeviceCommands, ABackupBringsTablesOfPitchErrorsToAnEmptyBoard) {
+  ASSERT_EQ(run("set-params " + design()).exit_code, 0);
+  std::ofstream(file("screw.csv")) << "x_mm,error_um\n0,0\n10,4\n20,-3\n30,1\n40,0\n50,2\n";
+  ASSERT_EQ(run("pitch " + file("screw.csv") + " --axis x --yes").exit_code, 0);
+  const nlohmann::json before = json("pitch --axis x"), told = json("info");
+  EXPECT_THAT(told["axes"][0]["pitch_table"].get<std::string>(), HasSubstr("6 points, 0 to 50"));
+  ASSERT_EQ(run("backup " + file("backup.toml")).exit_code, 0);
+  ASSERT_EQ(run("set-params x.pitch.on=false").exit_code, 0);
+  ASSERT_EQ(run("pitch --axis x --remove --yes").exit_code, 0);
+  ASSERT_EQ(run("reset-params --save --yes").exit_code, 0);
+  ASSERT_EQ(run("restore " + file("backup.toml") + " --yes").exit_code, 0);
+  EXPECT_EQ(json("pitch --axis x"), before);
+  EXPECT_EQ(run("diff-params " + file("backup.toml")).exit_code, 0);
+}
+
 TEST_F(DeviceCommands, MotionIsRefusedWhereItMust) {
   EXPECT_EQ(run("enable x --yes").exit_code, 8) << "not fitted";
   fit();

@@ -93,6 +93,22 @@ TEST(Gcode, HasFeedsInUnitsAMinute) {
   EXPECT_NEAR(read("G1 F60 X1\nX2 F120").moves.at(1).feed_mm_s, 2.0, 1e-12);
 }
 
+TEST(Gcode, HasAnOverrideForFeedsAndOneForRapids) {
+  host::GcodeMachine machine;
+  machine.feed_share = 1.2;
+  machine.rapid_share = 0.25;
+  machine.fastest_mm_s = host::PathPoint(250.0, 100.0, 1.0);  // Z does not move
+  const auto moves = host::read_gcode("G1 X10 F600\nG0 X40\nG0 Y30\nG0 X0 Y0\nG2 X10 Y10 I10\n", "part.ngc",
+                                      host::PathPoint::Zero(), machine)
+                         .moves;
+  ASSERT_EQ(moves.size(), 5u);
+  EXPECT_DOUBLE_EQ(moves[0].feed_mm_s, 12.0);
+  EXPECT_DOUBLE_EQ(moves[1].feed_mm_s, 0.25 * 250.0);
+  EXPECT_DOUBLE_EQ(moves[2].feed_mm_s, 0.25 * 100.0);
+  EXPECT_NEAR(moves[3].feed_mm_s, 0.25 * 50.0 / 0.3, 1e-9) << "40 mm and 30 mm, Y at its limit for 0.3 s";
+  EXPECT_DOUBLE_EQ(moves[4].feed_mm_s, 12.0);
+}
+
 TEST(Gcode, ToleranceIsOfTheMovesThatFollowIt) {
   const auto moves = read("G1 F60 X1\nG64 P0.02\nX2\nG64\nX3\nG61\nX4\nG20 G64 P0.001\nX5").moves;
   ASSERT_EQ(moves.size(), 5u);

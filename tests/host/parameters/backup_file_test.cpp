@@ -33,6 +33,29 @@ TEST(Backup, ReadsBackEveryBit) {
   for (std::size_t place = 0; place < values.size(); ++place) EXPECT_EQ(read.at(place), values.at(place)) << place;
 }
 
+TEST(Backup, KeepsTablesOfPitchErrors) {
+  const host::PitchTables tables{{}, {{-100, 5, -7}, {60000, 65536, 300}}};
+  const std::string text = host::format_backup(some_values(), {{0x1234, 7}}, tables);
+  EXPECT_EQ(message_of(text), "restored") << "it remains a file of parameters";
+  EXPECT_EQ(host::pitch_of_backup(text, "b.toml", 2), tables);
+  EXPECT_EQ(host::pitch_of_backup(host::format_backup(some_values()), "b.toml", 2), std::nullopt)
+      << "an older backup says nothing of tables";
+  const auto refusal = [&](std::string_view from, std::string_view to, std::size_t axes = 2) {
+    std::string changed = text;
+    changed.replace(changed.rfind(from), from.size(), to);
+    try {
+      host::pitch_of_backup(changed, "b.toml", axes);
+    } catch (const host::Failure& failure) {
+      return std::string(failure.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_THAT(refusal("60000", "-200"), HasSubstr("b.toml:")) << "in falling order";
+  EXPECT_THAT(refusal("65536", "2000000000"), HasSubstr("no point")) << "more than a board takes";
+  EXPECT_THAT(refusal("60000", "sixty"), HasSubstr("no point"));
+  EXPECT_THAT(refusal("60000", "60000", 1), HasSubstr("no point")) << "a board with fewer axes";
+}
+
 TEST(Backup, CutAnywhereIsRefused) {
   const std::string whole = host::format_backup(some_values(), {{0x1234, 7}});
   for (std::size_t length = 0; length < whole.size(); length += 1)
