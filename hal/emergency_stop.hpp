@@ -1,4 +1,4 @@
-// Emergency-stop input. It acts in hardware, too; software only reads it.
+// Emergency-stop input, which acts in hardware, too: software only reads it. And the relay of a delayed stop.
 #pragma once
 
 #include <concepts>
@@ -9,6 +9,12 @@ namespace hal {
 template <typename T>
 concept EmergencyStop = requires(T& stop) {
   { stop.is_pressed() } -> std::same_as<bool>;
+};
+
+/// A relay in the amplifiers' power. Contract: `close(false)` takes the power away; open after reset. Never waits.
+template <typename T>
+concept PowerRelay = requires(T& relay, bool closed) {
+  { relay.close(closed) } -> std::same_as<void>;
 };
 
 }  // namespace hal

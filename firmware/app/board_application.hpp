@@ -69,6 +69,7 @@ class BoardApplication {
                 .emergency_stop = board_.emergency_stop().is_pressed(),
                 .supply_low = board_.supply().is_low(),
                 .store_damaged = !store_is_usable()});
+    if constexpr (requires { board_.power_relay(); }) board_.power_relay().close(axes_.may_have_power());
     capture_.take(axes_);
     if (trigger_.is_running()) trigger_.take(axes_);
     timing_.note(now_us, board_.clock().now_us());
@@ -417,7 +418,6 @@ class BoardApplication {
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
   bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
-
   /// By an experiment or a path.
   bool is_led(std::size_t axis) const { return is_excited(axis) || path_.leads(axis); }
 
@@ -429,6 +429,7 @@ class BoardApplication {
   BoardLimits limits_of_board() const {
     BoardLimits limits = BoardWatch::default_limits(1.0F / rate_Hz());
     limits.heartbeat_samples = static_cast<std::int32_t>(active_.template get<"host.timeout">() * rate_Hz());
+    limits.stop_samples = static_cast<std::int32_t>(active_.template get<"emergency_stop.delay">() * rate_Hz());
     limits.standing_samples = static_cast<std::int32_t>(active_.template get<"host.standing_timeout">() * rate_Hz());
     return limits;
   }
@@ -459,7 +460,6 @@ class BoardApplication {
       if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
   }
 
-  /// Where they lie now.
   void use_tables() {
     for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].use_pitch_table(store_.table(axis).points);
   }

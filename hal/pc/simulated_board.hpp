@@ -36,6 +36,7 @@ class SimulatedBoardOf {
 
   SimulatedAxis& axis(std::size_t index) { return axes_[index]; }
   SimulatedEmergencyStop& emergency_stop() { return stop_; }
+  SimulatedRelay& power_relay() { return power_relay_; }
   SimulatedSupply& supply() { return supply_; }
   SimulatedClock& clock() { return clock_; }
   SimulatedUsb& usb() { return usb_; }
@@ -55,7 +56,10 @@ class SimulatedBoardOf {
 
   /// Advances the environment by one control period.
   void advance() {
-    for (sim::Plant& plant : plants_) plant.advance(1e-6 * control_period_us_);
+    for (sim::Plant& plant : plants_) {
+      if (!power_relay_.is_closed()) plant.set_enabled(false);
+      plant.advance(1e-6 * control_period_us_);
+    }
     clock_.advance_us(control_period_us_);
   }
 
@@ -73,6 +77,7 @@ class SimulatedBoardOf {
   std::array<sim::Plant, axes> plants_;
   std::array<SimulatedAxis, axes> axes_;
   SimulatedEmergencyStop stop_;
+  SimulatedRelay power_relay_;
   SimulatedSupply supply_;
   SimulatedClock clock_;
   SimulatedUsb usb_{16};

@@ -29,6 +29,15 @@ class SimulatedEmergencyStop {
   bool pressed_ = false;
 };
 
+class SimulatedRelay {
+ public:
+  void close(bool closed) { is_closed_ = closed; }
+  bool is_closed() const { return is_closed_; }
+
+ private:
+  bool is_closed_ = false;
+};
+
 class SimulatedSupply {
  public:
   void set_low(bool is_low) { is_low_ = is_low; }
@@ -40,6 +49,7 @@ class SimulatedSupply {
 
 static_assert(Clock<SimulatedClock>);
 static_assert(EmergencyStop<SimulatedEmergencyStop>);
+static_assert(PowerRelay<SimulatedRelay>);
 static_assert(Supply<SimulatedSupply>);
 
 }  // namespace hal::pc

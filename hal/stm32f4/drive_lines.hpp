@@ -12,20 +12,26 @@ namespace hal::stm32f4 {
 
 /// Enable: high lets the amplifier drive, through the contact of the emergency-stop relay. Fault: the amplifier's
 /// contact pulls low while all is well, so an open wire reads as a fault. Ready: its contact pulls low once it drives.
-/// Brake: high releases it.
+/// Brake: high releases it. Dynamic brake: low shorts the motor, or is the amplifier's own input for it; it is released
+/// before the enable goes on and applied after it has gone off.
 class DriveLines {
  public:
   struct Pins {
-    Pin enable, fault, ready, brake;
+    Pin enable, fault, ready, brake, dynamic_brake;
   };
   explicit DriveLines(const Pins& pins) : pins_(pins) {}
   void start() {
     pins_.enable.make_output(false);
+    pins_.dynamic_brake.make_output(false);
     pins_.brake.make_output(false);
     pins_.fault.make_input(Pull::up);
     pins_.ready.make_input(Pull::up);
   }
-  void set(bool on) { pins_.enable.set(on); }
+  void set(bool on) {
+    if (on) pins_.dynamic_brake.set(true);
+    pins_.enable.set(on);
+    if (!on) pins_.dynamic_brake.set(false);
+  }
   bool is_faulted() { return pins_.fault.read(); }
   bool is_ready() { return !pins_.ready.read(); }
   void release_brake(bool released) { pins_.brake.set(released); }
@@ -67,5 +73,17 @@ class StopInput {
   Pin pin_;
 };
 static_assert(EmergencyStop<StopInput>);
+
+/// High closes the relay that gives the amplifiers their power.
+class RelayOutput {
+ public:
+  explicit RelayOutput(Pin pin) : pin_(pin) {}
+  void start() { pin_.make_output(false); }
+  void close(bool closed) { pin_.set(closed); }
+
+ private:
+  Pin pin_;
+};
+static_assert(PowerRelay<RelayOutput>);
 
 }  // namespace hal::stm32f4

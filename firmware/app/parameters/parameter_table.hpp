@@ -27,6 +27,8 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "silence of the commanding client after which the axes slow down and stop"},
     {3, board, "host.standing_timeout", real, "s", "s", 0.1F, 3600, 60, any_time,
      "the same for axes at rest: after it they are disabled"},
+    {4, board, "emergency_stop.delay", real, "s", "s", 0, 5, 0, while_disabled,
+     "for which axes may slow down along their ramps after the stop circuit has opened (stop category 1)"},
 
     {16, axis, "drive.fitted", toggle, "", "", 0, 1, 0, while_disabled, "the axis exists: it can be enabled"},
     {17, axis, "drive.sample_period", real, "s", "s", 5e-5F, 4e-3F, 1e-3F, while_disabled,

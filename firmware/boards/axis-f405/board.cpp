@@ -62,6 +62,7 @@ bool Board::start() {
   clock.APB2ENR = clock.APB2ENR | Rcc::kUsart1 | Rcc::kAdc1 | Rcc::kSpi1;
   usart_.start(clocks_run ? kApb2Clock_Hz : kResetClock_Hz, 115200);
   stop_.start();
+  power_relay_.start();
   supply_.start();
   vbus_.start();
   pump_.start();
@@ -173,9 +174,12 @@ ResetCause read_reset_cause() {
   return (flags & Rcc::kPinReset) != 0 ? ResetCause::reset_pin : ResetCause::unknown;
 }
 
-/// Pins alone: the enables, the brakes, and the converter's clear input, which needs no transfer.
+/// Pins alone: the enables, the brakes, the amplifiers' power, and the converter's clear input, which needs no
+/// transfer.
 void make_outputs_safe() noexcept {
-  for (const Pin& pin : {pins::enable_x(), pins::enable_y(), pins::brake_x(), pins::brake_y()}) pin.set(false);
+  for (const Pin& pin : {pins::enable_x(), pins::enable_y(), pins::brake_x(), pins::brake_y(), pins::dynamic_brake_x(),
+                         pins::dynamic_brake_y(), pins::power_relay()})
+    pin.set(false);
   pins::dac_not_clear().set(false);
   pins::led_fault().set(true);
 }

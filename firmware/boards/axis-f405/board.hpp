@@ -110,6 +110,7 @@ class Board {
 
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
   hal::stm32f4::StopInput& emergency_stop() { return stop_; }
+  hal::stm32f4::RelayOutput& power_relay() { return power_relay_; }
   hal::stm32f4::SupplyDetector& supply() { return supply_; }
   hal::stm32f4::MicrosecondClock& clock() { return clock_; }
   static constexpr std::uint32_t processor_Hz() { return hal::stm32f4::kSystemClock_Hz; }
@@ -145,7 +146,8 @@ class Board {
        .lines = {.enable = pins::enable_x(),
                  .fault = pins::drive_fault_x(),
                  .ready = pins::drive_ready_x(),
-                 .brake = pins::brake_x()},
+                 .brake = pins::brake_x(),
+                 .dynamic_brake = pins::dynamic_brake_x()},
        .switches = {
            .positive_end = pins::positive_end_x(), .negative_end = pins::negative_end_x(), .home = pins::home_x()}}};
   BoardAxisHal y_{
@@ -156,10 +158,12 @@ class Board {
        .lines = {.enable = pins::enable_y(),
                  .fault = pins::drive_fault_y(),
                  .ready = pins::drive_ready_y(),
-                 .brake = pins::brake_y()},
+                 .brake = pins::brake_y(),
+                 .dynamic_brake = pins::dynamic_brake_y()},
        .switches = {
            .positive_end = pins::positive_end_y(), .negative_end = pins::negative_end_y(), .home = pins::home_y()}}};
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
+  hal::stm32f4::RelayOutput power_relay_{pins::power_relay()};
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
   hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer4()};
   hal::stm32f4::VbusInput vbus_{pins::usb_supply()};

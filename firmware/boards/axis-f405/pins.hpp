@@ -31,6 +31,9 @@ inline Pin drive_ready_x() { return {gpio_c(), 2}; }
 inline Pin drive_ready_y() { return {gpio_c(), 3}; }
 inline Pin brake_x() { return {gpio_a(), 3}; }
 inline Pin brake_y() { return {gpio_b(), 1}; }
+inline Pin dynamic_brake_x() { return {gpio_b(), 5}; }
+inline Pin dynamic_brake_y() { return {gpio_b(), 11}; }
+inline Pin power_relay() { return {gpio_c(), 11}; }
 inline Pin positive_end_x() { return {gpio_b(), 12}; }
 inline Pin negative_end_x() { return {gpio_b(), 13}; }
 inline Pin home_x() { return {gpio_b(), 14}; }

@@ -64,6 +64,13 @@ class AxisGroup {
     return false;
   }
 
+  /// For the relay in the amplifiers' power: it opens once all axes stand after a stop, or after the stop's delay, and
+  /// where an enable does not drop.
+  constexpr bool may_have_power() const {
+    if (board_.is_stopped() && (board_.is_stop_due() || !outputs_on())) return false;
+    return !must_cut_power();
+  }
+
   constexpr bool outputs_on() const {
     for (const BoardAxis& axis : axes_)
       if (outputs_are_on(axis.state())) return true;

@@ -24,6 +24,7 @@ struct BoardLimits {
   std::int32_t heartbeat_samples = 100;    ///< longest silence of a host that commands motion
   std::int32_t standing_samples = 60'000;  ///< the same while the enabled axes are at rest
   std::int32_t input_samples = 3;          ///< in which the stop circuit must be open
+  std::int32_t stop_samples = 0;           ///< for which axes may slow down after it; 0: stop category 0
 };
 
 class BoardWatch {
@@ -46,7 +47,10 @@ class BoardWatch {
   }
 
   /// The next control period may be late: the control interrupt was disabled on purpose.
-  constexpr void excuse_pause() { is_primed_ = false; }
+  constexpr void excuse_pause() {
+    is_primed_ = false;
+    is_unusual_ = true;
+  }
 
   /// The host begins to command motion, or ends it.
   constexpr void host_commands(bool commands) {
@@ -58,6 +62,9 @@ class BoardWatch {
   constexpr void forget_left_alone() { was_left_alone_ = false; }
   /// While the axes are being stopped together because of the silence, the silence is not a fault.
   constexpr void excuse_silence(bool excused) { excuses_silence_ = excused; }
+  /// The stop circuit is open, or has been and its delay runs; and the delay is over.
+  constexpr bool is_stopped() const { return is_stopped_; }
+  constexpr bool is_stop_due() const { return stop_left_ < 0; }
   /// The host commands motion and has been silent for too long, and the outputs are on.
   constexpr bool is_host_lost() const { return is_host_lost_; }
   /// Since the last forget_left_alone(), axes at rest were disabled because no command came.
@@ -67,10 +74,13 @@ class BoardWatch {
   /// fault if axes move; if they are at rest, it calls `disable()`.
   template <std::invocable OutputsOn, std::invocable Disable>
   constexpr AxisFault watch(const BoardInputs& inputs, OutputsOn outputs_on, Disable disable) {
-    const bool late = is_primed_ && inputs.now_us - last_us_ > limits_.longest_period_us;
+    bool late = inputs.now_us - last_us_ > limits_.longest_period_us;
     last_us_ = inputs.now_us;
-    is_primed_ = true;
-    if (stop_.filtered(inputs.emergency_stop)) return AxisFault::emergency_stop;
+    if (inputs.emergency_stop || is_unusual_) {
+      late = late && is_primed_;
+      is_primed_ = true;
+      if (watch_stop(inputs.emergency_stop, disable)) return AxisFault::emergency_stop;
+    }
     if (inputs.supply_low) return AxisFault::supply_low;
     if (late) return AxisFault::control_overrun;
     if (inputs.store_damaged) return AxisFault::parameter_store_damaged;
@@ -92,8 +102,33 @@ class BoardWatch {
   }
 
  private:
+  /// Stop category 1: until the delay is over the axes are disabled as by request, each along its ramp. Whether the
+  /// enables must drop. A short press is a stop, too.
+  template <std::invocable Disable>
+  [[gnu::noinline]] constexpr bool watch_stop(bool is_open_now, Disable disable) {
+    const bool is_open = stop_.filtered(is_open_now);
+    if (is_open && !is_stopped_) {
+      is_stopped_ = true;
+      stop_left_ = limits_.stop_samples;
+    }
+    bool is_due = false;
+    if (is_stopped_ && stop_left_ > 0) {
+      --stop_left_;
+      disable();
+    } else if (is_stopped_) {
+      is_due = is_open || stop_left_ == 0;
+      stop_left_ = -1;
+      is_stopped_ = is_open;
+    }
+    is_unusual_ = is_stopped_ || stop_.is_pending();
+    return is_due;
+  }
+
   BoardLimits limits_{};
-  InputFilter stop_;  ///< of the stop circuit, whose relay takes the enables at once
+  InputFilter stop_;  ///< of the stop circuit
+  std::int32_t stop_left_ = -1;
+  bool is_stopped_ = false;
+  bool is_unusual_ = true;  ///< is_stopped_ or about to be, or not is_primed_
   std::uint32_t last_us_ = 0;
   std::int32_t silent_samples_ = 0;
   bool host_commands_ = false;

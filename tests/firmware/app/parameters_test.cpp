@@ -111,7 +111,9 @@ TYPED_TEST(Parameters, EachChangedAloneChangesWhatTheMachineNotices) {
   for (std::size_t place = 0; place < firmware::parameter_count(hal::kAxisCount); ++place) {
     if (firmware::key_at(place).owner() > 1) continue;  // y is the same rows
     // Need a host: BoardMotion.StopsWhenTheHostFallsSilent, TwoClients.AnAxisEnabledWithoutItsHostIsDropped.
-    if (place == place_named("host.timeout") || place == place_named("host.standing_timeout")) continue;
+    if (place == place_named("host.timeout") || place == place_named("host.standing_timeout") ||
+        place == place_named("emergency_stop.delay"))
+      continue;
     const std::string_view name = firmware::kParameters[firmware::row_at(place)].name;
     if (name.starts_with("homing.") || name.starts_with("unfitted."))
       continue;  // homing_on_board_test.cpp, motion_owner_test.cpp

@@ -152,6 +152,21 @@ TEST_F(AxisBoard, EachAxisHasItsOwnLines) {
   EXPECT_TRUE(board.emergency_stop().is_pressed());
 }
 
+TEST_F(AxisBoard, PowerAndDynamicBrakesHaveTheirOwnPinsAndAFaultOfTheProcessorDropsThem) {
+  start();
+  board.power_relay().close(true);
+  EXPECT_EQ(chip.port_c.drive(11), Drive::high);
+  board.axis(0).drive_enable().set(true);
+  EXPECT_EQ(chip.port_b.drive(5), Drive::high);
+  EXPECT_EQ(chip.port_b.drive(11), Drive::low);
+  board.axis(1).drive_enable().set(true);
+  EXPECT_EQ(chip.port_b.drive(11), Drive::high);
+  firmware::boards::make_outputs_safe();
+  EXPECT_EQ(chip.port_c.drive(11), Drive::low);
+  EXPECT_EQ(chip.port_b.drive(5), Drive::low);
+  EXPECT_EQ(chip.port_b.drive(11), Drive::low);
+}
+
 /// The control interrupt writes words at any time; a reading takes two frames.
 TEST_F(AxisBoard, ReadsTheConverterBackWithoutDisturbingControl) {
   constexpr double kRound_ms = 0.1037;  // meets the control interrupt at all of its phases

@@ -18,7 +18,7 @@ TEST_F(Lines, TheEnableIsOffFromItsFirstMomentOn) {
   std::vector<Drive> seen;
   chip.port_c.on_change[4] = [&seen](Drive drive) { seen.push_back(drive); };
   gpio_c().ODR = 1u << 4;  // as an earlier program may have left it
-  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3), Pin(gpio_b(), 5)});
   lines.start();
   EXPECT_EQ(seen, std::vector<Drive>{Drive::low});
   lines.set(true);
@@ -28,7 +28,7 @@ TEST_F(Lines, TheEnableIsOffFromItsFirstMomentOn) {
 }
 
 TEST_F(Lines, AnOpenWireIsADriveFault) {
-  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3), Pin(gpio_b(), 5)});
   lines.start();
   EXPECT_TRUE(lines.is_faulted());
   chip.port_c.put(6, Outside::low);
@@ -36,7 +36,7 @@ TEST_F(Lines, AnOpenWireIsADriveFault) {
 }
 
 TEST_F(Lines, AnOpenWireIsAnAmplifierThatIsNotReady) {
-  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3), Pin(gpio_b(), 5)});
   lines.start();
   EXPECT_FALSE(lines.is_ready());
   chip.port_c.put(2, Outside::low);
@@ -47,13 +47,40 @@ TEST_F(Lines, TheBrakeHoldsFromItsFirstMomentOnUntilItIsReleased) {
   std::vector<Drive> seen;
   chip.port_a.on_change[3] = [&seen](Drive drive) { seen.push_back(drive); };
   gpio_a().ODR = 1u << 3;  // as an earlier program may have left it
-  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3)});
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3), Pin(gpio_b(), 5)});
   lines.start();
   EXPECT_EQ(seen, std::vector<Drive>{Drive::low});
   lines.release_brake(true);
   EXPECT_EQ(chip.port_a.drive(3), Drive::high);
   lines.release_brake(false);
   EXPECT_EQ(chip.port_a.drive(3), Drive::low);
+}
+
+/// The motor is never shorted while the amplifier drives.
+TEST_F(Lines, TheDynamicBrakeIsReleasedBeforeTheEnableAndAppliedAfterIt) {
+  std::vector<std::pair<char, Drive>> seen;
+  chip.port_c.on_change[4] = [&seen](Drive drive) { seen.emplace_back('e', drive); };
+  chip.port_b.on_change[5] = [&seen](Drive drive) { seen.emplace_back('d', drive); };
+  gpio_b().ODR = 1u << 5;  // as an earlier program may have left it
+  DriveLines lines({Pin(gpio_c(), 4), Pin(gpio_c(), 6), Pin(gpio_c(), 2), Pin(gpio_a(), 3), Pin(gpio_b(), 5)});
+  lines.start();
+  EXPECT_EQ(chip.port_b.drive(5), Drive::low) << "shorted from its first moment on";
+  seen.clear();
+  lines.set(true);
+  lines.set(false);
+  using Seen = std::vector<std::pair<char, Drive>>;
+  EXPECT_EQ(seen, (Seen{{'d', Drive::high}, {'e', Drive::high}, {'e', Drive::low}, {'d', Drive::low}}));
+}
+
+TEST_F(Lines, TheRelayOfThePowerIsOpenFromItsFirstMomentOn) {
+  gpio_c().ODR = 1u << 11;  // as an earlier program may have left it
+  std::vector<Drive> seen;
+  chip.port_c.on_change[11] = [&seen](Drive drive) { seen.push_back(drive); };
+  RelayOutput relay(Pin(gpio_c(), 11));
+  relay.start();
+  relay.close(true);
+  relay.close(false);
+  EXPECT_EQ(seen, (std::vector<Drive>{Drive::low, Drive::high, Drive::low}));
 }
 
 TEST_F(Lines, AnOpenStopCircuitIsAPressedStop) {
