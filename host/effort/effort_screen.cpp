@@ -17,8 +17,7 @@ namespace host {
 
 namespace {
 
-/// Further waves of a kind included; a bound on time.
-constexpr int kMostRounds = 16;
+constexpr int kMostRounds = 16;  // further waves of a kind included; a bound on time
 bool contains(const std::vector<std::string>& kinds, const std::string& kind) {
   return std::ranges::find(kinds, kind) != kinds.end();
 }
@@ -162,6 +161,7 @@ class Search {
     NextEffects all = weigh(hypotheses);
     weigh_unnamed(all);
     std::vector<ScreenedModel> list = all_of(all);
+    if (screen_.leaves_noise()) leave_nothing(all);
     // A certain effect with a small share is no rival of one with a large share.
     std::vector<std::string> small;
     for (const ScreenedModel& tried : list)

@@ -34,6 +34,11 @@ void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
   for (NextEffect& effect : next.effects) effect.probability = sum > 0.0 ? effect.probability / sum : 0.0;
 }
 
+void leave_nothing(NextEffects& next) {
+  next.effects.clear();
+  next.nothing = 1.0;
+}
+
 NextEffect& effect_of(NextEffects& next, const std::string& kind) {
   return *std::ranges::find(next.effects, kind, [](const NextEffect& other) { return other.term.kind; });
 }

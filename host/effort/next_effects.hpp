@@ -37,6 +37,9 @@ void leave_unnamed(NextEffects& next);
 /// Removes kinds from the candidates; the others share their probability.
 void take_out(NextEffects& next, const std::vector<std::string>& kinds);
 
+/// Removes all kinds from the candidates.
+void leave_nothing(NextEffects& next);
+
 /// The candidate of that kind, which must exist.
 NextEffect& effect_of(NextEffects& next, const std::string& kind);
 
