@@ -36,10 +36,8 @@ struct EffortScreen {
 
   bool empty() const { return rows.size() == 0; }
   const ScreenedModel& best() const { return chosen.empty() ? base : chosen.back(); }
-  /// Whether the sensors' noise alone leaves as much as the best model does, on both sets.
-  bool leaves_noise() const {
-    return best().train * effort_train <= rows.noise && best().validate * effort_validate <= rows.noise;
-  }
+  /// Whether the sensors' noise alone leaves as much as the best model does on the rows that judge.
+  bool leaves_noise() const { return best().validate * effort_validate <= rows.noise; }
 };
 
 /// Chooses up to `most_effects`, without the kinds in `absent`. Empty if the records hold no torque or force, hardly
