@@ -48,7 +48,7 @@ void add_adjust(CLI::App& app) {
   add_output(*command, "-o,--output", arguments->output, "the new model")->required();
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);
-  command->footer("Example:\n  axistool adjust x.toml cogging.cosine_Nm=0.2 --train jog.csv -o x-adjusted.toml");
+  command->footer("Example:\n  axistool adjust x.toml inertia.J_kg_m2=0.004 --train jog.csv -o x-adjusted.toml");
   command->callback(
       [arguments] { with_log_of_failure(arguments->json, "axis-adjustment/1", [&] { run(*arguments); }); });
 }

@@ -22,13 +22,13 @@ std::vector<std::pair<sim::EffectEntry*, std::string>> found(sim::DriveDescripti
   const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
   std::vector<std::pair<sim::EffectEntry*, std::string>> all;
   std::vector<std::string> keys;
-  for (sim::EffectEntry& entry : model.effects) {
-    if (!kind.empty() && entry.kind != kind) continue;
+  for (sim::EffectEntry& entry : model.effects)
     for (const auto& [id, value] : entry.parameters) {
-      keys.emplace_back(sim::find_effect(entry.kind)->parameter(id)->key(model.data.kind));
-      if (keys.back() == key || (!kind.empty() && id == key)) all.emplace_back(&entry, id);
+      const std::string_view own = sim::find_effect(entry.kind)->parameter(id)->key(model.data.kind);
+      keys.push_back(fmt::format("{}.{}", entry.kind, own));
+      if (!kind.empty() && entry.kind != kind) continue;
+      if (own == key || (!kind.empty() && id == key)) all.emplace_back(&entry, id);
     }
-  }
   if (all.empty())
     throw Failure(ExitCode::usage, fmt::format("{} {}: the model has no such parameter; it has {}", option, name,
                                                fmt::join(keys, ", ")));

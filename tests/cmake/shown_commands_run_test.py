@@ -49,7 +49,7 @@ ENDS = [
     (r"--fail-above", {0, 1}),  # the answer, yes or no
 ]
 # What asks on a terminal is answered yes; what `axistool enable` or an operator does before stands here too.
-ASKS = r"axistool (excite|enable|home|run part.ngc --capture)\b"
+ASKS = r"axistool (excite|enable|home|run part.ngc --(?:capture|feed))\b"
 BEFORE = [
     (r"axistool (move|run) ", "axistool home x --here --yes && axistool home y --here --yes"),
     (r"axistool (jog|move|capture .*--jog|run|excite x (ladder|multisine))", "axistool enable --yes"),

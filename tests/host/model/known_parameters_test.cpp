@@ -38,7 +38,7 @@ TEST(KnownParameters, ThatTheModelLacksAreRefused) {
     }
     return std::string();
   };
-  EXPECT_THAT(message({"M_kg"}, {}), testing::HasSubstr("it has J_kg_m2"));
+  EXPECT_THAT(message({"M_kg"}, {}), testing::HasSubstr("it has inertia.J_kg_m2"));
   EXPECT_THAT(message({}, {"J_kg_m2"}), testing::HasSubstr("KEY=DEVIATION"));
   EXPECT_THAT(message({}, {"J_kg_m2=0"}), testing::HasSubstr("KEY=DEVIATION"));
 }
