@@ -2,6 +2,7 @@
 // refusal.
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 
 #include "host/device/pitch_table.hpp"
@@ -22,7 +23,8 @@ void read_as_backup(std::string_view bytes) {
     if (!tables) return;
     for (const auto& table : *tables)
       if (!board_takes(table)) std::abort();
-    if (host::pitch_of_backup(host::format_backup({}, {}, *tables), "again.toml", 2) != tables) std::abort();
+    const std::string again = host::format_backup(firmware::ParameterValues(), {}, *tables);
+    if (host::pitch_of_backup(again, "again.toml", 2) != tables) std::abort();
   } catch (const host::Failure&) {
   }
 }
