@@ -27,7 +27,7 @@ struct PreparedRecord {
   const Record* record;
   std::vector<double> u_V;  ///< command_volts
   HeldCommand held;         ///< the same as the drive holds it
-  double effort_noise;  ///< of one row, Nm or N; 0 if it is a command, which is known exactly
+  double effort_noise;      ///< of one row, Nm or N; 0 if it is a command, which is known exactly
   MotionSmoother smoother;
   std::vector<Window> windows;
   double period_s;
