@@ -304,17 +304,15 @@ std::string size_in_words(const FoundEffect& effect) {
   return words;
 }
 
-namespace {
-
-/// The residual over the coordinate, forward and backward, and the effect's curves over it.
-void append_curves(const FoundEffect& effect, ScatterPlot& plot) {
-  plot.x = effect.over.axis;
-  plot.logarithmic_x = effect.over.logarithmic;
-  for (ScatterSeries& curve : direction_curves(effect.without, effect.without.missing, effect.over)) {
+void append_curves(const ResidualCoordinate& over, const ResidualEffort& residual, const std::vector<double>& part,
+                   ScatterPlot& plot) {
+  plot.x = over.axis;
+  plot.logarithmic_x = over.logarithmic;
+  for (ScatterSeries& curve : direction_curves(residual, residual.missing, over)) {
     curve.style = SeriesStyle::points;
     if (!curve.x.empty()) plot.series.push_back(std::move(curve));
   }
-  for (ScatterSeries& curve : direction_curves(effect.without, effect.trace, effect.over)) {
+  for (ScatterSeries& curve : direction_curves(residual, part, over)) {
     if (curve.x.empty()) continue;
     curve.style = SeriesStyle::line;
     curve.role = SeriesRole::model;
@@ -327,7 +325,9 @@ void append_curves(const FoundEffect& effect, ScatterPlot& plot) {
   }
 }
 
-/// The same, sample by sample, over the seconds of the cutout.
+namespace {
+
+/// The residual and the effect, sample by sample, over the seconds of the cutout.
 void append_cutout(const FoundEffect& effect, ScatterPlot& plot) {
   plot.x = {"time", "s"};
   plot.series = {{"residual, forward", SeriesRole::residual, SeriesStyle::points, {}, {}, {}, {}},
@@ -370,7 +370,7 @@ ScatterPlot effect_plot(const FoundEffect& effect) {
   if (effect.cutout_s)
     append_cutout(effect, plot);
   else
-    append_curves(effect, plot);
+    append_curves(effect.over, effect.without, effect.trace, plot);
   if (const auto range = range_of_means(plot); range.first < range.second) plot.y_range = range;
   return plot;
 }

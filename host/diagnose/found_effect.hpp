@@ -39,6 +39,10 @@ std::vector<FoundEffect> found_effects(const sim::DriveDescription& model, const
 /// "Cogging: 0.9 Nm [0.86, 0.94], 31 % of the friction".
 std::string size_in_words(const FoundEffect& effect);
 
+/// Adds the residual over a coordinate, forward and backward as points, and a part of it as lines.
+void append_curves(const ResidualCoordinate& over, const ResidualEffort& residual, const std::vector<double>& part,
+                   ScatterPlot& plot);
+
 /// The residual without the effect over its coordinate, forward and backward, and the effect's own curve over it.
 ScatterPlot effect_plot(const FoundEffect& effect);
 

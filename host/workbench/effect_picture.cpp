@@ -120,17 +120,6 @@ double rms_of_finite(const Samples& values) {
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-ScatterSeries effect_line(ScatterSeries curve) {
-  curve.style = SeriesStyle::line;
-  curve.role = SeriesRole::model;
-  curve.dashed = curve.name == "backward";
-  curve.name = "effect, " + curve.name;
-  curve.lower.clear();
-  curve.upper.clear();
-  curve.samples.clear();
-  return curve;
-}
-
 /// Table minus motor, by its scale, in micrometres.
 EffectPicture picture_by_scale(const sim::EffectInfo& info, const Record& with, const Record& without) {
   const auto error_um = [](const Record& record) {
@@ -157,16 +146,9 @@ EffectPicture picture_by_scale(const sim::EffectInfo& info, const Record& with, 
 /// The residual of the base model with its own part, over the first coordinate of the catalogue.
 ScatterPlot plain_plot(const sim::EffectInfo& info, const ResidualEffort& samples, const Samples& part) {
   ScatterPlot plot;
-  const ResidualCoordinate over =
-      coordinate_of(info.along.empty() ? "speed" : info.along.front(), sim::DriveKind::rotary);
-  plot.x = over.axis;
   plot.y = {"torque residual", "Nm"};
-  for (ScatterSeries& curve : direction_curves(samples, samples.missing, over)) {
-    curve.style = SeriesStyle::points;
-    if (!curve.x.empty()) plot.series.push_back(std::move(curve));
-  }
-  for (ScatterSeries& curve : direction_curves(samples, part, over))
-    if (!curve.x.empty()) plot.series.push_back(effect_line(std::move(curve)));
+  append_curves(coordinate_of(info.along.empty() ? "speed" : info.along.front(), sim::DriveKind::rotary), samples, part,
+                plot);
   return plot;
 }
 
@@ -191,11 +173,12 @@ EffectPicture picture_of(const sim::EffectInfo& info) {
     picture.stands_out = rms_of_finite(lacking.missing) / rms_of_finite(missing_on(null).missing);
     std::vector<FoundEffect> found;
     if (!info.base) found = found_effects(machine, {std::string(info.kind)}, sets);
-    picture.plot = found.empty()
-                       ? plain_plot(info, lacking,
-                                    part_between(residuals_on({&model, &machine}, sets.training).front().missing,
-                                                 residuals_on({&model, &machine}, sets.training).back().missing))
-                       : effect_plot(found.front());
+    if (found.empty()) {
+      const std::vector<ResidualEffort> residuals = residuals_on({&model, &machine}, sets.training);
+      picture.plot = plain_plot(info, lacking, part_between(residuals.front().missing, residuals.back().missing));
+    } else {
+      picture.plot = effect_plot(found.front());
+    }
   }
   picture.plot.large = false;
   picture.plot.title = std::string(info.title);
