@@ -220,7 +220,8 @@ class CircleSearch {
   /// Adds causes one by one while each gains, without a memory that would absorb them.
   Causes forward() const {
     Causes causes;
-    EvidenceFit fit = bare_.fit(columns(causes), deviations(causes), {.correlation = 0.5, .sizes = bare_.no_memory()});
+    EvidenceFit fit =
+        bare_.fit(columns(causes), deviations(causes), {.colour = {.drift = 0.5}, .sizes = bare_.no_memory()});
     while (causes.size() < kMostCauses) {
       double best = fit.log_evidence + prior(causes);
       std::optional<Causes> next;
@@ -229,7 +230,7 @@ class CircleSearch {
         Causes more = causes;
         more.push_back(one);
         EvidenceFit tried =
-            bare_.fit(columns(more), deviations(more), {.correlation = fit.correlation, .sizes = bare_.no_memory()});
+            bare_.fit(columns(more), deviations(more), {.colour = fit.colour, .sizes = bare_.no_memory()});
         if (tried.log_evidence + prior(more) <= best) continue;
         best = tried.log_evidence + prior(more);
         next = more;
@@ -238,14 +239,13 @@ class CircleSearch {
       if (!next) break;
       causes = *next;
       refine(causes, next_fit);
-      fit = bare_.fit(columns(causes), deviations(causes),
-                      {.correlation = next_fit.correlation, .sizes = bare_.no_memory()});
+      fit = bare_.fit(columns(causes), deviations(causes), {.colour = next_fit.colour, .sizes = bare_.no_memory()});
     }
     return causes;
   }
 
   EvidenceFit again(const EvidenceFit& near, const Causes& causes) const {
-    return full_.fit(columns(causes), deviations(causes), {.correlation = near.correlation, .sizes = near.sizes});
+    return full_.fit(columns(causes), deviations(causes), {.colour = near.colour, .sizes = near.sizes});
   }
 
   /// Probability of each cause against none and against its alternatives, with the memory.

@@ -172,9 +172,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     if (gained < 0.1) break;
   }
   const EvidenceFit& now = found.fit;
-  const EvidenceFit bare =
-      evidence_.fit(known.columns, known.deviations,
-                    {.correlation = now.correlation, .sizes = evidence_.no_memory(), .hold_sizes = true});
+  const EvidenceFit bare = evidence_.fit(known.columns, known.deviations,
+                                         {.colour = now.colour, .sizes = evidence_.no_memory(), .hold_sizes = true});
 
   // All forms, kind by kind.
   std::map<std::string, std::vector<Form>> forms;
@@ -370,11 +369,10 @@ double EffortHypotheses::log_evidence(const std::vector<EffortTerm>& chosen) con
 
 double EffortHypotheses::memory_log_odds(const EvidenceFit& fit, const std::vector<EffortTerm>& chosen) const {
   const Known known = known_with(chosen);
-  return fit.log_evidence -
-         evidence_
-             .fit(known.columns, known.deviations,
-                  {.correlation = fit.correlation, .sizes = evidence_.no_memory(), .hold_sizes = true})
-             .log_evidence;
+  return fit.log_evidence - evidence_
+                                .fit(known.columns, known.deviations,
+                                     {.colour = fit.colour, .sizes = evidence_.no_memory(), .hold_sizes = true})
+                                .log_evidence;
 }
 
 }  // namespace host

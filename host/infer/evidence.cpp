@@ -21,7 +21,6 @@ constexpr double kDegrees = 4.0;
 constexpr double kNoSize = 0.01, kEarlierObservations = 2.0;
 /// Where a fit that looks for a large memory begins.
 constexpr double kLargeSize = 0.1;
-constexpr double kMostCorrelation = 0.98;
 constexpr int kMostRounds = 12, kRoundsToSettle = 3, kSizesARound = 8;
 /// Nats by which a round must still gain.
 constexpr double kSettled = 0.02;
@@ -36,18 +35,6 @@ double log_student(double square) {
 
 Evidence::Evidence(VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise)
     : y_(std::move(y)), runs_(std::move(runs)), memory_(std::move(memory)), least_noise_(least_noise) {}
-
-MatrixXd Evidence::whiten(const MatrixXd& columns, double correlation) const {
-  MatrixXd white(columns.rows(), columns.cols());
-  const double first = std::sqrt(1.0 - correlation * correlation);
-  for (const RowRun& run : runs_) {
-    const Index length = run.end - run.first;
-    white.row(run.first) = first * columns.row(run.first);
-    white.middleRows(run.first + 1, length - 1) =
-        columns.middleRows(run.first + 1, length - 1) - correlation * columns.middleRows(run.first, length - 1);
-  }
-  return white;
-}
 
 VectorXd Evidence::no_memory() const {
   return VectorXd::Constant(static_cast<Index>(memory_.groups.size()), kNoSize * memory_.usual);
@@ -104,15 +91,15 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
   all << columns, memory_.columns;
   EvidenceFit fit;
   fit.sizes = start.sizes;
-  fit.correlation = start.correlation;
+  fit.colour = start.colour;
   VectorXd unit_weights = VectorXd::Ones(n), factors;
   double square = -1.0, before = -HUGE_VAL;
   MatrixXd gram;
   VectorXd white_y, deviations_now;
   MatrixXd white;
   for (int round = 0; round < kMostRounds; ++round) {
-    white = whiten(all, fit.correlation);
-    white_y = whiten(y_, fit.correlation);
+    white = whiten(all, fit.colour);
+    white_y = whiten(y_, fit.colour);
     if (square < 0.0)
       square = std::max(white_y.squaredNorm() / static_cast<double>(n) / 4.0, std::pow(least_noise_, 2));
     const VectorXd root = (unit_weights / square).cwiseSqrt();
@@ -134,7 +121,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
       square = std::max(unit_weights.dot(fit.residual.cwiseAbs2()) / static_cast<double>(n), std::pow(least_noise_, 2));
     }
     double log_evidence = -0.5 * static_cast<double>(n) * std::log(square) +
-                          0.5 * static_cast<double>(runs_.size()) * std::log1p(-fit.correlation * fit.correlation);
+                          static_cast<double>(runs_.size()) * std::log(fit.colour.innovation());
     for (Index k = 0; k < n; ++k) log_evidence += log_student(fit.residual(k) * fit.residual(k) / square);
     const MatrixXd& lower = fit.information.matrixLLT();
     log_evidence -= 0.5 * factors.cwiseQuotient(deviations_now).squaredNorm() + lower.diagonal().array().log().sum();
@@ -146,14 +133,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
     const bool is_behind = round + 1 >= kRoundsToSettle && log_evidence < start.give_up;
     if (std::abs(log_evidence - before) < kSettled || is_behind || round + 1 == kMostRounds) break;
     before = log_evidence;
-    const VectorXd left = y_ - all * factors;
-    double product = 0.0, squares = 1e-300;
-    for (const RowRun& run : runs_)
-      for (Index k = run.first + 1; k < run.end; ++k) {
-        product += unit_weights(k) * left(k) * left(k - 1);
-        squares += unit_weights(k) * left(k - 1) * left(k - 1);
-      }
-    fit.correlation = std::clamp(product / squares, 0.0, kMostCorrelation);
+    fit.colour = colour_of(y_ - all * factors, unit_weights, runs_);
   }
   fit.whitened = white * deviations_now.asDiagonal();
   fit.factors = factors.head(known);
@@ -163,13 +143,13 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
 
 EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations) const {
   EvidenceFit large = fit(columns, deviations, {.sizes = no_memory() * (kLargeSize / kNoSize)});
-  EvidenceFit small = fit(columns, deviations, {.correlation = large.correlation, .sizes = no_memory()});
+  EvidenceFit small = fit(columns, deviations, {.colour = large.colour, .sizes = no_memory()});
   return large.log_evidence > small.log_evidence ? large : small;
 }
 
 EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& columns, const VectorXd& deviations,
                                double give_up) const {
-  EvidenceStart start{.correlation = before.correlation, .sizes = before.sizes, .give_up = give_up};
+  EvidenceStart start{.colour = before.colour, .sizes = before.sizes, .give_up = give_up};
   EvidenceFit same = fit(columns, deviations, start);
   start.sizes = no_memory();
   EvidenceFit small = fit(columns, deviations, start);
@@ -178,7 +158,7 @@ EvidenceFit Evidence::fit_from(const EvidenceFit& before, const MatrixXd& column
 
 VectorXd Evidence::gains(const EvidenceFit& fit, const MatrixXd& further, const std::vector<int>& sign,
                          const VectorXd& scales) const {
-  const MatrixXd white = whiten(further, fit.correlation);
+  const MatrixXd white = whiten(further, fit.colour);
   const MatrixXd weighed = fit.weights.asDiagonal() * white;
   const MatrixXd cross = fit.whitened.transpose() * weighed;
   const MatrixXd own = weighed.transpose() * white - cross.transpose() * fit.information.solve(cross);

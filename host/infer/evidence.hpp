@@ -3,7 +3,7 @@
 //   y = sum_j theta_j column_j + memory + noise
 //   theta_j ~ N(0, deviation_j^2)                 prior from a data sheet or usual sizes
 //   memory  = smooth functions of some coordinates, one size a coordinate, found for each hypothesis
-//   noise   = first-order autoregressive with Student-t innovations of 4 degrees of freedom
+//   noise   = drift and white noise (noise_colour.hpp) with Student-t innovations of 4 degrees of freedom
 //
 // The memory explains what no column does, so that no hypothesis wins only because it is closest to an unknown effect.
 // Linear parameters are integrated in closed form (Laplace's approximation at the weights of the t distribution).
@@ -16,12 +16,9 @@
 #include <string>
 #include <vector>
 
-namespace host {
+#include "host/infer/noise_colour.hpp"
 
-/// Rows [first, end) are consecutive: the noise is correlated through them.
-struct RowRun {
-  Eigen::Index first, end;
-};
+namespace host {
 
 /// Columns of the memory over one coordinate, which share one size.
 struct MemoryGroup {
@@ -39,7 +36,7 @@ struct Memory {
 /// One fitted hypothesis: most probable sizes of memory and noise, parameters with their covariance.
 struct EvidenceFit {
   double log_evidence = 0.0;   ///< ln p(y | hypothesis), nats
-  double correlation = 0.0;    ///< of the noise from row to row, 0 to 0.98
+  NoiseColour colour;          ///< of the noise from row to row
   double noise = 0.0;          ///< scale of the innovations, in the unit of y
   Eigen::VectorXd sizes;       ///< of each memory group, in the unit of y
   Eigen::VectorXd factors;     ///< of the hypothesis' columns
@@ -55,7 +52,7 @@ struct EvidenceFit {
 
 /// Starting point of a fit: the resulting sizes can be large or small, and the better fit is kept.
 struct EvidenceStart {
-  double correlation = 0.5;
+  NoiseColour colour = {.drift = 0.5};
   Eigen::VectorXd sizes;
   bool hold_sizes = false;  ///< the sizes are held
   /// A fit whose log evidence is below this after three rounds, when further rounds change little, ends there, nats.
@@ -84,8 +81,10 @@ class Evidence {
   Eigen::VectorXd gains(const EvidenceFit& fit, const Eigen::MatrixXd& further, const std::vector<int>& sign,
                         const Eigen::VectorXd& scales) const;
 
-  /// Each row less `correlation` times the one before it, along the runs.
-  Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, double correlation) const;
+  /// The innovations of each column along the rows' runs.
+  Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, const NoiseColour& colour) const {
+    return colour.whiten(columns, runs_);
+  }
 
   const Memory& memory() const { return memory_; }
   const Eigen::VectorXd& rows() const { return y_; }

@@ -5,9 +5,11 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <span>
 
 #include "host/cancellation.hpp"
+#include "host/dense_solutions.hpp"
 #include "host/parallel.hpp"
 
 namespace host {
@@ -31,9 +33,9 @@ std::vector<DriveRange> free_numbers(const TableDrive& drive, double deceleratio
 /// y less what the table does and what the other columns take, whitened.
 class Remainder {
  public:
-  Remainder(const TableRows& rows, const Evidence& evidence, const MatrixXd& others, double correlation)
-      : rows_(rows), evidence_(evidence), correlation_(correlation) {
-    const MatrixXd white = evidence.whiten(others, correlation);
+  Remainder(const TableRows& rows, const Evidence& evidence, const MatrixXd& others, const NoiseColour& colour)
+      : rows_(rows), evidence_(evidence), colour_(colour) {
+    const MatrixXd white = evidence.whiten(others, colour);
     const Eigen::ColPivHouseholderQR<MatrixXd> factors(white);
     taken_ = factors.householderQ() * MatrixXd::Identity(white.rows(), factors.rank());
   }
@@ -43,13 +45,13 @@ class Remainder {
     MatrixXd left(rows_.size(), static_cast<Index>(drives.size()));
     const std::vector<DrivenRows> driven = drive_tables(drives, rows_);
     for (Index k = 0; k < left.cols(); ++k) left.col(k) = rows_.y - driven[static_cast<std::size_t>(k)].all;
-    const MatrixXd white = evidence_.whiten(left, correlation_);
+    const MatrixXd white = evidence_.whiten(left, colour_);
     return white - taken_ * (taken_.transpose() * white);
   }
   VectorXd of(const TableDrive& drive) const { return of(std::span(&drive, 1)); }
   /// Of a table that follows the motor.
   VectorXd of_none() const {
-    const VectorXd white = evidence_.whiten(rows_.y, correlation_);
+    const VectorXd white = evidence_.whiten(rows_.y, colour_);
     return white - taken_ * (taken_.transpose() * white);
   }
 
@@ -76,15 +78,9 @@ class Remainder {
  private:
   const TableRows& rows_;
   const Evidence& evidence_;
-  double correlation_;
+  NoiseColour colour_;
   MatrixXd taken_;  ///< orthonormal
 };
-
-double prior_cost(const TableDrive& drive, const std::vector<DriveRange>& numbers) {
-  double cost = 0.0;
-  for (const DriveRange& one : numbers) cost += std::pow((number_of(drive, one.which) - one.middle) / one.deviation, 2);
-  return cost;
-}
 
 class DriveCost : public ceres::CostFunction {
  public:
@@ -165,33 +161,43 @@ TableDrive settled(TableDrive drive, const std::vector<DriveRange>& numbers, con
   return drive;
 }
 
-/// Where else the fit may stand as well. At a reversal the table loses the gap and twice what its friction bends the
-/// spring: more of one beside less of the other loses as much. Where it slides on, its friction alone is in doubt. The
-/// drive itself is among them.
-std::vector<TableDrive> alike_at_reversals(const TableDrive& drive) {
-  const double loss = drive.gap + 2.0 * drive.lag * drive.deceleration;
-  std::vector<TableDrive> alike;
-  for (const double lag : {0.8, 0.9, 1.0, 1.1, 1.25})
-    for (const double part : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95}) {
-      TableDrive one = drive;
-      one.lag *= lag;
-      one.gap = part * loss;
-      one.deceleration = 0.5 * (1.0 - part) * loss / one.lag;
-      alike.push_back(one);
+/// Drives about one, by what the rows tell least: along each principal axis of the information, and between them, from
+/// one standard deviation to many. The drive itself is the first.
+std::vector<TableDrive> cloud_about(const TableDrive& drive, const std::vector<DriveRange>& numbers,
+                                    const Remainder& remainder, Index rows) {
+  const auto count = static_cast<Index>(numbers.size());
+  const DriveCost cost(drive, numbers, remainder, rows, remainder.scale_of(remainder.of(drive)));
+  VectorXd at(count), residuals(rows + count);
+  for (Index k = 0; k < count; ++k) at(k) = number_of(drive, numbers[static_cast<std::size_t>(k)].which);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows + count, count);
+  const double* const parameters[] = {at.data()};
+  double* jacobians[] = {jacobian.data()};
+  if (!cost.Evaluate(parameters, residuals.data(), jacobians)) return {drive};
+  const SymmetricSpectrum axes = symmetric_spectrum(jacobian.transpose() * jacobian);
+  const MatrixXd deviations = axes.vectors * axes.values.cwiseMax(1e-9).cwiseSqrt().cwiseInverse().asDiagonal();
+  constexpr int kDirections = 16;
+  std::mt19937 seed(1);
+  std::normal_distribution<double> normal;
+  std::vector<TableDrive> cloud = {drive};
+  for (int k = 0; k < kDirections; ++k) {
+    const VectorXd direction = deviations * VectorXd::NullaryExpr(count, [&] { return normal(seed); });
+    for (const double length : {1.0, 4.0, 16.0, 64.0}) {
+      cloud.push_back(drive);
+      for (Index n = 0; n < count; ++n) {
+        const DriveRange& one = numbers[static_cast<std::size_t>(n)];
+        set_number(cloud.back(), one.which, std::clamp(at(n) + length * direction(n), one.low, one.high));
+      }
     }
-  for (const double friction : {0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8}) {
-    alike.push_back(drive);
-    alike.back().deceleration *= friction;
   }
-  return alike;
+  return cloud;
 }
 
 }  // namespace
 
 TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, const Evidence& evidence,
-                     const MatrixXd& others, double correlation, double deceleration) {
+                     const MatrixXd& others, const NoiseColour& colour, double deceleration) {
   const std::vector<DriveRange> numbers = free_numbers(starts.front(), deceleration);
-  const Remainder remainder(rows, evidence, others, correlation);
+  const Remainder remainder(rows, evidence, others, colour);
   const bool is_new = starts.size() > 1;
   double least = HUGE_VAL;
   const auto price = [&](int iterations) {
@@ -234,13 +240,16 @@ TableDrive fit_drive(std::vector<TableDrive> starts, const TableRows& rows, cons
     }
   };
   go_on();
-  constexpr int kRidges = 2;
-  for (int ridge = 0; ridge < kRidges && is_new && least < most && starts.front().gap > 0.0 && starts.front().lag > 0.0;
-       ++ridge) {
+  // A table sticks, slides and touches: between the best fits lie worse ones.
+  constexpr int kClouds = 3;
+  for (int cloud = 0; cloud < kClouds && least < most; ++cloud) {
     const double before = least;
-    starts = alike_at_reversals(starts.front());
+    starts = cloud_about(starts.front(), numbers, remainder, rows.size());
     price(0);
-    go_on();
+    // A fit that only follows what changed beside it goes on where the cloud has a better drive.
+    if (!is_new && !(least < before - 1.0)) break;
+    starts.resize(std::min<std::size_t>(is_new ? 2 : 1, starts.size()));
+    price(12);
     if (!(least < before - 1.0)) break;
   }
   return starts.front();

@@ -26,7 +26,9 @@ Abreast abreast(std::span<const TableDrive> drives, std::size_t first, double Ta
 }
 
 /// What is beyond a band about zero.
-Abreast beyond(const Abreast& value, const Abreast& band) { return value - value.min(band).max(-band); }
+[[gnu::always_inline]] inline Abreast beyond(const Abreast& value, const Abreast& band) {
+  return value - value.min(band).max(-band);
+}
 
 /// A contact without a spring: the table has the motor's speed where they touch, and slides on from there when the
 /// motor slows down more.
@@ -141,6 +143,12 @@ std::vector<DriveRange> shape_ranges(const TableDrive& drive, double deceleratio
   ranges.push_back({DriveNumber::damping, std::log(0.005), std::log(1.0), 0.03, std::log(0.05), 0.7});
   ranges.push_back({DriveNumber::late, -1.0, 1.0, 0.03, 0.0, 0.3});
   return ranges;
+}
+
+double prior_cost(const TableDrive& drive, const std::vector<DriveRange>& numbers) {
+  double cost = 0.0;
+  for (const DriveRange& one : numbers) cost += std::pow((number_of(drive, one.which) - one.middle) / one.deviation, 2);
+  return cost;
 }
 
 std::vector<DrivenRows> drive_tables(std::span<const TableDrive> drives, const TableRows& rows) {

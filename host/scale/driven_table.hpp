@@ -41,6 +41,9 @@ void set_number(TableDrive& drive, DriveNumber which, double value);
 /// its own friction, mm/s^2; 0 where it is not known.
 std::vector<DriveRange> shape_ranges(const TableDrive& drive, double deceleration);
 
+/// Twice the negative logarithm of how probable these numbers are before the measurement, less its least.
+double prior_cost(const TableDrive& drive, const std::vector<DriveRange>& numbers);
+
 /// Of every row, as means over its samples.
 struct DrivenRows {
   Eigen::VectorXd gap;   ///< the table's travel in the gap less the motor's, over the gap: -1/2 to 1/2

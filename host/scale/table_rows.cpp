@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/evidence/smoothed_motion.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/motion.hpp"
+#include "sim/drive.hpp"
 
 namespace host {
 
@@ -26,18 +28,48 @@ double step_of(const std::vector<double>& values, double mm) {
   return std::isfinite(step) ? step : 0.0;
 }
 
+/// The motor's travel.
+struct MotorTravel {
+  std::vector<double> x;   ///< mm
+  double deviation = 0.0;  ///< mm RMS
+};
+
+/// Between the encoder's counts, and never off them by more than half a count: a contact that is simulated behind a
+/// staircase rings with every count. Where record or model say nothing of the force, the counts themselves.
+MotorTravel travel_between_counts(const Record& record, const sim::DriveDescription& model, double step) {
+  const sim::EffectEntry* inertia = model.find("inertia");
+  const sim::EffectEntry* viscous = model.find("viscous");
+  MotorTravel travel{record.x, step / std::sqrt(12.0)};
+  if (inertia != nullptr && model.data.effort_per_volt() > 0.0 && !(record.u_V.empty() && record.i_A.empty())) {
+    const sim::Drive drive(model);
+    const MotionSmoother smoother(record, model.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"),
+                                  drive.friction[0].coulomb + drive.friction[1].coulomb);
+    const SmoothedMotion& motion = smoother.motion();
+    double variance = 0.0;
+    for (std::size_t k = 0; k < travel.x.size(); ++k) {
+      travel.x[k] = std::clamp(motion.x[k], record.x[k] - 0.5 * step, record.x[k] + 0.5 * step);
+      variance += motion.x_variance[k] / static_cast<double>(travel.x.size());
+    }
+    travel.deviation = std::min(travel.deviation, std::sqrt(variance));
+  }
+  for (double& x : travel.x) x *= mm_of(record);
+  travel.deviation *= mm_of(record);
+  return travel;
+}
+
 /// Mean speed and acceleration of each row from what the motor has at its two ends: as short as the row itself, since
 /// the effort beside them is its mean.
 void differentiate(TableRows& rows, const TableRecord& one) {
+  const std::vector<double>& x = one.pusher;
   const double period_s = one.record->sample_period_s, row_s = period_s * static_cast<double>(one.stride);
-  const std::size_t half = std::max<std::size_t>(1, one.stride / 4), last = one.x.size() - 1;
+  const std::size_t half = std::max<std::size_t>(1, one.stride / 4), last = x.size() - 1;
   const auto speed_at = [&](std::size_t sample) {
     const std::size_t low = sample - std::min(sample, half), high = std::min(sample + half, last);
-    return (one.x[high] - one.x[low]) / (static_cast<double>(high - low) * period_s);
+    return (x[high] - x[low]) / (static_cast<double>(high - low) * period_s);
   };
   for (Index k = 0; k < one.rows; ++k) {
     const std::size_t begin = static_cast<std::size_t>(k) * one.stride, end = std::min(begin + one.stride, last);
-    rows.v(one.first_row + k) = (one.x[end] - one.x[begin]) / (static_cast<double>(end - begin) * period_s);
+    rows.v(one.first_row + k) = (x[end] - x[begin]) / (static_cast<double>(end - begin) * period_s);
     rows.a(one.first_row + k) = (speed_at(end) - speed_at(begin)) / row_s;
   }
 }
@@ -71,11 +103,16 @@ VectorXd TableRows::means(const std::function<std::vector<double>(const TableRec
   return all;
 }
 
+void TableRows::differentiate_pusher() {
+  for (const TableRecord& one : records) differentiate(*this, one);
+}
+
 double rms(const VectorXd& values) {
   return std::sqrt(values.squaredNorm() / std::max<double>(1.0, static_cast<double>(values.size())));
 }
 
-TableRows table_rows(const std::vector<const Record*>& records, const sim::DataSheet& data) {
+TableRows table_rows(const std::vector<const Record*>& records, const sim::DriveDescription& model) {
+  const sim::DataSheet& data = model.data;
   TableRows rows;
   std::size_t samples = 0;
   bool all_have_effort = true, all_have_temperature = true;
@@ -85,16 +122,18 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::DataS
   Index count = 0;
   for (const Record* record : records) {
     if (!record->has_position() || !record->has_table_position() || record->size() < 4 * stride) continue;
-    TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride, {}};
+    TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride, {}, {}};
     const double mm = mm_of(*record);
     for (double& x : one.x) x *= mm;
-    one.pusher = one.x;
+    MotorTravel travel = travel_between_counts(*record, model, encoder_step(*record, data));
+    one.motor = std::move(travel.x);
+    one.pusher = one.motor;
     if (record->u_V.empty() && record->i_A.empty())
       all_have_effort = false;
     else
       one.effort = motor_effort(*record, data);
     all_have_temperature = all_have_temperature && !record->temp_C.empty();
-    const double steps = std::hypot(encoder_step(*record, data) * mm, step_of(record->x2, mm));
+    const double steps = std::hypot(std::sqrt(12.0) * travel.deviation, step_of(record->x2, mm));
     rows.step_um = std::max(rows.step_um, 1e3 * steps);
     rows.runs.push_back({count, count + one.rows});
     count += one.rows;
@@ -110,11 +149,11 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::DataS
     const double mm = mm_of(*one.record);
     std::vector<double> y(one.x.size());
     for (std::size_t k = 0; k < y.size(); ++k)
-      y[k] = 1e3 * (mm * (one.record->x2[k] - one.record->x2[0]) - (one.x[k] - one.x[0]));
+      y[k] = 1e3 * (mm * (one.record->x2[k] - one.record->x2[0]) - (one.motor[k] - one.motor[0]));
     return y;
   });
   rows.v = rows.a = VectorXd::Zero(count);
-  for (const TableRecord& one : rows.records) differentiate(rows, one);
+  rows.differentiate_pusher();
   if (all_have_effort) rows.effort = rows.means([](const TableRecord& one) { return one.effort; });
   if (all_have_temperature) rows.temp_C = rows.means([](const TableRecord& one) { return one.record->temp_C; });
   for (const TableRecord& one : rows.records)

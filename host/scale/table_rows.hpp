@@ -18,6 +18,7 @@ struct TableRecord {
   std::vector<double> effort;      ///< of the motor, Nm or N
   Eigen::Index first_row = 0, rows = 0;
   std::size_t stride = 1;      ///< samples of which one row is the mean
+  std::vector<double> motor;   ///< mm, x between its counts
   std::vector<double> pusher;  ///< mm: where the motor is, without what is known of its encoder's error
 
   /// Means over each row's samples of a value at every sample.
@@ -29,17 +30,19 @@ struct TableRows {
   std::vector<TableRecord> records;
   Eigen::VectorXd y;       ///< x2 - x, um, about the first row of each record
   Eigen::VectorXd x;       ///< mm, of the motor's encoder
-  Eigen::VectorXd v, a;    ///< mm/s, mm/s^2
+  Eigen::VectorXd v, a;    ///< mm/s, mm/s^2, of the pusher
   Eigen::VectorXd t_s;     ///< the record's own clock
   Eigen::VectorXd effort;  ///< Nm or N; empty unless all records have it
   Eigen::VectorXd temp_C;  ///< empty unless all records have it
   Eigen::VectorXd since;   ///< travel since the last reversal, mm
   Eigen::VectorXd way;     ///< direction of the last motion, -1 or 1
   std::vector<RowRun> runs;
-  double step_um = 0.0;   ///< of both sensors together
-  double noise_um = 0.0;  ///< of both sensors' steps in one row
+  double step_um = 0.0;   ///< of both sensors together: the motor's as far as its smoothed travel is in doubt
+  double noise_um = 0.0;  ///< of these steps in one row
 
   Eigen::Index size() const { return y.size(); }
+  /// Speed and acceleration anew, after the pusher has changed.
+  void differentiate_pusher();
   bool has_effort() const { return effort.size() > 0; }
   /// Means over each row's samples of what `of` gives for every sample of a record.
   Eigen::VectorXd means(const std::function<std::vector<double>(const TableRecord&)>& of) const;
@@ -49,6 +52,6 @@ double rms(const Eigen::VectorXd& values);
 
 /// Of those records that have both positions; empty where none has. Throws Failure(bad_input) where the drive's
 /// constants are missing.
-TableRows table_rows(const std::vector<const Record*>& records, const sim::DataSheet& data);
+TableRows table_rows(const std::vector<const Record*>& records, const sim::DriveDescription& model);
 
 }  // namespace host

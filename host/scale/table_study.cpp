@@ -55,24 +55,23 @@ class Search {
   /// All terms fitted together.
   EvidenceFit fit(const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms);
-    return evidence_.fit(columns, deviations);
+    return with_prior(evidence_.fit(columns, deviations), terms);
   }
   EvidenceFit fit_from(const EvidenceFit& before, const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms);
-    return evidence_.fit_from(before, columns, deviations);
+    return with_prior(evidence_.fit_from(before, columns, deviations), terms);
   }
 
   /// Near a fit: its noise and memory are where this one begins.
   EvidenceFit fit_beside(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms);
-    return evidence_.fit(columns, deviations, {.correlation = near.correlation, .sizes = near.sizes});
+    return with_prior(evidence_.fit(columns, deviations, {.colour = near.colour, .sizes = near.sizes}), terms);
   }
 
   /// For intervals: with what changes of the sizes do.
   EvidenceFit fit_slopes(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms, true);
-    return evidence_.fit(columns, deviations,
-                         {.correlation = near.correlation, .sizes = near.sizes, .hold_sizes = true});
+    return evidence_.fit(columns, deviations, {.colour = near.colour, .sizes = near.sizes, .hold_sizes = true});
   }
 
   bool can_show(std::string_view kind) const {
@@ -120,7 +119,7 @@ class Search {
   void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     TableTerm& term = terms.back();
     if (term.is_driven()) {
-      settle_drive(terms, fit.correlation, {term.drive});
+      settle_drive(terms, fit.colour, {term.drive});
       fit = fit_beside(fit, terms);
     } else if (term.kind == "encoder_cyclic_error" || (term.kind == "thermal_growth" && term.shape[0] > 0.0)) {
       const double travel = rows_.x.maxCoeff() - rows_.x.minCoeff();
@@ -139,24 +138,24 @@ class Search {
   }
 
   /// Gives all driven terms the most probable drive beside the others.
-  void settle_drive(std::vector<TableTerm>& terms, double correlation, std::vector<TableDrive> starts) const {
+  void settle_drive(std::vector<TableTerm>& terms, const NoiseColour& colour, std::vector<TableDrive> starts) const {
     std::vector<TableTerm> others = terms;
     std::erase_if(others, [](const TableTerm& term) { return term.is_driven(); });
     const TableDrive drive = fit_drive(std::move(starts), rows_, evidence_, known(others).first,
-                                       std::min(correlation, kMostAlike), deceleration_);
+                                       {.drift = std::min(colour.from_row_to_row(), kMostAlike)}, deceleration_);
     for (TableTerm& term : terms)
       if (term.is_driven()) term.drive = drive;
   }
 
-  /// From all starts: after a gap or a spring came or went.
-  void settle_drive_anew(std::vector<TableTerm>& terms, double correlation) const {
+  /// From all starts: after a gap or a spring came or went. `known`: see drive_starts().
+  void settle_drive_anew(std::vector<TableTerm>& terms, const NoiseColour& colour, const TableDrive* known) const {
     const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
-    if (gap || spring) settle_drive(terms, correlation, drive_starts(gap, spring, rows_, deceleration_));
+    if (gap || spring) settle_drive(terms, colour, drive_starts(gap, spring, rows_, deceleration_, known));
   }
 
   /// Where the motor is, without the errors of its encoder that are among the terms.
   void note_motor(TableRows& rows, const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
-    for (TableRecord& one : rows.records) one.pusher = one.x;
+    for (TableRecord& one : rows.records) one.pusher = one.motor;
     for (std::size_t k = 0; k < terms.size(); ++k) {
       if (terms[k].kind != "encoder_cyclic_error" || place_of(terms[k], rows_, model_) != "motor") continue;
       const VectorXd factors = fit.factors.segment(first_column(terms, k), 2);
@@ -166,8 +165,12 @@ class Search {
           one.pusher[sample] += 1e-3 * (factors(0) * std::cos(at) + factors(1) * std::sin(at));
         }
     }
+    rows.differentiate_pusher();
   }
-  void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) { note_motor(rows_, terms, fit); }
+  void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) {
+    note_motor(rows_, terms, fit);
+    base_ = table_base(rows_);
+  }
 
   /// The column at which a term's own begin.
   Index first_column(const std::vector<TableTerm>& terms, std::size_t which) const {
@@ -181,6 +184,22 @@ class Search {
   double rms_of_last(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
     const MatrixXd own = terms.back().columns(rows_);
     return rms(without(own * fit.factors.tail(own.cols()), base_));
+  }
+
+  /// A gap alone may have been taken for a spring alone, or a spring for a gap, before the other terms were known.
+  /// Exchanges the last term if that is more probable; returns how probable it is.
+  std::optional<double> exchange_driven(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
+    std::vector<TableTerm> other = terms;
+    other.back().kind = terms.back().kind == "backlash" ? "compliance" : "backlash";
+    if (stands_in(model_, other.back().kind)) return {};
+    settle_drive_anew(other, fit.colour, nullptr);
+    EvidenceFit again = fit_from(fit, other);
+    refine(other, again);
+    const double gain = again.log_evidence - fit.log_evidence;
+    if (!(gain > 0.0) || wrong_way(other, again)) return {};
+    terms = std::move(other);
+    fit = std::move(again);
+    return logistic(gain);
   }
 
   bool wrong_way(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
@@ -198,10 +217,19 @@ class Search {
                                     const EvidenceFit& before) const {
     std::vector<TableTerm> all = chosen;
     all.push_back({std::string(kind), {}, {}, deceleration_});
-    settle_drive_anew(all, before.correlation);
-    const EvidenceFit fit = fit_from(before, all);
+    const auto driven = std::ranges::find_if(chosen, &TableTerm::is_driven);
+    settle_drive_anew(all, before.colour, driven == chosen.end() ? nullptr : &driven->drive);
+    EvidenceFit fit = fit_from(before, all);
+    refine(all, fit);
     if (wrong_way(all, fit) || rms_of_last(all, fit) < rows_.step_um / std::sqrt(12.0)) return {};
     return Fitted{all.back(), fit.log_evidence};
+  }
+
+  /// Columns tell how probable a change of the drive is; here is how probable the drive itself is.
+  EvidenceFit with_prior(EvidenceFit fit, const std::vector<TableTerm>& terms) const {
+    if (const auto driven = std::ranges::find_if(terms, &TableTerm::is_driven); driven != terms.end())
+      fit.log_evidence -= 0.5 * prior_cost(driven->drive, shape_ranges(driven->drive, deceleration_));
+    return fit;
   }
 
   std::pair<MatrixXd, VectorXd> known(const std::vector<TableTerm>& terms, bool slopes = false) const {
@@ -282,9 +310,9 @@ std::optional<double> TableStudy::probability(std::string_view kind) const {
 TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& training,
                        const std::vector<const Record*>& validation) {
   TableStudy study;
-  study.train = table_rows(training, model.data);
+  study.train = table_rows(training, model);
   if (study.empty() || !(study.train.way.minCoeff() < study.train.way.maxCoeff())) return {};
-  study.judge = table_rows(validation, model.data);
+  study.judge = table_rows(validation, model);
   const bool other_channels = study.judge.has_effort() != study.train.has_effort();
   if (study.judge.size() == 0 || other_channels) study.judge = study.train;
   if (study.judge.temp_C.size() == 0) study.train.temp_C.resize(0);
@@ -347,6 +375,11 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
       std::rotate(odds.begin(), odds.begin() + 1, odds.end());
       fit = search.fit_from(fit, chosen);
       search.refine(chosen, fit);
+      if (chosen.size() > 1 && chosen.back().is_driven() && std::ranges::count_if(chosen, &TableTerm::is_driven) == 1)
+        if (const std::optional<double> probable_now = search.exchange_driven(chosen, fit)) {
+          groups.back() = {chosen.back().kind};
+          odds.back() = *probable_now;
+        }
       search.note_motor(chosen, fit);
     }
   }
@@ -358,7 +391,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   for (std::size_t k = 0; k < chosen.size();) {
     others_of[k] = chosen;
     others_of[k].erase(others_of[k].begin() + static_cast<std::ptrdiff_t>(k));
-    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.correlation);
+    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.colour, nullptr);
     less_of[k] = search.fit(others_of[k]);
     const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
     const double needed = logistic(fit.log_evidence - less_of[k].log_evidence + prior);

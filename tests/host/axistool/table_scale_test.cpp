@@ -33,7 +33,7 @@ class TableScale : public testing::Test {
   const std::string sheet_ = drive("sheet.toml", scale_);
   const std::string machine_ = drive("machine.toml", scale_ +
                                                          "\n[[effect]]\nkind = \"backlash\"\ngap_mm = 0.04\n"
-                                                         "load_fraction = 0.3\nresonance_Hz = 150\n"
+                                                         "load_fraction = 0.3\nresonance_Hz = 300\n"
                                                          "damping_ratio = 0.1\nload_friction = 0.5\n");
 };
 

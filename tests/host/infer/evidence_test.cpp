@@ -66,11 +66,31 @@ const VectorXd kWide3 = (VectorXd(3) << 10.0, 10.0, 0.3).finished();
 TEST(Evidence, FindsNoiseAndItsCorrelation) {
   const host::EvidenceFit fit =
       evidence_of(line() * Eigen::Vector2d(2.0, 1.0) + autoregressive(0.6, 0.1, 1)).fit(line(), kWide2);
-  EXPECT_NEAR(fit.correlation, 0.6, 0.1);
+  EXPECT_NEAR(fit.colour.from_row_to_row(), 0.6, 0.1);
   // Student's t of 4 degrees has its scale below the deviation of Gaussian noise.
   EXPECT_GT(fit.noise, 0.06);
   EXPECT_LT(fit.noise, 0.11);
   EXPECT_NEAR(fit.factors(0), 2.0, 0.1);
+}
+
+/// A drift of 0.95 a row beside white noise three times its step: one correlation alone cannot have both.
+TEST(NoiseColour, TellsADriftFromTheWhiteNoiseBesideIt) {
+  constexpr Index kMany = 8000;
+  constexpr double kDrift = 0.95, kStep = 0.1, kWhite = 0.3;
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  VectorXd noise(kMany);
+  double drift = 0.0;
+  for (Index k = 0; k < kMany; ++k) {
+    drift = kDrift * drift + kStep * normal(random);
+    noise(k) = drift + kWhite * normal(random);
+  }
+  const host::NoiseColour colour = host::colour_of(noise, VectorXd::Ones(kMany), {{0, kMany}});
+  const double of_drift = kStep * kStep / (1.0 - kDrift * kDrift);
+  EXPECT_NEAR(colour.drift, kDrift, 0.02);
+  EXPECT_NEAR(colour.from_row_to_row(), kDrift * of_drift / (of_drift + kWhite * kWhite), 0.05);
+  const VectorXd left = colour.whiten(noise, {{0, kMany}});
+  EXPECT_NEAR(left.head(kMany - 1).dot(left.tail(kMany - 1)) / left.squaredNorm(), 0.0, 3.0 / std::sqrt(1.0 * kMany));
 }
 
 TEST(Evidence, NoiseThatIsCorrelatedIsNoEffect) {

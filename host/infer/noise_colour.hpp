@@ -1,0 +1,39 @@
+// Noise that remembers itself from row to row, beside noise that does not.
+//
+//   noise = d + r,   d_k = phi d_{k-1} + q_k,   r white
+//
+// is the same as one series of innovations e (C. W. J. Granger, M. J. Morris, "Time series modelling and
+// interpretation", J. R. Statist. Soc. A 139 (1976) 246-257):
+//
+//   noise_k = phi noise_{k-1} + e_k - psi e_{k-1},   0 <= psi <= phi
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace host {
+
+/// Rows [first, end) are consecutive: the noise is correlated through them.
+struct RowRun {
+  Eigen::Index first, end;
+};
+
+struct NoiseColour {
+  double drift = 0.0;  ///< phi: what of the drift is left after a row, 0 to 0.98
+  double white = 0.0;  ///< psi: 0 where nothing is white beside the drift, phi where all is
+
+  /// Correlation of one row with the next.
+  double from_row_to_row() const {
+    return (drift - white) * (1.0 - drift * white) / (1.0 - 2.0 * drift * white + white * white);
+  }
+  /// The innovations' deviation over that of the noise, 0 to 1.
+  double innovation() const;
+
+  /// The innovations of each column along the runs.
+  Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, const std::vector<RowRun>& runs) const;
+};
+
+/// That of the least innovations, by squares with these weights of the rows.
+NoiseColour colour_of(const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const std::vector<RowRun>& runs);
+
+}  // namespace host
