@@ -21,10 +21,15 @@ struct AxisDefects {
   bool motor_reversed = false;         ///< its leads are swapped
   bool dac_stuck = false;              ///< stays at dac_stuck_code
   std::int32_t dac_stuck_code = 0;
-  bool dac_unhealthy = false;         ///< its registers, read back, differ from their setting
-  bool blocked = false;               ///< nothing moves
-  bool drive_faulted = false;         ///< the amplifier gives no current, and reports it
-  bool unready = false;               ///< the amplifier's ready contact or its wire is open
+  bool dac_unhealthy = false;    ///< its registers, read back, differ from their setting
+  bool blocked = false;          ///< nothing moves
+  bool drive_faulted = false;    ///< the amplifier gives no current, and reports it
+  bool unready = false;          ///< the amplifier's ready contact or its wire is open
+  bool ready_stuck = false;      ///< that contact is welded
+  bool enable_open = false;      ///< the amplifier does not see its enable
+  bool enable_stuck = false;     ///< it sees one always; only its power can be cut
+  bool amplifier_stuck = false;  ///< it gives the current of amplifier_stuck_code, without an enable too
+  std::int32_t amplifier_stuck_code = 0;
   bool brake_stuck = false;           ///< it does not release
   std::int32_t amplifier_offset = 0;  ///< codes that it adds to its command while it drives
   bool positive_end_reached = false;
@@ -84,15 +89,18 @@ class FaultyAxis {
     bool write(std::int32_t code) {
       commanded_ = code;
       const AxisDefects& d = axis_.defects;
-      const std::int32_t put_out = (d.dac_stuck ? d.dac_stuck_code : code) + d.amplifier_offset;
-      return axis_.sound_.dac().write(d.motor_reversed ? -put_out : put_out);
+      put_out_ =
+          d.amplifier_stuck ? d.amplifier_stuck_code : (d.dac_stuck ? d.dac_stuck_code : code) + d.amplifier_offset;
+      return axis_.sound_.dac().write(d.motor_reversed ? -put_out_ : put_out_);
     }
     bool is_healthy() const { return !axis_.defects.dac_unhealthy; }
     std::int32_t commanded() const { return commanded_; }
+    /// What the amplifier makes of it, codes.
+    std::int32_t put_out() const { return put_out_; }
 
    private:
     FaultyAxis& axis_;
-    std::int32_t commanded_ = 0;
+    std::int32_t commanded_ = 0, put_out_ = 0;
   };
 
   class Enable {
@@ -103,14 +111,21 @@ class FaultyAxis {
       apply();
     }
     bool is_faulted() { return axis_.defects.drive_faulted; }
-    bool is_ready() const { return drives() && on_for_s_ >= axis_.wiring_.ready_after_s && !axis_.defects.unready; }
+    bool is_ready() const {
+      if (axis_.defects.ready_stuck || axis_.defects.unready) return !axis_.defects.unready;
+      return drives() && on_for_s_ >= axis_.wiring_.ready_after_s;
+    }
     void release_brake(bool released) {
       is_brake_released_ = released;
       apply();
     }
     bool is_on() const { return is_on_; }
     /// The amplifier gives current.
-    bool drives() const { return is_on_ && axis_.is_powered_ && !axis_.defects.drive_faulted; }
+    bool drives() const {
+      const AxisDefects& d = axis_.defects;
+      const bool sees_enable = (is_on_ && !d.enable_open) || d.enable_stuck || d.amplifier_stuck;
+      return sees_enable && axis_.is_powered_ && !d.drive_faulted;
+    }
     /// The stop relay removes the current of the brake as well as the enable.
     void apply() {
       axis_.sound_.drive_enable().set(drives());
@@ -144,6 +159,9 @@ class FaultyAxis {
   Enable& drive_enable() { return enable_; }
   Limits& limits() { return limits_; }
 
+  /// The amplifier drives by its enable, or a current without one acts on the axis.
+  bool is_driven() const { return enable_.drives() && (enable_.is_on() || dac_.put_out() != 0); }
+
   /// The amplifier's supply, or the stop relay's contact in its enable line.
   void set_powered(bool powered) {
     is_powered_ = powered;
@@ -153,7 +171,7 @@ class FaultyAxis {
   /// Advances the machine with the defects that act on it.
   void advance(double duration_s) {
     enable_.apply();
-    if (defects.dac_stuck || defects.amplifier_offset != 0) dac_.write(dac_.commanded());
+    if (defects.dac_stuck || defects.amplifier_stuck || defects.amplifier_offset != 0) dac_.write(dac_.commanded());
     const double x = plant_.truth().x, w = plant_.truth().w;
     plant_.advance(duration_s);
     if (defects.blocked) block(x, w, duration_s);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/device_arguments.hpp"
@@ -26,6 +27,7 @@ struct CommissionArguments : DeviceArguments {
   std::string axis, model, plant, drive, folder, box, home, from, to;
   double bandwidth_Hz = host::CommissionOptions{}.bandwidth_Hz, modulus = host::CommissionOptions{}.modulus;
   std::uint64_t seed = 1;
+  std::optional<double> overtravel;
   bool save = false;
 };
 
@@ -122,6 +124,8 @@ void run(const CommissionArguments& arguments) {
   options.bandwidth_Hz = arguments.bandwidth_Hz;
   options.modulus = arguments.modulus;
   options.save = arguments.save;
+  if (folder.document().contains("overtravel")) options.overtravel = folder.document()["overtravel"];
+  if (arguments.overtravel) options.overtravel = arguments.overtravel;
   std::string box = arguments.box.empty() ? folder.document().value("box", "") : arguments.box;
   if (box.empty() && is_simulated(arguments)) box = usual_box(options.sheet.data.kind);
   if (box.empty())
@@ -131,6 +135,7 @@ void run(const CommissionArguments& arguments) {
   options.homing = homing_of(arguments, options);
   folder.put("axis", arguments.axis);
   folder.put("box", box);
+  if (options.overtravel) folder.put("overtravel", *options.overtravel);
   host::write_model(options.sheet, kept);
   const sim::DriveDescription machine =
       arguments.model.empty() ? options.sheet : host::read_drive(host::machine_file(arguments.model));
@@ -183,6 +188,12 @@ void add_commission(CLI::App& app) {
   command->add_option("--plant", arguments->plant, "program that simulates the machine, in lockstep (axis-plant/1)");
   add_input(*command, "--drive", arguments->drive, "data sheet of the drive (default: that of --sim)");
   command->add_option("--box", arguments->box, "travel=…,speed=…,volts=…,time=…: mm (linear: m), mm/s, V, total s");
+  command
+      ->add_option(
+          "--overtravel", arguments->overtravel,
+          "free beyond the box on each side, up to the hard stops, mm (linear: m); a speed from which the axis "
+          "needs more to stop is refused once the drive is identified")
+      ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--home", arguments->home,
                    "how to home within the box: none, switch, index, both; -switch, -both if the switch is on the "

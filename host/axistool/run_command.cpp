@@ -1,6 +1,5 @@
 // axistool run: a G-code program on a board.
 #include <fmt/format.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,7 +17,9 @@
 #include "host/axistool/device_arguments.hpp"
 #include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/axistool/typed_keys.hpp"
 #include "host/device/motion.hpp"
+#include "host/device/path_override.hpp"
 #include "host/device/path_run.hpp"
 #include "host/gcode/program.hpp"
 #include "host/parameters/parameter_file.hpp"
@@ -156,6 +157,12 @@ class SignalsWait {
   sigset_t signals_{};
 };
 
+/// Of the program, where the path is.
+std::size_t line_at(const host::PlannedPath& path, double elapsed_s) {
+  const auto next = std::ranges::upper_bound(path.curves, elapsed_s, {}, &host::PlannedCurve::time_s);
+  return next == path.curves.begin() ? 0 : (next - 1)->line;
+}
+
 /// One line on a terminal, rewritten.
 class RunLine {
  public:
@@ -169,9 +176,7 @@ class RunLine {
     if (!shows_ || (has_line_ && now - drawn_ < std::chrono::milliseconds(200))) return;
     drawn_ = now;
     has_line_ = true;
-    const auto next = std::ranges::upper_bound(path_.curves, progress.elapsed_s, {}, &host::PlannedCurve::time_s);
-    const std::size_t line = next == path_.curves.begin() ? 0 : (next - 1)->line;
-    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line,
+    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line_at(path_, progress.elapsed_s),
                100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
                progress.state.permille / 10.0,
                progress.waits != nullptr
@@ -188,19 +193,6 @@ class RunLine {
 };
 
 bool has_terminal() { return ::isatty(STDIN_FILENO) != 0; }
-
-/// Whether the operator has pressed Enter since the last call. Never waits.
-bool enter_was_pressed() {
-  bool pressed = false;
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  while (has_terminal() && ::poll(&input, 1, 0) > 0 && (input.revents & POLLIN) != 0) {
-    std::array<char, 64> typed{};
-    const ssize_t count = ::read(STDIN_FILENO, typed.data(), typed.size());
-    if (count <= 0) break;
-    pressed = pressed || std::find(typed.begin(), typed.begin() + count, '\n') != typed.begin() + count;
-  }
-  return pressed;
-}
 
 /// A program that waits for an operator needs one.
 void require_operator(const RunArguments& arguments, const host::PlannedPath& path) {
@@ -223,14 +215,25 @@ void require_startable(host::BoardClient& board, const host::PathScale& scale, b
   }
 }
 
-/// Whether a waiting program continues.
+/// Whether a waiting program continues, and how fast it goes on.
 class Operator {
  public:
   Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
       : board_(board), scale_(scale), relative_(relative), arguments_(arguments) {}
 
-  bool goes_on(const host::PathProgress& progress) {
-    const bool pressed = enter_was_pressed();  // also drops what was typed before the stop
+  host::PathWish wish(const host::PathProgress& progress, const Planned& planned) {
+    const std::string typed = keys_.take();  // also what was typed before a stop
+    for (const char key : typed) override_.press(key);
+    const bool is_rapid =
+        std::ranges::binary_search(planned.program.rapid_lines, line_at(planned.path, progress.elapsed_s));
+    return {.held = held,
+            .stop = interrupted(),
+            .permille = override_.permille(is_rapid),
+            .resume = goes_on(progress, typed.find('\n') != std::string::npos)};
+  }
+
+ private:
+  bool goes_on(const host::PathProgress& progress, bool pressed) {
     if (progress.waits != announced_ && progress.waits != nullptr)
       fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
                  arguments_.passes_stops ? ", and continues at once" : "; Enter continues, Ctrl-C ends it");
@@ -241,7 +244,8 @@ class Operator {
     return true;
   }
 
- private:
+  TypedKeys keys_;
+  host::PathOverride override_;
   host::BoardClient& board_;
   const host::PathScale& scale_;
   bool relative_;
@@ -330,8 +334,7 @@ void run(const RunArguments& arguments) {
     outcome = host::run_path(board, planned.path, machine, relative, true, [&](const host::PathProgress& progress) {
       signals.let_in();
       line.draw(progress, held);
-      const bool goes_on = at_machine.goes_on(progress);
-      return host::PathWish{held, interrupted(), 1000, goes_on};
+      return at_machine.wish(progress, planned);
     });
   }
   if (!was_enabled) host::disable_and_wait(board, mask);
@@ -382,8 +385,11 @@ void add_run(CLI::App& app) {
       "comments;\n"
       "anything else is an error that names the line. The path is exact (G61) unless the program says G64; G64\n"
       "without P has a tolerance of 0.05 mm. On a terminal Ctrl-Z holds and resumes the feed, Ctrl-C stops on the "
-      "path, and\n"
-      "M0 and M1 wait for Enter.");
+      "path,\n"
+      "M0 and M1 wait for Enter, - and + override the feeds while it runs, and < and > the rapids: in steps of 10 %, "
+      "up "
+      "to\n"
+      "what was planned (--feed, --rapid).");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -2,17 +2,38 @@
 #include <fmt/format.h>
 
 #include "host/commission/steps.hpp"
+#include "host/commission/stopping_room.hpp"
 #include "host/model/model_file.hpp"
+#include "host/record/drive_units.hpp"
 
 namespace host {
+
+namespace {
+
+/// As the axis would stop with these parameters. A brake's effort is unknown.
+StoppingFigures figures_of(const CommissionSession& session, const sim::DriveDescription& model,
+                           const firmware::AxisValues& values) {
+  const ReferenceLimits limits = session.limits();
+  StoppingFigures axis = stopping_figures(model, session.options().box.speed, limits.acceleration, limits.jerk);
+  axis.brake = values.get<"brake.fitted">();
+  axis.brake_time_s = static_cast<double>(values.get<"brake.apply_time">());
+  return axis;
+}
+
+}  // namespace
 
 CommissionStepResult control_first(CommissionSession& session) {
   const sim::DriveDescription model = read_model(session.folder().require("identified.toml", "identify"));
   session.plan_limits(model);
-  session.download(session.design(model, session.first_loop(model), "first-params.toml"));
+  const firmware::ParameterValues values = session.design(model, session.first_loop(model), "first-params.toml");
+  const CommissionOptions& options = session.options();
+  const StoppingFigures axis = figures_of(session, model, values.axis(options.axis));
+  const std::string stops =
+      check_stopping_room(axis, options.box.speed, options.overtravel, units_of(model.data.kind).travel);
+  session.download(values);
   return {{"first-params.toml"},
-          fmt::format("Poles at {:.3g} Hz; the parameters are on the board but not saved.",
-                      session.first_options().bandwidth_Hz)};
+          fmt::format("Poles at {:.3g} Hz; the parameters are on the board but not saved. {}",
+                      session.first_options().bandwidth_Hz, stops)};
 }
 
 }  // namespace host

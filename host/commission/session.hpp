@@ -37,6 +37,7 @@ struct CommissionOptions {
   double bandwidth_Hz = 20.0;  ///< of the closed loop: below the paper's 30 Hz, since nothing is known of delays yet
   double modulus = 0.5;        ///< margin up to which the measured response lets the bandwidth rise
   std::optional<CommissionHoming> homing = {};  ///< empty: the board's own homing.mode
+  std::optional<double> overtravel = {};        ///< free beyond the box up to the hard stops, mm (m); empty: unknown
   bool save = false;                            ///< the better set, in the board's flash
 };
 
@@ -135,6 +136,7 @@ class CommissionSession {
   ExcitationScale scale(const firmware::ParameterValues& values) const;
   /// Counts the time since `begin` as motion.
   void spend(std::chrono::steady_clock::time_point begin);
+  ReferenceLimits limits() const;
   /// Highest speeds of motions in this box, mm/s (m/s): held for a second; reached briefly.
   double steady_speed() const;
   double top_speed() const;
@@ -143,7 +145,6 @@ class CommissionSession {
   std::int64_t counts();
   void enable();
   void go_back();
-  ReferenceLimits limits() const;
   std::vector<CompensationParameter> homing_parameters() const;
   Record keep(const ExcitationOutcome& outcome, const std::map<std::string, std::string>& header,
               const std::string& file);

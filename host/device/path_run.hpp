@@ -26,7 +26,7 @@ PathBoard path_board(const firmware::ParameterValues& values, std::size_t axes, 
 struct PathWish {
   bool held = false;  ///< feed hold
   bool stop = false;
-  int permille = 1000;  ///< of the feeds
+  int permille = 1000;  ///< of the speed that was planned
   bool resume = false;  ///< goes on where the program waits for its operator
 };
 

@@ -116,7 +116,9 @@ void require_ok(const Message& reply, const std::string& others) {
                   "the axis is not in a state that allows this: `axistool info` shows it; enable it first, and let it "
                   "come to rest");
     case Status::not_standing:
-      give_up(ExitCode::refused, refusing_axis(reply) + "it moves: wait until it is at rest, then enable it");
+      give_up(ExitCode::refused,
+              refusing_axis(reply) +
+                  "it moves, or its amplifier still reports ready: wait until it is at rest, then enable it");
     case Status::outside_travel:
       throw_outside_travel(reply);
     case Status::not_fitted:

@@ -254,6 +254,8 @@ class Reader {
     move.feed_mm_s = is_rapid ? rapid_mm_s(curve) : feed_mm_s_ * machine_.feed_share;
     move.tolerance_mm = tolerance_mm_;
     move.line = line_;
+    if (is_rapid && (program_.rapid_lines.empty() || program_.rapid_lines.back() != line_))
+      program_.rapid_lines.push_back(line_);
     append(move, curve.length() / move.feed_mm_s);
   }
 

@@ -22,8 +22,9 @@ struct GcodeMachine {
 
 struct GcodeProgram {
   std::vector<PathMove> moves;
-  std::size_t lines = 0;     ///< of the text
-  bool is_absolute = false;  ///< it names a position other than by steps from where it began
+  std::vector<std::size_t> rapid_lines;  ///< ascending; a line moves by rapids or by feeds, never by both
+  std::size_t lines = 0;                 ///< of the text
+  bool is_absolute = false;              ///< it names a position other than by steps from where it began
 };
 
 /// G0 G1 G2 G3 (centre by I J, or R; X Y Z) G4 P G17 G20 G21 G28 G54 G61 G64 [P] G90 G91 F M0 M1 M2 M30 N, comments in

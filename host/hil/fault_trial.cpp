@@ -102,15 +102,23 @@ class Trial {
 
   struct Stop {
     double begin_mm = 0.0, speed_mm_s = 0.0, acceleration_mm_s2 = 0.0, drop_speed_mm_s = 0.0, way_mm = 0.0;
-    double top_speed_mm_s = 0.0;
+    double top_speed_mm_s = 0.0, low_speed_mm_s = 0.0;
+    double gained_from_mm_s = 0.0, gained_to_mm_s = 0.0;  ///< where it gained most
     bool drives = false;
+    std::uint64_t begin = 0;  ///< sample
+    int driven_off = 0;       ///< samples for which the axis was driven although its enable was off
   };
 
   double speed_mm_s(std::size_t axis) const {
     return std::abs(machine_.plant(axis).truth().w) * axes_[axis].drive.data.lead;
   }
 
-  /// By the true drive and brake, from the highest speed since the fault.
+  /// By the reference's own acceleration.
+  static double usual_gain_mm_s(const Stop& stop) {
+    return stop.acceleration_mm_s2 * stop.acceleration_mm_s2 / (2.0 * ReferenceLimits{}.jerk);
+  }
+
+  /// By the true drive and brake, along the ramp; and once more from the speed that a second fault has given it.
   StoppingWay by_formula(std::size_t axis) const {
     const Stop& stop = stops_[axis];
     StoppingFigures figures = stopping_figures(axes_[axis].drive, std::max(stop.top_speed_mm_s, 1.0),
@@ -118,18 +126,24 @@ class Trial {
     figures.brake = trial_.start.brake;
     figures.brake_time_s = 1e-3 * kTrialBrake_ms;
     figures.brake_effort = kBrake_Nm;
-    return broken_ramp_way(figures, stop.speed_mm_s, stop.top_speed_mm_s, stop.drop_speed_mm_s,
-                           stop.acceleration_mm_s2);
+    if (stop.gained_to_mm_s - stop.gained_from_mm_s <= usual_gain_mm_s(stop))
+      return broken_ramp_way(figures, stop.speed_mm_s, stop.top_speed_mm_s, stop.drop_speed_mm_s,
+                             stop.acceleration_mm_s2);
+    const double from_mm_s = stop.gained_from_mm_s, to_mm_s = stop.gained_to_mm_s;
+    const StoppingWay before =
+        broken_ramp_way(figures, stop.speed_mm_s, stop.speed_mm_s, from_mm_s, stop.acceleration_mm_s2);
+    const StoppingWay without = from_mm_s > 0.0 ? drop_way(figures, from_mm_s) : StoppingWay{};
+    const StoppingWay after = broken_ramp_way(figures, to_mm_s, to_mm_s, stop.drop_speed_mm_s, 0.0);
+    return {before.travel - without.travel + after.travel, before.time_s - without.time_s + after.time_s};
   }
 
-  /// Time for which the whole command and the weight would have to act to give the axis its highest speed.
+  /// Time for which the whole command and the weight would have to act to make the axis as fast as it was at most.
   double gain_s(std::size_t axis) const {
     const Stop& stop = stops_[axis];
     const sim::DriveDescription& drive = axes_[axis].drive;
     const double effort = drive.data.dac_limit_V * drive.data.effort_per_volt() + std::abs(trial_.weight_Nm);
-    const double usual =
-        stop.speed_mm_s + stop.acceleration_mm_s2 * stop.acceleration_mm_s2 / (2.0 * ReferenceLimits{}.jerk);
-    return std::max(0.0, stop.top_speed_mm_s - usual) * drive.effects.front().at("J") / (effort * drive.data.lead);
+    const double gained_mm_s = std::max(0.0, stop.top_speed_mm_s - stop.speed_mm_s - usual_gain_mm_s(stop));
+    return gained_mm_s * drive.effects.front().at("J") / (effort * drive.data.lead);
   }
 
   void apply(const TrialInjection& what) { what.injection->apply(machine_, what.axis, what.value); }
@@ -168,6 +182,9 @@ class Trial {
   void enable() {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) axes()[i].enable();
   }
+  void disable() {
+    for (std::size_t i = 0; i < hal::kAxisCount; ++i) axes()[i].disable();
+  }
   void jog(double sense) {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i)
       axes()[i].jog(static_cast<float>((i == 0 ? sense : -sense) * trial_.speed_mm_s));
@@ -185,6 +202,7 @@ class Trial {
     if (trial_.motion == TrialMotion::starting && !all_enabled() && k < kPatience) return;
     if (path_runs || (trial_.motion == TrialMotion::move && k < kPatience)) return;
     if (trial_.motion == TrialMotion::stopping && k < kPatience / 2) return;
+    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // what only shows at a drop
     enable();
     if (k % stretch() == 100) jog(k / stretch() % 2 == 0 ? 1.0 : -1.0);
   }
@@ -211,20 +229,41 @@ class Trial {
                      .speed_mm_s = speed_mm_s(j),
                      .acceleration_mm_s2 = std::clamp(gained, 0.0, trial_.acceleration_mm_s2),
                      .top_speed_mm_s = speed_mm_s(j),
-                     .drives = true};
+                     .low_speed_mm_s = speed_mm_s(j),
+                     .drives = true,
+                     .begin = machine_.samples()};
       }
     }
     if (fault_seen_) follow_stop();
   }
 
+  /// Of an amplifier that drives without its enable only the time can be stated. Its axis coasts from where its power
+  /// is cut.
   void follow_stop() {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const double x = machine_.plant(i).truth().x;
       whole_way_mm_ = std::max(whole_way_mm_, std::abs(x - injected_at_mm_[i]));
       Stop& stop = stops_[i];
+      if (machine_.wires(i).is_driven() && !machine_.wires(i).drive_enable().is_on()) {
+        stop = {.begin_mm = x,
+                .speed_mm_s = speed_mm_s(i),
+                .drop_speed_mm_s = speed_mm_s(i),
+                .top_speed_mm_s = speed_mm_s(i),
+                .low_speed_mm_s = speed_mm_s(i),
+                .begin = machine_.samples(),
+                .driven_off = stop.driven_off + 1};
+        continue;
+      }
       stop.way_mm = std::max(stop.way_mm, std::abs(x - stop.begin_mm));
-      if (stop.drives) stop.top_speed_mm_s = std::max(stop.top_speed_mm_s, speed_mm_s(i));
-      if (stop.drives && !machine_.wires(i).drive_enable().drives()) {
+      if (stop.drives) {
+        stop.top_speed_mm_s = std::max(stop.top_speed_mm_s, speed_mm_s(i));
+        stop.low_speed_mm_s = std::min(stop.low_speed_mm_s, speed_mm_s(i));
+        if (speed_mm_s(i) - stop.low_speed_mm_s > stop.gained_to_mm_s - stop.gained_from_mm_s) {
+          stop.gained_from_mm_s = stop.low_speed_mm_s;
+          stop.gained_to_mm_s = speed_mm_s(i);
+        }
+      }
+      if (stop.drives && !machine_.wires(i).is_driven()) {
         stop.drives = false;
         stop.drop_speed_mm_s = speed_mm_s(i);
       }
@@ -259,13 +298,14 @@ class Trial {
     result.reaction_s = static_cast<double>(*fault_seen_ - *injected_at_) * period_s;
     result.stop_s = static_cast<double>(machine_.samples() - *fault_seen_) * period_s;
     result.whole_way_mm = whole_way_mm_;
-    double stated_s = 0.0;
+    double stated_s = 0.0;  ///< when the last axis stands, since the fault
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const StoppingWay stated = by_formula(i);
-      stated_s = std::max(stated_s, stated.time_s);
+      stated_s = std::max(stated_s, static_cast<double>(stops_[i].begin - *fault_seen_) * period_s + stated.time_s);
       result.distance_mm = std::max(result.distance_mm, stops_[i].way_mm);
       result.beyond_mm = std::max(result.beyond_mm, stops_[i].way_mm - stated.travel);
       result.gain_s = std::max(result.gain_s, gain_s(i));
+      result.driven_off_s = std::max(result.driven_off_s, stops_[i].driven_off * period_s);
       result.speed_mm_s = std::max(result.speed_mm_s, stops_[i].speed_mm_s);
     }
     result.beyond_s = std::max(0.0, result.stop_s - stated_s);

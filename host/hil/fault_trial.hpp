@@ -56,8 +56,9 @@ struct TrialOutcome {
   /// found, its highest speed after that, and its speed when the amplifier stopped driving.
   double beyond_mm = 0.0;
   double beyond_s = 0.0;
-  double gain_s = 0.0;      ///< for which the whole command would have to act to give an axis that highest speed
+  double gain_s = 0.0;      ///< for which the whole command would have to act to make an axis as fast as it was at most
   double speed_mm_s = 0.0;  ///< of the faster axis when the fault was found
+  double driven_off_s = 0.0;  ///< for which an amplifier drove without its enable until its power was cut
   /// The fault names the cause: the first injection, or the second if it came before the first was found.
   bool is_named = false;
   bool is_safe = false;  ///< both axes are at rest, D/A at 0 V, enables dropped
@@ -70,10 +71,15 @@ struct TrialOutcome {
 TrialOutcome run_trial(const FaultTrial& trial);
 
 /// Most that any trial needs beyond the formula: until a monitor finds that an axis does not follow its ramp, and until
-/// it is found to be at rest. Until then a second fault may speed it up.
+/// it is found to be at rest.
 inline constexpr double kStatedExtra_mm = 20.0;
 inline constexpr double kStatedExtra_s = 0.4;
-inline constexpr double kStatedGain_s = 0.015;
+/// For which a tachometer with its leads interchanged can hide the whole command: the filter over the difference of the
+/// sensors (16 samples), and until they differ by monitor.disagreement (10 rad/s, twice 0.8 rad/s more each sample).
+inline constexpr double kStatedGain_s = 0.022;
+/// Most until the power of an amplifier is cut that drives without its enable (DropWatch::kTime_s), beyond the time
+/// until it says so.
+inline constexpr double kStatedCut_s = 0.11;
 
 /// Every injection at its usual value in every motion; the documentation's table.
 std::string fault_page();

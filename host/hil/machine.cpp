@@ -47,7 +47,8 @@ Machine::Machine(const std::array<MachineAxis, hal::kAxisCount>& axes, std::uint
 
 firmware::BoardInputs Machine::inputs() {
   if (!defects.host_silent) axes_.board().host_heard();
-  for (auto& wires : wires_) wires->set_powered(!defects.emergency_stop && !defects.power_lost);
+  const bool is_powered = !defects.emergency_stop && !defects.power_lost && axes_.may_have_power();
+  for (auto& wires : wires_) wires->set_powered(is_powered);
   return {clock_.now_us(), defects.emergency_stop, defects.power_lost, defects.store_damaged};
 }
 

@@ -147,10 +147,12 @@ TEST_F(Sequence, AFaultThatDropsTheEnableAppliesTheBrakeInTheSamePeriod) {
 TEST_F(Sequence, AnAmplifierThatStaysReadyAfterTheDropHasItsPowerCut) {
   DrivenAxis axis(parameters(true, false));
   run_until_enabled(axis);
+  lines(axis).ready_stuck = true;
   ASSERT_TRUE(axis.axis.disable());
   run(axis, 60);
   ASSERT_FALSE(lines(axis).on);
   EXPECT_FALSE(axis.axis.must_cut_power()) << "a contact takes a while";
+  EXPECT_FALSE(axis.axis.may_be_enabled()) << "the contact cannot tell when the amplifier drives";
   run(axis, 100);
   EXPECT_EQ(axis.axis.fault(), AxisFault::drive_not_off);
   EXPECT_TRUE(axis.axis.must_cut_power());
@@ -162,11 +164,28 @@ TEST_F(Sequence, AnAmplifierThatOpensItsContactInTimeIsBelieved) {
   DrivenAxis axis(parameters(true, false));
   run_until_enabled(axis);
   ASSERT_TRUE(axis.axis.disable());
+  int closed = 0;
   for (int k = 0; k < 300; ++k) {
     run(axis, 1);
-    lines(axis).ready = lines(axis).on;
+    lines(axis).ready_stuck = !lines(axis).on && ++closed < 90;
   }
   EXPECT_EQ(axis.axis.state(), SupervisorState::ready);
+  EXPECT_TRUE(axis.axis.may_be_enabled());
+}
+
+TEST_F(Sequence, AnAmplifierThatIsReadyWithoutAnEnableOrDrivesTheAxisHasItsPowerCut) {
+  for (const bool by_contact : {true, false}) {
+    DrivenAxis axis(parameters(by_contact, false));
+    run_until_enabled(axis);
+    ASSERT_TRUE(axis.axis.disable());
+    run(axis, 1000);
+    ASSERT_EQ(axis.axis.state(), SupervisorState::ready);
+    lines(axis).ready_stuck = by_contact;
+    axis.stuck_V = by_contact ? 0.0 : 3.0;
+    for (int k = 0; k < 5000 && axis.axis.state() == SupervisorState::ready; ++k) run(axis, 1);
+    EXPECT_EQ(axis.axis.fault(), AxisFault::drive_not_off) << by_contact;
+    EXPECT_TRUE(axis.axis.must_cut_power());
+  }
 }
 
 /// A welded enable with a converter that is stuck.
@@ -178,6 +197,57 @@ TEST_F(Sequence, AnAxisThatGainsSpeedAfterTheDropHasItsPowerCut) {
   run(axis, 60);
   EXPECT_EQ(axis.axis.fault(), AxisFault::drive_fault);
   EXPECT_TRUE(axis.axis.must_cut_power());
+}
+
+/// The watch alone, at 1 kHz; speeds in multiples of what it lets an axis gain.
+class DropWatch : public testing::Test {
+ protected:
+  explicit DropWatch(int brake = 0) {
+    auto p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
+    p.sequence = {.brake_fitted = brake > 0, .brake_application = brake};
+    limits_ = p.monitors;
+    gain_ = 2.0f * limits_.disagreement_floor;
+    over_ = limits_.overspeed / gain_;
+    watch_.configure(p);
+    watch_.begin();
+  }
+  /// Whether it finds the axis driven within so many samples.
+  template <typename Speed>
+  bool finds(int samples, Speed speed) {
+    bool found = false;
+    for (int k = 0; k < samples; ++k) found = watch_.is_driven(limits_, false, gain_ * speed(k)) || found;
+    return found;
+  }
+  firmware::MonitorLimits<float> limits_;
+  float gain_ = 0.0f, over_ = 0.0f;
+  firmware::DropWatch<float> watch_;
+};
+class DropWatchWithBrake : public DropWatch {
+ protected:
+  DropWatchWithBrake() : DropWatch(50) {}
+};
+
+TEST_F(DropWatch, NoiseOnTheEncoderIsNoMotion) {
+  EXPECT_FALSE(finds(500, [](int k) { return k < 20 ? 0.0f : k % 2 == 0 ? 1.9f : -1.9f; }));
+}
+
+TEST_F(DropWatch, AnAxisThatCoastsIsNotDrivenAndOneThatGainsIs) {
+  EXPECT_FALSE(finds(90, [](int k) { return 3.0f - 0.01f * static_cast<float>(k); }));
+  watch_.begin();
+  EXPECT_FALSE(finds(20, [](int k) { return 1.0f + 0.04f * static_cast<float>(k); }));
+  EXPECT_TRUE(finds(20, [](int k) { return 1.8f + 0.04f * static_cast<float>(k); }));
+}
+
+TEST_F(DropWatch, AnAxisMovedByHandIsNotDrivenAndOneBeyondItsLimitIs) {
+  finds(200, [](int) { return 0.0f; });
+  EXPECT_FALSE(finds(200, [this](int) { return 0.9f * over_; }));
+  EXPECT_TRUE(finds(100, [this](int) { return -1.1f * over_; }));
+}
+
+TEST_F(DropWatchWithBrake, AnAxisMayFallUntilItHolds) {
+  EXPECT_FALSE(finds(140, [](int k) { return k < 45 ? 0.05f * static_cast<float>(k) : 2.0f; }));
+  watch_.begin();
+  EXPECT_TRUE(finds(140, [](int k) { return 0.05f * static_cast<float>(k); }));
 }
 
 TEST_F(Sequence, AnAmplifierThatIsReadyNoLongerIsAFault) {

@@ -1,6 +1,7 @@
 // A sensor fails in motion: the axis slows down with the remaining one.
 #include "firmware/core/supervision/sensor_stop.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/firmware/driven_axis.hpp"
@@ -145,6 +146,45 @@ TEST_F(SensorStop, AStopWhoseSensorFailsTooDropsTheEnable) {
     if (k > 30) a.io.encoder().reading.valid = false;
   });
   EXPECT_NEAR(found.longest_s, 0.031, 0.002);
+}
+
+/// A slow stop with a tachometer of a wrong offset, and then the encoder's wires are cut: the reference goes on, and
+/// what is added to the command would drive the axis unseen.
+TEST_F(SensorStop, AStopWhoseEncoderFallsSilentIsLetGoBeforeTheAxisGainsSpeed) {
+  for (const int silent_at : {220, 233, 250}) {
+    auto p = parameters();
+    p.acceleration_limit = 200.0f;
+    p.monitors.disagreement_floor = 26.0f;  // a slower stop than that counts as one that obeys
+    DrivenAxis axis(p);
+    std::uint32_t at = 0;
+    double before_mm = 0.0, fastest_mm_s = 0.0;
+    stop(axis, 75.0f, [&](DrivenAxis& a, int k) {
+      a.io.tachometer().reading.code += 64 * 76;
+      if (k <= silent_at) at = a.io.encoder().reading.counts;
+      if (k > silent_at) fastest_mm_s = std::max(fastest_mm_s, std::abs(a.at_mm() - before_mm) * 1e3);
+      before_mm = a.at_mm();
+      a.io.encoder().reading.counts = at;
+    });
+    EXPECT_LT(fastest_mm_s, 40.0) << silent_at << ": from 25 to 31 mm/s; 60 if nobody lets go";
+  }
+}
+
+/// The same with the encoder's counts lost, and then a dead tachometer.
+TEST_F(SensorStop, AStopWhoseTachometerFallsSilentIsLetGoBeforeTheAxisGainsSpeed) {
+  for (const int silent_at : {220, 233, 250}) {
+    auto p = parameters();
+    p.acceleration_limit = 200.0f;
+    p.monitors.disagreement_floor = 26.0f;
+    DrivenAxis axis(p);
+    double before_mm = 0.0, fastest_mm_s = 0.0;
+    stop(axis, 75.0f, [&](DrivenAxis& a, int k) {
+      a.io.encoder().reading.counts += 300;
+      if (k > silent_at) a.io.tachometer().reading.code = 0;
+      if (k > silent_at) fastest_mm_s = std::max(fastest_mm_s, std::abs(a.at_mm() - before_mm) * 1e3);
+      before_mm = a.at_mm();
+    });
+    EXPECT_LT(fastest_mm_s, 40.0) << silent_at;
+  }
 }
 
 /// Whoever drives the motor, it is not the command.

@@ -90,7 +90,7 @@ enum class Status : std::uint8_t {
   others_motion = 16,  ///< another client moves the axes: wait, stop them, or take over
   restarting = 17,
   outside_travel = 18,  ///< a move or a jog beyond a limit of travel; RefusedValuePayload says which limit
-  not_standing = 19,    ///< an axis that is to be enabled moves
+  not_standing = 19,    ///< an axis that is to be enabled moves, or its amplifier still reports ready
   not_homed = 20,       ///< a move to a position, of an axis that does not know where it is
   homing_mode = 21,     ///< homing.mode finds home by itself, and was told; or is told, and was to find
   others_capture = 22,  ///< another client's capture runs: wait for its end, or stop it

@@ -40,7 +40,7 @@ constexpr std::size_t path_node_size(std::size_t axes) { return 4 + 12 * axes; }
 static_assert(path_node_size(hal::kMostAxes) <= kPayloadSize);
 
 struct PathRateRequest {
-  std::uint16_t permille = 1000;  ///< of the feeds that were planned, up to 1000
+  std::uint16_t permille = 1000;  ///< of the speed that was planned, up to 1000
   std::uint8_t held = 0;          ///< 1: feed hold
   std::uint8_t reserved = 0;
 };

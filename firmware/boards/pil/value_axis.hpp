@@ -34,11 +34,12 @@ class ValueAxis {
   struct Enable {
     bool on = false;
     bool faulted = false;
-    bool ready = true;
+    bool ready = true;         ///< while enabled
+    bool ready_stuck = false;  ///< then without an enable too
     bool brake_released = false;
     void set(bool value) { on = value; }
     bool is_faulted() const { return faulted; }
-    bool is_ready() const { return ready; }
+    bool is_ready() const { return ready && (on || ready_stuck); }
     void release_brake(bool released) { brake_released = released; }
   };
   struct Limits {

@@ -82,11 +82,11 @@ class AxisMonitors {
   /// From now on positions are counted from another origin.
   constexpr void forget_travel() { travel_.restart(); }
 
-  /// Smaller of the two sensors' speeds, as a magnitude: what both show is not a fault of one sensor.
+  /// Of the two sensors' speeds the smaller: what both show is not a fault of one sensor.
   constexpr Scalar slowest(const AxisTelemetry<Scalar>& seen) const {
-    const Scalar encoder = magnitude(Traits::times(seen.encoder_travel, velocity_per_count_));
-    const Scalar tachometer = magnitude(seen.tachometer_velocity);
-    return tachometer_fitted_ && tachometer < encoder ? tachometer : encoder;
+    const Scalar encoder = Traits::times(seen.encoder_travel, velocity_per_count_);
+    const bool is_slower = tachometer_fitted_ && magnitude(seen.tachometer_velocity) < magnitude(encoder);
+    return is_slower ? seen.tachometer_velocity : encoder;
   }
 
   /// With the loop open there is no reference to follow and no control signal to check.

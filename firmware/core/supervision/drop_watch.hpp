@@ -8,8 +8,8 @@
 namespace firmware {
 
 /// Otherwise the amplifier drives on: its enable is welded or wired past the board, and only its power can be cut. A
-/// ready contact has kTime_s to open. The speed is looked at for as long, once a brake has had its time to hold: until
-/// then an axis under weight falls.
+/// ready contact has kTime_s to open, and stays open. The speed may not grow for as long, once a brake has had its time
+/// to hold (until then an axis under weight falls), and never exceed the limit of an axis that is driven.
 template <typename Scalar>
 class DropWatch {
  public:
@@ -19,33 +19,33 @@ class DropWatch {
     const Scalar share = p.monitors.load_share * Scalar(kLoadTime_s / kTime_s);
     while_samples_ = 1;
     for (Scalar sum = share; sum < Scalar(1) && while_samples_ < kMostSamples; sum = sum + share) ++while_samples_;
-    ready_input_ = p.sequence.ready_input;
     brake_samples_ = p.sequence.brake_fitted ? p.sequence.brake_application : 0;
-    gain_ = p.monitors.disagreement_floor * Scalar(2);
-    left_ = gaining_ = 0;
+    velocity_ = Scalar(0);
+    left_ = ready_samples_ = 0;
   }
 
+  /// The enable drops.
   constexpr void begin() { left_ = brake_samples_ + while_samples_; }
-  constexpr void end() { left_ = 0; }
-  constexpr bool is_active() const { return left_ > 0; }
 
-  /// Each sample while active: whether the drive is still on. `speed`: magnitude, by the slower sensor.
-  constexpr bool is_on(bool says_ready, Scalar speed) {
-    --left_;
-    if (left_ >= while_samples_) return false;
-    if (left_ == while_samples_ - 1) speed_ = speed;
-    gaining_ = speed > speed_ + gain_ ? gaining_ + 1 : 0;
-    if (gaining_ >= kGainingSamples) return true;
-    return left_ == 0 && ready_input_ && says_ready;
+  /// Each sample without an enable. `velocity`: of the slower sensor. It may gain twice what sensors may differ by.
+  constexpr bool is_driven(const MonitorLimits<Scalar>& limits, bool says_ready, Scalar velocity) {
+    if (left_ == brake_samples_ + while_samples_) velocity_ = velocity;
+    velocity_ = velocity_ + (velocity - velocity_) * Scalar(1.0f / kFilterSamples);
+    const Scalar speed = ScalarTraits<Scalar>::magnitude(velocity_);
+    if (left_ > 0) --left_;
+    if (left_ >= while_samples_ - kFilterSamples) most_ = speed + limits.disagreement_floor * Scalar(2);
+    if (ready_samples_ <= while_samples_) ++ready_samples_;
+    if (!says_ready) ready_samples_ = 0;
+    return ready_samples_ > while_samples_ ||
+           speed > (left_ > 0 && most_ < limits.overspeed ? most_ : limits.overspeed);
   }
 
  private:
-  static constexpr std::int32_t kGainingSamples = 5;  ///< no single bad reading
+  static constexpr std::int32_t kFilterSamples = 8;   ///< noise on the encoder is no motion
   static constexpr std::int32_t kMostSamples = 4000;  ///< of kTime_s at 20 kHz, twice
 
-  Scalar gain_{}, speed_{};
-  std::int32_t while_samples_ = 1, brake_samples_ = 0, left_ = 0, gaining_ = 0;
-  bool ready_input_ = false;
+  Scalar velocity_{}, most_{};
+  std::int32_t while_samples_ = 1, brake_samples_ = 0, left_ = 0, ready_samples_ = 0;
 };
 
 }  // namespace firmware

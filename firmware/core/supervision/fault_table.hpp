@@ -124,8 +124,8 @@ inline constexpr std::array kOthers = std::to_array<FaultInfo>({
      .reaction = FaultReaction::drop_enable},
     {.fault = AxisFault::drive_not_off,
      .name = "drive_not_off",
-     .cause = "after the enable dropped, the amplifier still reports ready, or the axis accelerates: the enable's wire "
-              "is shorted or its relay welded, or a weight is not held",
+     .cause = "without an enable the amplifier reports ready, or the axis accelerates: the enable's wire is shorted or "
+              "its relay welded, the ready contact is, or a weight is not held",
      .remedy = "cut the amplifier's power; check the enable's wiring, the ready contact and the brake",
      .reaction = FaultReaction::drop_enable},
     {.fault = AxisFault::moved_while_starting,

@@ -180,8 +180,8 @@ struct CommandEffect {
       {.fault = AxisFault::command_without_motion,
        .name = "command_without_motion",
        .cause = "the encoder shows no motion although the command should have moved the axis: a dead encoder, a "
-                "blocked axis, a brake that holds, a motor with no or wrong current, or a tachometer that reads a "
-                "motion which is none",
+                "blocked axis, a brake that holds, a motor with no or wrong current, or a tachometer that reads "
+                "wrong",
        .remedy = "turn the shaft by hand and watch the position; free the axis; check the motor's leads and the "
                  "encoder's coupling",
        .reaction = FaultReaction::drop_enable,

@@ -19,8 +19,9 @@ enum class TrustedSensor : std::uint8_t { none, encoder, tachometer };
 /// alone: neither estimator nor the other sensor has a part in it. `load` is what the command was on average, a weight
 /// above all. A drive that slows down by itself takes the reference along. One that is faster than the reference by
 /// twice the difference that sensors may have, or runs the other way by as much, or takes all that the converter has
-/// for kMostSaturated, is not under control: the enable drops. So does one whose sensors diverged near rest, where
-/// neither is known to be the wrong one, if the tachometer then gains as much.
+/// for kMostSaturated, is not under control: the enable drops. So does one that by its sensor stands while half
+/// of that is added to the load, and one whose sensors diverged near rest, where neither is known to be the wrong one,
+/// if the tachometer then gains as much.
 template <typename Scalar>
 class SensorStop {
  public:
@@ -61,6 +62,7 @@ class SensorStop {
     error_ = Scalar(0);
     load_V_ = load_V;
     samples_at_rest_ = saturated_samples_ = 0;
+    still_V_ = Scalar(0);
     next(seen);
   }
   constexpr void end() { trusted_ = TrustedSensor::none; }
@@ -77,15 +79,18 @@ class SensorStop {
     const Scalar wanted_V = Kc_[0] * error + Kc_[1] * lacking + load_V_ + ahead_V_;
     const bool is_saturated = !(Traits::magnitude(wanted_V) < limit_V_);
     if (!is_saturated) error_ = error;
-    saturated_samples_ = is_saturated ? saturated_samples_ + 1 : 0;
+    if (!is_saturated) saturated_samples_ = 0;
+    if (is_saturated) ++saturated_samples_;
     command_V_ = wanted_V;
+    const bool stands = Traits::magnitude(measured(seen)) < Traits::magnitude(reference_) * Scalar(0.125f);
+    still_V_ = stands ? still_V_ + Traits::magnitude(wanted_V - load_V_) * Scalar(1.0f / kMostSaturated) : Scalar(0);
     if (reference_ == Scalar(0) && samples_at_rest_ < Standstill::kSamples) ++samples_at_rest_;
     const bool forward = reference_ > Scalar(0);
     const Scalar beyond = Scalar(0) - (forward ? lacking : Scalar(0) - lacking);
     const Scalar astray = reference_ == Scalar(0) ? Traits::magnitude(velocity_) : beyond;
     if (is_doubtful_ && Traits::magnitude(seen.tachometer_velocity) > doubtful_most_) return false;
-    return saturated_samples_ <= kMostSaturated && astray <= astray_ && Traits::magnitude(change) <= astray_ &&
-           Traits::is_finite(wanted_V);
+    return still_V_ <= limit_V_ * Scalar(0.5f) && saturated_samples_ <= kMostSaturated && astray <= astray_ &&
+           Traits::magnitude(change) <= astray_ && Traits::is_finite(wanted_V);
   }
   constexpr Scalar command_V() const { return command_V_; }
   constexpr Scalar velocity() const { return velocity_; }
@@ -119,8 +124,8 @@ class SensorStop {
 
   StateFeedbackGain<Scalar> Kc_{};
   Scalar travel_per_velocity_{}, velocity_per_count_{}, slower_{}, ramp_V_{}, astray_{}, limit_V_{};
-  Scalar velocity_{}, reference_{}, error_{}, load_V_{}, ahead_V_{}, command_V_{}, doubtful_most_{};
-  std::int32_t samples_at_rest_ = 0, saturated_samples_ = 0;
+  Scalar velocity_{}, reference_{}, error_{}, load_V_{}, ahead_V_{}, command_V_{}, still_V_{}, doubtful_most_{};
+  std::int16_t samples_at_rest_ = 0, saturated_samples_ = 0;
   TrustedSensor trusted_ = TrustedSensor::none;
   bool tachometer_fitted_ = true, is_doubtful_ = false;
 };

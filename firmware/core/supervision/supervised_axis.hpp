@@ -52,8 +52,8 @@ class SupervisedAxis {
   /// As of Axis.
   constexpr void excite(Scalar volts) { axis_.excite(volts); }
   /// Ready, and the encoder has been at rest for a while: a loop that closes on a moving axis would stop it with a
-  /// jerk.
-  constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands(); }
+  /// jerk. The amplifier's ready contact is open: while it is closed it cannot tell when the amplifier drives.
+  constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands() && !says_ready(); }
   constexpr bool stands() const { return standstill_.stands(); }
   /// Slows down, then drops the enable.
   constexpr bool disable() { return is_enabled_or_starting() && request(SupervisorEvent::disable_request); }
@@ -274,22 +274,10 @@ class SupervisedAxis {
       seen.index_counts = axis_.counts_at(index_.seen().counts);
     }
     const HomingAction<Scalar> action = homing_.next(seen);
-    switch (action.step) {
-      case HomingStep::wait:
-        break;
-      case HomingStep::jog:
-        axis_.jog(action.velocity);
-        break;
-      case HomingStep::stop:
-        axis_.stop();
-        break;
-      case HomingStep::arrived:
-        count_from(homing_.parameters().position - action.found);
-        break;
-      case HomingStep::failed:
-        return action.fault;
-    }
-    return AxisFault::none;
+    if (action.step == HomingStep::jog) axis_.jog(action.velocity);
+    if (action.step == HomingStep::stop) axis_.stop();
+    if (action.step == HomingStep::arrived) count_from(homing_.parameters().position - action.found);
+    return action.step == HomingStep::failed ? action.fault : AxisFault::none;
   }
 
   constexpr void count_from(std::int64_t origin) {
@@ -343,10 +331,14 @@ class SupervisedAxis {
 
   [[gnu::noinline]] constexpr AxisFault look_at_index() { return index_.look(hal_.encoder(), axis_.encoder_reading()); }
 
-  constexpr AxisFault watch_drop(AxisFault own) {
-    const bool is_on = drop_watch_.is_on(is_ready(hal_.drive_enable()), monitors_.slowest(axis_.telemetry()));
-    must_cut_power_ = must_cut_power_ || is_on;
-    return is_on && own == AxisFault::none ? AxisFault::drive_not_off : own;
+  constexpr bool says_ready() const { return sequence_.parameters().ready_input && is_ready(hal_.drive_enable()); }
+
+  /// Without an enable.
+  constexpr AxisFault watch_off(AxisFault own) {
+    const MonitorLimits<Scalar>& limits = axis_.parameters().monitors;
+    if (!drop_watch_.is_driven(limits, says_ready(), monitors_.slowest(axis_.telemetry()))) return own;
+    must_cut_power_ = true;
+    return own == AxisFault::none ? AxisFault::drive_not_off : own;
   }
 
   constexpr void release_brake(bool released) { sequence_.release_brake(hal_.drive_enable(), released); }
@@ -377,7 +369,7 @@ class SupervisedAxis {
     SupervisorEvents events = requests_;
     requests_ = 0;
     if (state_ == SupervisorState::off && events == 0) return;
-    if (drop_watch_.is_active()) own = watch_drop(own);
+    if (!outputs_are_on(state_) && events == 0) own = watch_off(own);
     if (outer == AxisFault::other_axis_stopped && own != AxisFault::none) outer = AxisFault::none;
     for (const AxisFault found : {outer, own})
       if (found != AxisFault::none) events = events | latch(found);
@@ -443,7 +435,6 @@ class SupervisedAxis {
     state_ = next;
     homing_.abandon();
     is_braking_ = false;
-    if (outputs_are_on(next)) drop_watch_.end();  // it is to be enabled again
     if (next == SupervisorState::starting) {
       sequence_.begin();
       standstill_.begin_start(axis_.telemetry().encoder_counts);

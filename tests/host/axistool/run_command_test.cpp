@@ -1,6 +1,8 @@
 // axistool run on a simulated board in a process of its own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +96,59 @@ TEST_F(RunCommand, AnInterruptStopsOnThePath) {
   EXPECT_EQ(told["stopped_because"], "interrupted");
   EXPECT_LT(told["duration_s"], 40.0);
   EXPECT_LT(told["contour_um"], 12.0) << "on its way to rest, too";
+}
+
+/// A program on a terminal of its own, which is typed at.
+class OnTerminal {
+ public:
+  explicit OnTerminal(const std::string& command) {
+    process_ = ::forkpty(&keyboard_, nullptr, nullptr, nullptr);
+    if (process_ != 0) return;
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " > /dev/null 2>&1").c_str(), static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  OnTerminal(const OnTerminal&) = delete;
+  OnTerminal& operator=(const OnTerminal&) = delete;
+  ~OnTerminal() {
+    if (process_ > 0) ::kill(process_, SIGKILL);
+    ::close(keyboard_);
+  }
+  bool type(const std::string& keys) const {
+    return ::write(keyboard_, keys.data(), keys.size()) == static_cast<ssize_t>(keys.size());
+  }
+  int wait() {
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    process_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+
+ private:
+  int keyboard_ = -1;
+  pid_t process_ = -1;
+};
+
+/// Keys change the speed of a path that runs: feeds and rapids apart, never beyond the plan.
+TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  fit();
+  const std::string circle = written("circle.ngc", "F3000 G3 X0 Y0 I35 J0\nM2\n");  // 220 mm at 50 mm/s
+  /// As a share of the plan's.
+  const auto duration = [&](const std::string& keys) {
+    OnTerminal terminal("\"" AXISTOOL_PROGRAM "\" run" + board_.device() + circle + " --yes --json " +
+                        file("run.json") + " --capture " + file("run.csv"));
+    EXPECT_TRUE(wait_until([this] { return board_.moves(); }));
+    EXPECT_TRUE(terminal.type(keys));
+    EXPECT_EQ(terminal.wait(), 0);
+    std::ifstream in(file("run.json"));
+    const auto told = nlohmann::json::parse(in);
+    EXPECT_LT(told["contour_um"], 12.0) << "on the path at any speed";
+    return host::read_record(file("run.csv")).t_s.back() / told["planned_s"].get<double>();
+  };
+  EXPECT_NEAR(duration("+++<<<<<<<<<<>"), 1.0, 0.05) << "no feed above the plan; no rapid in it";
+  const double slowed = duration("-----");
+  EXPECT_GT(slowed, 1.2);
+  EXPECT_LT(slowed, 2.05);
 }
 
 /// Whoever kills the program leaves a board that stops by itself, and says why.

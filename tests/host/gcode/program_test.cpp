@@ -109,6 +109,11 @@ TEST(Gcode, HasAnOverrideForFeedsAndOneForRapids) {
   EXPECT_DOUBLE_EQ(moves[4].feed_mm_s, 12.0);
 }
 
+TEST(Gcode, TellsTheLinesOfItsRapids) {
+  const host::GcodeProgram program = read("G0 X1\nG1 F60 X2\nY2\nG0 X0\n(a)\nY0\nG28 X3\nG1 X4\n");
+  EXPECT_EQ(program.rapid_lines, (std::vector<std::size_t>{1, 4, 6, 7}));
+}
+
 TEST(Gcode, ToleranceIsOfTheMovesThatFollowIt) {
   const auto moves = read("G1 F60 X1\nG64 P0.02\nX2\nG64\nX3\nG61\nX4\nG20 G64 P0.001\nX5").moves;
   ASSERT_EQ(moves.size(), 5u);
