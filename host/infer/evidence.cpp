@@ -33,8 +33,8 @@ double log_student(double square) {
 
 }  // namespace
 
-Evidence::Evidence(VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise)
-    : y_(std::move(y)), runs_(std::move(runs)), memory_(std::move(memory)), least_noise_(least_noise) {}
+Evidence::Evidence(VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise, NoiseKind kind)
+    : y_(std::move(y)), runs_(std::move(runs)), memory_(std::move(memory)), least_noise_(least_noise), kind_(kind) {}
 
 VectorXd Evidence::no_memory() const {
   return VectorXd::Constant(static_cast<Index>(memory_.groups.size()), kNoSize * memory_.usual);
@@ -133,7 +133,7 @@ EvidenceFit Evidence::fit(const MatrixXd& columns, const VectorXd& deviations, c
     const bool is_behind = round + 1 >= kRoundsToSettle && log_evidence < start.give_up;
     if (std::abs(log_evidence - before) < kSettled || is_behind || round + 1 == kMostRounds) break;
     before = log_evidence;
-    fit.colour = colour_of(y_ - all * factors, unit_weights, runs_);
+    fit.colour = colour_of(kind_, y_ - all * factors, unit_weights, runs_);
   }
   fit.whitened = white * deviations_now.asDiagonal();
   fit.factors = factors.head(known);

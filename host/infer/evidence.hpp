@@ -3,7 +3,7 @@
 //   y = sum_j theta_j column_j + memory + noise
 //   theta_j ~ N(0, deviation_j^2)                 prior from a data sheet or usual sizes
 //   memory  = smooth functions of some coordinates, one size a coordinate, found for each hypothesis
-//   noise   = drift and white noise (noise_colour.hpp) with Student-t innovations of 4 degrees of freedom
+//   noise   = drift, or drift and white noise (noise_colour.hpp), with Student-t innovations of 4 degrees of freedom
 //
 // The memory explains what no column does, so that no hypothesis wins only because it is closest to an unknown effect.
 // Linear parameters are integrated in closed form (Laplace's approximation at the weights of the t distribution).
@@ -62,7 +62,8 @@ struct EvidenceStart {
 class Evidence {
  public:
   /// `least_noise`: of the sensors alone, in the unit of y, > 0.
-  Evidence(Eigen::VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise);
+  Evidence(Eigen::VectorXd y, std::vector<RowRun> runs, Memory memory, double least_noise,
+           NoiseKind kind = NoiseKind::drift);
 
   /// Columns with the prior standard deviation (> 0) of each factor.
   EvidenceFit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& deviations, const EvidenceStart& start) const;
@@ -95,6 +96,7 @@ class Evidence {
   std::vector<RowRun> runs_;
   Memory memory_;
   double least_noise_;
+  NoiseKind kind_;
 };
 
 }  // namespace host

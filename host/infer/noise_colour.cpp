@@ -19,6 +19,17 @@ double squares(const NoiseColour& colour, const VectorXd& noise, const VectorXd&
   return weights.dot(colour.whiten(noise, runs).col(0).cwiseAbs2());
 }
 
+/// In closed form.
+NoiseColour drift_of(const VectorXd& noise, const VectorXd& weights, const std::vector<RowRun>& runs) {
+  double product = 0.0, square = 1e-300;
+  for (const RowRun& run : runs)
+    for (Index k = run.first + 1; k < run.end; ++k) {
+      product += weights(k) * noise(k) * noise(k - 1);
+      square += weights(k) * noise(k - 1) * noise(k - 1);
+    }
+  return {.drift = std::clamp(product / square, 0.0, kMostDrift)};
+}
+
 }  // namespace
 
 double NoiseColour::innovation() const {
@@ -41,7 +52,8 @@ MatrixXd NoiseColour::whiten(const MatrixXd& columns, const std::vector<RowRun>&
   return left;
 }
 
-NoiseColour colour_of(const VectorXd& noise, const VectorXd& weights, const std::vector<RowRun>& runs) {
+NoiseColour colour_of(NoiseKind kind, const VectorXd& noise, const VectorXd& weights, const std::vector<RowRun>& runs) {
+  if (kind == NoiseKind::drift) return drift_of(noise, weights, runs);
   NoiseColour best;
   double least = squares(best, noise, weights, runs);
   const auto try_at = [&](double drift, double white) {

@@ -33,7 +33,11 @@ struct NoiseColour {
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns, const std::vector<RowRun>& runs) const;
 };
 
+/// What the noise may be.
+enum class NoiseKind { drift, drift_and_white };
+
 /// That of the least innovations, by squares with these weights of the rows.
-NoiseColour colour_of(const Eigen::VectorXd& noise, const Eigen::VectorXd& weights, const std::vector<RowRun>& runs);
+NoiseColour colour_of(NoiseKind kind, const Eigen::VectorXd& noise, const Eigen::VectorXd& weights,
+                      const std::vector<RowRun>& runs);
 
 }  // namespace host

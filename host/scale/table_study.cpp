@@ -45,7 +45,7 @@ class Search {
         rows_(rows),
         usual_(usual),
         base_(table_base(rows)),
-        evidence_(rows.y, rows.runs, table_memory(rows, usual), rows.noise_um) {
+        evidence_(rows.y, rows.runs, table_memory(rows, usual), rows.noise_um, NoiseKind::drift_and_white) {
     const sim::Drive drive(model);
     const double to_mm = model.data.kind == sim::DriveKind::linear ? 1e3 : drive.lead;
     if (drive.inertia > 0.0)

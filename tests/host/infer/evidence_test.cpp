@@ -85,7 +85,8 @@ TEST(NoiseColour, TellsADriftFromTheWhiteNoiseBesideIt) {
     drift = kDrift * drift + kStep * normal(random);
     noise(k) = drift + kWhite * normal(random);
   }
-  const host::NoiseColour colour = host::colour_of(noise, VectorXd::Ones(kMany), {{0, kMany}});
+  const host::NoiseColour colour =
+      host::colour_of(host::NoiseKind::drift_and_white, noise, VectorXd::Ones(kMany), {{0, kMany}});
   const double of_drift = kStep * kStep / (1.0 - kDrift * kDrift);
   EXPECT_NEAR(colour.drift, kDrift, 0.02);
   EXPECT_NEAR(colour.from_row_to_row(), kDrift * of_drift / (of_drift + kWhite * kWhite), 0.05);
