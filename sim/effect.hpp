@@ -39,7 +39,7 @@ struct ParameterInfo {
   double lower;                 ///< physical bounds, in the unit of the key
   double upper;
   Scale scale = Scale::unity;
-  std::vector<double> starts{};  ///< where a fit begins, in units of `scale`; several where the fit has several valleys
+  std::vector<double> starts{};  ///< where a fit begins, in units of `scale`; several where it has several local minima
   bool optional = false;         ///< may be absent from a model file
   std::string_view
       pair_of{};  ///< set on the one-for-both-directions form: "positive" level stands for positive/negative

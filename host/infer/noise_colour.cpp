@@ -65,7 +65,7 @@ NoiseColour colour_of(NoiseKind kind, const VectorXd& noise, const VectorXd& wei
     best = one;
     return true;
   };
-  // The sum has a valley along drift = white, and may have two lows: a grid, and from its best a search that halves.
+  // The sum is flat along drift = white, and may have two local minima: a grid, then steps from its best that halve.
   for (const double drift : {0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.98})
     for (const double part : {0.0, 0.3, 0.6, 0.8, 0.9}) try_at(drift, part * drift);
   for (double step = 0.1; step > 0.002; step *= 0.5)

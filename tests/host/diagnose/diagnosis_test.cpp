@@ -107,7 +107,7 @@ TEST(Diagnosis, WhatTheTrainingDataLeaveOpenOfTheBaseIsNoEffect) {
               testing::ContainsRegex("training data do not determine [a-z, ]*(viscous|stribeck)"));
 }
 
-/// The base ends in a valley, from which an offset that is not there would carry it; a candidate on it runs away.
+/// The base ends in a local minimum from which an offset that is not there would carry it; a candidate on it runs away.
 TEST(Diagnosis, ABaseThatWasStuckIsNotTakenForAMissingEffect) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::SimulatedNull null = host::simulated_null(55);

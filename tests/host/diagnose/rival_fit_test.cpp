@@ -42,7 +42,7 @@ TEST(RivalFit, FrictionThatWarmsUpStaysBesideFrictionAlongTheTravel) {
   EXPECT_THAT(diagnosis.verdict.effects, testing::Contains("thermal_friction_drift"));
 }
 
-/// Catches a weight whose fit ends in a valley, so that a spring eleven metres away is named in its place.
+/// Catches a weight whose fit ends in a local minimum, so that a spring eleven metres away is named in its place.
 TEST(RivalFit, AWeightIsNotTakenForASpringFarAway) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   if (!std::filesystem::exists(kWeight)) GTEST_SKIP() << kWeight << " is absent";
