@@ -8,7 +8,6 @@
 
 #include "host/exit_codes.hpp"
 #include "host/statistics.hpp"
-#include "sim/drive.hpp"
 
 namespace host {
 
@@ -37,22 +36,14 @@ PreparedRecord prepare(const Record& record, const sim::DriveDescription& base, 
         ExitCode::bad_input,
         fmt::format("{}: {} samples of {} s are too few for a window of {} s; record longer or choose --window",
                     record.path, record.size(), record.sample_period_s, window_s));
-  const sim::EffectEntry* inertia = base.find("inertia");
-  const sim::EffectEntry* viscous = base.find("viscous");
-  if (inertia == nullptr)
-    throw Failure(ExitCode::bad_input,
-                  base.name + ": the model has no [[effect]] of kind \"inertia\"; identify the drive first");
-  const sim::Drive drive(base);
-  const double friction_level = drive.friction[0].coulomb + drive.friction[1].coulomb;
-  PreparedRecord prepared{
-      &record,
-      command_volts(record, base.data),
-      HeldCommand(record, base.data),
-      record.u_V.empty() ? base.data.torque_constant_Nm_per_A * row_noise(record.i_A) : 0.0,
-      MotionSmoother(record, base.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"), friction_level),
-      {},
-      record.sample_period_s,
-      nullptr};
+  PreparedRecord prepared{&record,
+                          command_volts(record, base.data),
+                          HeldCommand(record, base.data),
+                          record.u_V.empty() ? base.data.torque_constant_Nm_per_A * row_noise(record.i_A) : 0.0,
+                          MotionSmoother(record, base),
+                          {},
+                          record.sample_period_s,
+                          nullptr};
   std::vector<ShiftWeights> weights;
   for (std::size_t begin = 0; begin + length < record.size(); begin += length) {
     prepared.windows.push_back({begin, length});

@@ -10,6 +10,7 @@
 #include "host/exit_codes.hpp"
 #include "host/identify/effort_timing.hpp"
 #include "host/statistics.hpp"
+#include "sim/drive.hpp"
 
 namespace host {
 
@@ -110,6 +111,22 @@ void doubt_command(const std::vector<double>& u_V, double period_s, Observations
   }
 }
 
+double inertia_of(const sim::DriveDescription& model) {
+  if (const sim::EffectEntry* inertia = model.find("inertia")) return inertia->at("J");
+  throw Failure(ExitCode::bad_input,
+                model.name + ": the model has no [[effect]] of kind \"inertia\"; identify the drive first");
+}
+
+double viscous_of(const sim::DriveDescription& model) {
+  const sim::EffectEntry* viscous = model.find("viscous");
+  return viscous == nullptr ? 0.0 : viscous->at("B");
+}
+
+double friction_level_of(const sim::DriveDescription& model) {
+  const sim::Drive drive(model);
+  return drive.friction[0].coulomb + drive.friction[1].coulomb;
+}
+
 }  // namespace
 
 double current_per_volt(const Record& record, const sim::DataSheet& data) {
@@ -135,6 +152,9 @@ std::vector<double> command_volts(const Record& record, const sim::DataSheet& da
   for (double& value : u_V) value /= gain_A_per_V;
   return u_V;
 }
+
+MotionSmoother::MotionSmoother(const Record& record, const sim::DriveDescription& model)
+    : MotionSmoother(record, model.data, inertia_of(model), viscous_of(model), friction_level_of(model)) {}
 
 MotionSmoother::MotionSmoother(const Record& record, const sim::DataSheet& data, double inertia, double viscous,
                                double friction_level)

@@ -57,8 +57,8 @@ NoiseColour colour_of(NoiseKind kind, const VectorXd& noise, const VectorXd& wei
   NoiseColour best;
   double least = squares(best, noise, weights, runs);
   const auto try_at = [&](double drift, double white) {
-    const NoiseColour one{std::clamp(drift, 0.0, kMostDrift),
-                          std::clamp(white, 0.0, std::clamp(drift, 0.0, kMostDrift))};
+    NoiseColour one{.drift = std::clamp(drift, 0.0, kMostDrift)};
+    one.white = std::clamp(white, 0.0, one.drift);
     const double sum = squares(one, noise, weights, runs);
     if (!(sum < least)) return false;
     least = sum;

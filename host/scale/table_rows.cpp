@@ -6,7 +6,6 @@
 #include "host/evidence/smoothed_motion.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/motion.hpp"
-#include "sim/drive.hpp"
 
 namespace host {
 
@@ -37,13 +36,10 @@ struct MotorTravel {
 /// Between the encoder's counts, and never off them by more than half a count: a contact that is simulated behind a
 /// staircase rings with every count. Where record or model say nothing of the force, the counts themselves.
 MotorTravel travel_between_counts(const Record& record, const sim::DriveDescription& model, double step) {
-  const sim::EffectEntry* inertia = model.find("inertia");
-  const sim::EffectEntry* viscous = model.find("viscous");
   MotorTravel travel{record.x, step / std::sqrt(12.0)};
-  if (inertia != nullptr && model.data.effort_per_volt() > 0.0 && !(record.u_V.empty() && record.i_A.empty())) {
-    const sim::Drive drive(model);
-    const MotionSmoother smoother(record, model.data, inertia->at("J"), viscous == nullptr ? 0.0 : viscous->at("B"),
-                                  drive.friction[0].coulomb + drive.friction[1].coulomb);
+  if (model.find("inertia") != nullptr && model.data.effort_per_volt() > 0.0 &&
+      !(record.u_V.empty() && record.i_A.empty())) {
+    const MotionSmoother smoother(record, model);
     const SmoothedMotion& motion = smoother.motion();
     double variance = 0.0;
     for (std::size_t k = 0; k < travel.x.size(); ++k) {

@@ -38,6 +38,12 @@ std::size_t count_of(const std::vector<TableTerm>& terms, std::string_view kind)
   return static_cast<std::size_t>(std::ranges::count(terms, kind, &TableTerm::kind));
 }
 
+/// The drive that gap and spring among the terms share; null where there is neither.
+const TableDrive* drive_of(const std::vector<TableTerm>& terms) {
+  const auto driven = std::ranges::find_if(terms, &TableTerm::is_driven);
+  return driven == terms.end() ? nullptr : &driven->drive;
+}
+
 class Search {
  public:
   Search(const sim::DriveDescription& model, TableRows& rows, double usual)
@@ -217,8 +223,7 @@ class Search {
                                     const EvidenceFit& before) const {
     std::vector<TableTerm> all = chosen;
     all.push_back({std::string(kind), {}, {}, deceleration_});
-    const auto driven = std::ranges::find_if(chosen, &TableTerm::is_driven);
-    settle_drive_anew(all, before.colour, driven == chosen.end() ? nullptr : &driven->drive);
+    settle_drive_anew(all, before.colour, drive_of(chosen));
     EvidenceFit fit = fit_from(before, all);
     refine(all, fit);
     if (wrong_way(all, fit) || rms_of_last(all, fit) < rows_.step_um / std::sqrt(12.0)) return {};
@@ -227,8 +232,8 @@ class Search {
 
   /// Columns tell how probable a change of the drive is; here is how probable the drive itself is.
   EvidenceFit with_prior(EvidenceFit fit, const std::vector<TableTerm>& terms) const {
-    if (const auto driven = std::ranges::find_if(terms, &TableTerm::is_driven); driven != terms.end())
-      fit.log_evidence -= 0.5 * prior_cost(driven->drive, shape_ranges(driven->drive, deceleration_));
+    if (const TableDrive* drive = drive_of(terms))
+      fit.log_evidence -= 0.5 * prior_cost(*drive, shape_ranges(*drive, deceleration_));
     return fit;
   }
 
