@@ -190,6 +190,7 @@ class Workbench(ServedPage, unittest.TestCase):
 
     def test_odds_at_first_sight_then_a_value_is_dragged_kept_and_undone(self) -> None:
         browser = self.browser
+        self.until("#content .verdict")  # the files are read
         (self.folder / "validate.csv").unlink()
         (self.folder / "train-jog.csv").unlink()
         browser.get(self.url.split("?")[0])
