@@ -14,12 +14,26 @@ sim::DriveDescription moving_as_one(sim::DriveDescription model) {
   return model;
 }
 
+/// The smoothed motion of the machine behind an encoder that errs as the drive's does.
+struct TrueMotion {
+  std::vector<double> x, w;
+
+  TrueMotion(const sim::Drive& drive, const PreparedRecord& prepared) : x(prepared.motion().x), w(prepared.motion().w) {
+    if (drive.encoder_error.empty()) return;
+    const std::vector<double> read = x;
+    for (double& travel : x) travel = drive.travel_at_reading(travel);
+    const double per_difference = 0.5 / (prepared.period_s * drive.lead);
+    for (std::size_t k = 1; k + 1 < x.size(); ++k)
+      w[k] += per_difference * ((x[k + 1] - read[k + 1]) - (x[k - 1] - read[k - 1]));
+  }
+};
+
 }  // namespace
 
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride) {
   const sim::Drive drive(moving_as_one(model));
-  const SmoothedMotion& motion = prepared.motion();
+  const TrueMotion motion(drive, prepared);
   const bool tach = prepared.record->has_speed();
   ResidualSamples samples;
   sim::DriveState state = drive.at(motion.x[0], motion.w[0]);

@@ -147,8 +147,7 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
       double value = samples.missing[k], weight = 1.0;
       if (info.kind == "torque_ripple") weight = samples.effort[k];
       if (info.kind == "position_dependent_friction") weight = samples.w[k] > 0.0 ? 1.0 : -1.0;
-      if (info.stage == sim::Stage::tachometer || info.stage == sim::Stage::encoder) {
-        if (samples.tach_error.empty()) break;
+      if ((info.stage == sim::Stage::tachometer || info.stage == sim::Stage::encoder) && !samples.tach_error.empty()) {
         value = samples.tach_error[k];
         weight = samples.w[k];
       }
@@ -160,10 +159,26 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
   return signal;
 }
 
+/// Without a tachometer the smoothed motion carries an encoder's error e into the force balance: at one speed v,
+///   missing = (J v^2 e'' + B v e') / lead.
+void encoder_error_from_effort(const sim::DriveDescription& model, double v, PeriodPeak& peak) {
+  const sim::Drive drive(model);
+  const double per_s = 2.0 * std::numbers::pi / peak.period * v;
+  const double mass = drive.inertia * per_s * per_s / model.data.lead;
+  const double friction = 0.5 * (drive.friction[0].viscous + drive.friction[1].viscous) * per_s / model.data.lead;
+  const double square = mass * mass + friction * friction;
+  if (!(square > 0.0)) return;
+  const double cosine = -(mass * peak.cosine + friction * peak.sine) / square;
+  peak.sine = -(mass * peak.sine - friction * peak.cosine) / square;
+  peak.cosine = cosine;
+}
+
 /// Amplitudes of an effect's own harmonic from those of the signal: an encoder's error shows as speed through its
 /// slope, friction and ripple are relative.
-void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription& model, PeriodPeak& peak) {
-  if (info.stage == sim::Stage::encoder) {
+void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription& model, bool has_tachometer,
+                        double speed, PeriodPeak& peak) {
+  if (info.stage == sim::Stage::encoder && !has_tachometer) encoder_error_from_effort(model, speed, peak);
+  if (info.stage == sim::Stage::encoder && has_tachometer) {
     // The smoothed speed carries w e'(x), so the tachometer reads that much less.
     const double per_length = peak.period / (2.0 * std::numbers::pi);
     const double cosine = peak.sine * per_length;
@@ -187,10 +202,12 @@ std::vector<sim::EffectEntry> periodic_entries(const sim::EffectInfo& info, cons
   const double shortest =
       slow ? scales.travel / 12.0 : std::max(40.0 * model.data.encoder_resolution, scales.travel / 2000.0);
   const double longest = slow ? 3.0 * scales.travel : scales.travel / 3.0;
+  const bool has_tachometer = std::ranges::all_of(
+      set.records, [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); });
   std::vector<PeriodPeak> peaks = find_periods(signal, shortest, longest, kPeaks);
   std::vector<sim::EffectEntry> entries;
   for (PeriodPeak& peak : peaks) {
-    convert_amplitudes(info, model, peak);
+    convert_amplitudes(info, model, has_tachometer, scales.top_speed * model.data.lead, peak);
     entries.push_back(
         {std::string(info.kind), {{"cosine", peak.cosine}, {"sine", peak.sine}, {"period", peak.period}}, {}, {}});
   }

@@ -84,10 +84,13 @@ Diagnosis diagnose_by_search(PreparedSets sets, const sim::DriveDescription& mod
   return result;
 }
 
+/// Whether the regression took the motion from the speed channel and left the position aside.
+bool ignores_position(const EffortRows& rows) { return rows.by_speed && rows.has_position; }
+
 /// Whether the motion shows an effect that the force-balance regression cannot see.
 bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
   const DiagnosisVerdict& verdict = by_motion.verdict;
-  if (by_motion.rough || verdict.effects.empty()) return false;
+  if ((by_motion.rough && !ignores_position(screen.rows)) || verdict.effects.empty()) return false;
   const auto seen = [&](const std::string& kind) {
     return std::ranges::any_of(screen.steps.front(),
                                [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
@@ -195,8 +198,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       only_in_the_effort = std::move(diagnosis);
     } else if (diagnosis) {
       const bool tells = !screen->chosen.empty();
-      if (screen->rows.steady || (tells && !may_be_completed(*diagnosis, split.validation)))
-        return *std::move(diagnosis);
+      const bool ends_here = screen->rows.steady && (tells || !ignores_position(screen->rows));
+      if (ends_here || (tells && !may_be_completed(*diagnosis, split.validation))) return *std::move(diagnosis);
       // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
       over_long_windows = search(with_base_fitted(split), model);
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)

@@ -297,7 +297,8 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
                              return append(fitted, "dac_dead_zone", {{"width", width}});
                            }));
   const bool commanded = rows.unknown_instant_s == 0.0;
-  if (commanded && may_have("current_saturation") && may_have("voltage_limit")) {
+  // At steady speeds all rows have the mean speed, to which a command that is cut to a constant fits best.
+  if (commanded && !rows.steady && may_have("current_saturation") && may_have("voltage_limit")) {
     const double most = rows.effort.cwiseAbs().maxCoeff();
     for (const double part : {0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95})
       terms.push_back(current_limit_term(model, rows, part * most));
