@@ -31,14 +31,17 @@ struct DataSheet {
   double load_encoder_cyclic_error = 0.0;   ///< amplitude of its error within its period, mm or m
   double load_encoder_cyclic_period = 0.0;  ///< mm or m
   double load_encoder_cyclic_phase_rad = 0.0;
+  double load_encoder_offset_per_K = 0.0;     ///< by which its zero moves as the machine warms, mm or m a kelvin
   std::optional<double> tach_noise_variance;  ///< (rad/s)^2 or (m/s)^2; empty: the drive has no tachometer
 
   bool has_load_encoder() const { return load_encoder_resolution > 0.0; }
-  /// What the scale's reading adds to the table's travel, mm or m.
-  double load_encoder_error(double travel) const {
-    if (!(load_encoder_cyclic_period > 0.0)) return 0.0;
+  /// What the scale's reading adds to the table's travel, mm or m, so many kelvin above where its zero was taken.
+  double load_encoder_error(double travel, double warmer_K = 0.0) const {
+    const double offset = load_encoder_offset_per_K * warmer_K;
+    if (!(load_encoder_cyclic_period > 0.0)) return offset;
     const double turns = travel / load_encoder_cyclic_period;
-    return load_encoder_cyclic_error * std::cos(2.0 * std::numbers::pi * turns - load_encoder_cyclic_phase_rad);
+    return offset +
+           load_encoder_cyclic_error * std::cos(2.0 * std::numbers::pi * turns - load_encoder_cyclic_phase_rad);
   }
 
   /// Effort at the shaft for one volt at the D/A converter: Ka*Kt in Nm/V, or N/V.

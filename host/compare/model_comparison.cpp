@@ -50,7 +50,7 @@ double factor_in_file(const Record& record, std::vector<double> Record::*channel
 std::vector<double> readings_of(std::vector<double> table, const Record& record, const sim::DataSheet& data) {
   double zero = 0.0;
   for (std::size_t k = 0; k < table.size(); ++k) {
-    table[k] += data.load_encoder_error(table[k]);
+    table[k] += data.load_encoder_error(table[k], warmer_K(record, k));
     zero += (record.x2[k] - table[k]) / static_cast<double>(table.size());
   }
   for (double& reading : table) reading += zero;

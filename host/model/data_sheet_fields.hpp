@@ -88,6 +88,10 @@ inline constexpr DataSheetField kDataSheetFields[] = {
      true,
      Presence::optional,
      "rad: the error is largest where the table's travel is this part of a period, over 2 pi; 0 by default"},
+    {"load_encoder", "offset_mm_per_K", sim::DriveKind::rotary, &sim::DataSheet::load_encoder_offset_per_K, true,
+     Presence::optional, "mm/K: by which its zero moves with the record's temp_C"},
+    {"load_encoder", "offset_m_per_K", sim::DriveKind::linear, &sim::DataSheet::load_encoder_offset_per_K, true,
+     Presence::optional, "m/K: by which its zero moves with the record's temp_C"},
 };
 
 /// Variance of the tachometer's noise: the one field that the data sheet itself may lack.

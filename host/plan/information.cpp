@@ -56,7 +56,8 @@ Eigen::VectorXd table_residuals(const sim::DriveDescription& model, const Record
     std::vector<double> shares;
     for (const Window& window : compared.prepared.windows)
       for (std::size_t row = window.begin + 1; row <= window.begin + window.length; ++row) {
-        const double reading = predicted.table[row] + model.data.load_encoder_error(predicted.table[row]);
+        const double reading =
+            predicted.table[row] + model.data.load_encoder_error(predicted.table[row], warmer_K(record, row));
         all.push_back((record.x2[row] - record.x[row] - reading + predicted.x[row]) / noise);
         shares.push_back(1.0 / static_cast<double>(window.length));
         mean += shares.back() * all.back();

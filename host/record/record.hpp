@@ -47,4 +47,9 @@ struct Record {
   bool has_speed() const { return !w.empty(); }
 };
 
+/// Kelvin above a record's first row; 0 where no temperature was recorded.
+inline double warmer_K(const Record& record, std::size_t row) {
+  return record.temp_C.empty() ? 0.0 : record.temp_C[row] - record.temp_C.front();
+}
+
 }  // namespace host

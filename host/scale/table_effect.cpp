@@ -131,7 +131,8 @@ bool stands_in(const sim::DriveDescription& model, std::string_view kind) {
 void take_out_known(const sim::DriveDescription& model, TableRows& rows) {
   const sim::Drive drive(model);
   const double mm = model.data.kind == sim::DriveKind::linear ? 1e3 : 1.0;
-  if (drive.encoder_error.empty() && drive.table_error.empty() && !(model.data.load_encoder_cyclic_period > 0.0))
+  if (drive.encoder_error.empty() && drive.table_error.empty() && !(model.data.load_encoder_cyclic_period > 0.0) &&
+      model.data.load_encoder_offset_per_K == 0.0)
     return;
   rows.y -= rows.means([&](const TableRecord& one) {
     std::vector<double> known(one.x.size());
@@ -140,7 +141,9 @@ void take_out_known(const sim::DriveDescription& model, TableRows& rows) {
       sim::DriveMotion motion;
       motion.x = motion.load_x = x;
       const double table = drive.table(motion, one.record->t_s[k]);
-      known[k] = 1e3 * mm * (table - x - drive.encoder_error_at(x) + model.data.load_encoder_error(table));
+      known[k] =
+          1e3 * mm *
+          (table - x - drive.encoder_error_at(x) + model.data.load_encoder_error(table, warmer_K(*one.record, k)));
     }
     return known;
   });

@@ -60,7 +60,7 @@ void make_linear(Question& question) {
   data.amplifier_gain_A_per_V = data.torque_constant_Nm_per_A = 0.0;
   data.lead = 1.0;
   for (double* length : {&data.encoder_resolution, &data.load_encoder_resolution, &data.load_encoder_cyclic_error,
-                         &data.load_encoder_cyclic_period})
+                         &data.load_encoder_cyclic_period, &data.load_encoder_offset_per_K})
     *length *= 1e-3;
   if (data.tach_noise_variance) *data.tach_noise_variance *= lead_m * lead_m;
   for_each_record(question, [&](Record& record) {

@@ -127,16 +127,18 @@ TEST(ReadModel, LinearDriveInMetres) {
 TEST(ReadModel, AScaleOnTheTable) {
   const std::string scale =
       "[drive.load_encoder]\nresolution_mm = 0.0005\ncyclic_error_mm = 0.001\ncyclic_period_mm = 0.02\n"
-      "cyclic_phase_rad = 0.5\n";
+      "cyclic_phase_rad = 0.5\noffset_mm_per_K = 0.003\n";
   const sim::DriveDescription model =
       host::parse_model(replaced(kPaperX, "[drive.tach]", scale + "[drive.tach]"), "drive.toml");
   EXPECT_TRUE(model.data.has_load_encoder());
   EXPECT_EQ(model.data.load_encoder_resolution, 0.0005);
   EXPECT_NEAR(model.data.load_encoder_error(0.02 * 0.5 / 6.283185307), 0.001, 1e-9) << "largest at its phase";
+  EXPECT_NEAR(model.data.load_encoder_error(0.02 * 0.5 / 6.283185307, 2.0), 0.007, 1e-9) << "and warmer by 2 K";
   const sim::DriveDescription again = host::parse_model(host::format_model(model), "again.toml");
   EXPECT_EQ(again.data.load_encoder_cyclic_error, 0.001);
   EXPECT_EQ(again.data.load_encoder_cyclic_period, 0.02);
   EXPECT_EQ(again.data.load_encoder_cyclic_phase_rad, 0.5);
+  EXPECT_EQ(again.data.load_encoder_offset_per_K, 0.003);
   const sim::DriveDescription linear = host::parse_model(
       replaced(kLinear, "[[effect]]", "[drive.load_encoder]\nresolution_mm = 0.0005\ncyclic_phase_rad = 0\n[[effect]]"),
       "drive.toml");

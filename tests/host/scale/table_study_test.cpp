@@ -83,6 +83,25 @@ TEST(TableStudy, IsEmptyWithoutASecondPosition) {
   EXPECT_TRUE(host::study_table(drive(), {&plain}, {}).empty());
 }
 
+/// A scale's zero that moves by 3 um a kelvin is told from the table by the data sheet alone.
+TEST(TableStudy, TakesTheScaleWarmingFromTheSheet) {
+  const auto warming = [](unsigned seed) {
+    host::Record warmed = record([](double, double, double) { return 0.0; }, seed);
+    for (std::size_t k = 0; k < warmed.size(); ++k) {
+      warmed.temp_C.push_back(20.0 + 4.0 * (1.0 - std::exp(-warmed.t_s[k] / 5.0)));
+      warmed.x2[k] += 0.003 * (warmed.temp_C[k] - 20.0);
+    }
+    return warmed;
+  };
+  const host::Record train = warming(1), judge = warming(2);
+  EXPECT_NE(host::study_table(drive(), {&train}, {&judge}).find("thermal_growth"), nullptr);
+  sim::DriveDescription known = drive();
+  known.data.load_encoder_resolution = 2e-4;
+  known.data.load_encoder_offset_per_K = 0.003;
+  const host::TableStudy found = host::study_table(known, {&train}, {&judge});
+  EXPECT_TRUE(found.effects.empty()) << host::table_words(found);
+}
+
 TEST(TableStudy, MeasuresAGap) {
   const host::TableStudy found = study(gap_of(0.012), gap_of(0.012));
   ASSERT_EQ(found.effects.size(), 1U) << host::table_words(found);
