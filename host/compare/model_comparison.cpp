@@ -78,7 +78,7 @@ ModelComparison compare_model(const sim::DriveDescription& model, const Measurem
   comparison.log_faults = measured.log();
   comparison.relative_error = inverse_error(model, records);
   comparison.where = error_regions(model, set);
-  comparison.table = study_table(model, measured.training_records(), {});
+  comparison.table = study_table(model, measured.training_records());
   return comparison;
 }
 

@@ -27,11 +27,21 @@ bool is_denied(const TableStudy& study, std::string_view kind) {
   return probability && *probability <= 1.0 - kClaimed && !in_a_group(study, kind);
 }
 
+bool is_connection(std::string_view kind) { return std::ranges::find(kConnections, kind) != kConnections.end(); }
+
+/// The connection that the motion names where the table names the other one: neither is certain then.
+std::optional<std::string> other_connection(const TableStudy& study, const DiagnosisVerdict& verdict) {
+  if (verdict.status != Status::missing) return {};
+  for (const std::string_view kind : kConnections)
+    if (study.find(kind) != nullptr)
+      for (const std::string& named : verdict.effects)
+        if (is_connection(named) && named != kind && study.find(named) == nullptr) return named;
+  return {};
+}
+
 /// Takes what the table denies out of names and groups; a group of which one is left is a name.
 void take_back(const TableStudy& study, DiagnosisVerdict& verdict) {
-  const auto contradicted = [&](const std::string& kind) {
-    return std::ranges::find(kConnections, kind) != kConnections.end() && is_denied(study, kind);
-  };
+  const auto contradicted = [&](const std::string& kind) { return is_connection(kind) && is_denied(study, kind); };
   const bool group_was_named = verdict.status == Status::ambiguous;
   std::erase_if(verdict.effects, contradicted);
   for (std::vector<std::string>& group : verdict.alternatives) {
@@ -46,7 +56,7 @@ void take_back(const TableStudy& study, DiagnosisVerdict& verdict) {
 }  // namespace
 
 std::vector<std::string> absent_by_table(const TableStudy& study) {
-  if (study.empty() || !study.train.has_effort()) return {};
+  if (study.empty() || !study.rows.has_effort()) return {};
   for (const std::string_view kind : kConnections)
     if (!is_denied(study, kind)) return {};
   return {kConnections.begin(), kConnections.end()};
@@ -55,7 +65,8 @@ std::vector<std::string> absent_by_table(const TableStudy& study) {
 void settle_by_table(const TableStudy& study, Diagnosis& diagnosis) {
   if (study.empty()) return;
   DiagnosisVerdict& verdict = diagnosis.verdict;
-  if (study.train.has_effort()) take_back(study, verdict);
+  const std::optional<std::string> rival = study.rows.has_effort() ? other_connection(study, verdict) : std::nullopt;
+  if (study.rows.has_effort()) take_back(study, verdict);
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> groups;
   for (const TableEffect& effect : study.effects) {
@@ -65,6 +76,8 @@ void settle_by_table(const TableStudy& study, Diagnosis& diagnosis) {
     if (!effect.worth_naming) continue;
     if (effect.group.size() > 1)
       groups.push_back(effect.group);
+    else if (rival && is_connection(effect.kind()))
+      groups.push_back({effect.kind(), *rival});
     else if (!contains(names, effect.kind()))
       names.push_back(effect.kind());
     if (!effect.entry.parameters.empty() && !effect.place.starts_with("scale"))

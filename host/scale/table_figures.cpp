@@ -31,7 +31,7 @@ ScatterPlot over(const TableRows& rows, const Eigen::VectorXd& along, std::strin
 
 void add_table_figures(const TableStudy& study, Report& report) {
   if (study.empty()) return;
-  const TableRows& rows = study.judge;
+  const TableRows& rows = study.rows;
   report.section("The table against the motor", table_words(study));
   Table table;
   table.headings = {"effect", "what", "size", "95 %", "unit"};

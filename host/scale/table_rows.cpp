@@ -111,23 +111,23 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::Drive
   const sim::DataSheet& data = model.data;
   TableRows rows;
   std::size_t samples = 0;
-  bool all_have_effort = true, all_have_temperature = true;
+  bool all_have_temperature = true;
+  const auto has_effort = [](const Record* record) { return !record->u_V.empty() || !record->i_A.empty(); };
+  const bool wants_effort = std::ranges::any_of(records, has_effort);
   for (const Record* record : records)
     if (record->has_position() && record->has_table_position()) samples += record->size();
   const std::size_t stride = std::max<std::size_t>(1, (samples + kMostRows - 1) / kMostRows);
   Index count = 0;
   for (const Record* record : records) {
     if (!record->has_position() || !record->has_table_position() || record->size() < 4 * stride) continue;
+    if (has_effort(record) != wants_effort) continue;
     TableRecord one{record, record->x, {}, count, static_cast<Index>((record->size() - 1) / stride), stride, {}, {}};
     const double mm = mm_of(*record);
     for (double& x : one.x) x *= mm;
     MotorTravel travel = travel_between_counts(*record, model, encoder_step(*record, data));
     one.motor = std::move(travel.x);
     one.pusher = one.motor;
-    if (record->u_V.empty() && record->i_A.empty())
-      all_have_effort = false;
-    else
-      one.effort = motor_effort(*record, data);
+    if (wants_effort) one.effort = motor_effort(*record, data);
     all_have_temperature = all_have_temperature && !record->temp_C.empty();
     const double steps = std::hypot(std::sqrt(12.0) * travel.deviation, step_of(record->x2, mm));
     rows.step_um = std::max(rows.step_um, 1e3 * steps);
@@ -150,7 +150,7 @@ TableRows table_rows(const std::vector<const Record*>& records, const sim::Drive
   });
   rows.v = rows.a = VectorXd::Zero(count);
   rows.differentiate_pusher();
-  if (all_have_effort) rows.effort = rows.means([](const TableRecord& one) { return one.effort; });
+  if (wants_effort) rows.effort = rows.means([](const TableRecord& one) { return one.effort; });
   if (all_have_temperature) rows.temp_C = rows.means([](const TableRecord& one) { return one.record->temp_C; });
   for (const TableRecord& one : rows.records)
     note_travel(rows, one, encoder_step(*one.record, data) * mm_of(*one.record));

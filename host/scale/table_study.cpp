@@ -160,21 +160,18 @@ class Search {
   }
 
   /// Where the motor is, without the errors of its encoder that are among the terms.
-  void note_motor(TableRows& rows, const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
-    for (TableRecord& one : rows.records) one.pusher = one.motor;
+  void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) {
+    for (TableRecord& one : rows_.records) one.pusher = one.motor;
     for (std::size_t k = 0; k < terms.size(); ++k) {
       if (terms[k].kind != "encoder_cyclic_error" || place_of(terms[k], rows_, model_) != "motor") continue;
       const VectorXd factors = fit.factors.segment(first_column(terms, k), 2);
-      for (TableRecord& one : rows.records)
+      for (TableRecord& one : rows_.records)
         for (std::size_t sample = 0; sample < one.x.size(); ++sample) {
           const double at = 2.0 * std::numbers::pi * one.x[sample] / terms[k].shape[0];
           one.pusher[sample] += 1e-3 * (factors(0) * std::cos(at) + factors(1) * std::sin(at));
         }
     }
-    rows.differentiate_pusher();
-  }
-  void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) {
-    note_motor(rows_, terms, fit);
+    rows_.differentiate_pusher();
     base_ = table_base(rows_);
   }
 
@@ -261,40 +258,16 @@ class Search {
   double deceleration_ = 0.0;
 };
 
-/// What terms with the training rows' factors leave on the rows that judge. What belongs to a record is fitted there.
-VectorXd left_on(const TableRows& judge, const std::vector<TableTerm>& terms, const VectorXd& factors, Index base) {
-  VectorXd left = judge.y;
-  MatrixXd own = table_base(judge);
+/// What terms with these factors leave of the rows. The base is fitted again.
+VectorXd left_on(const TableRows& rows, const std::vector<TableTerm>& terms, const VectorXd& factors, Index base) {
+  VectorXd left = rows.y;
   Index first = base;
   for (const TableTerm& term : terms) {
-    const MatrixXd columns = term.columns(judge);
-    if (term.is_of_the_record()) {
-      own.conservativeResize(Eigen::NoChange, own.cols() + columns.cols());
-      own.rightCols(columns.cols()) = columns;
-      first += static_cast<Index>(columns.cols());  // as many in training or not: these factors are not used
-      continue;
-    }
+    const MatrixXd columns = term.columns(rows);
     left -= columns * factors.segment(first, columns.cols());
     first += columns.cols();
   }
-  return without(left, own);
-}
-
-/// Terms whose own number of factors does not depend on the records come first, so that left_on() finds its factors.
-void records_last(std::vector<TableTerm>& terms, std::vector<std::vector<std::string>>& groups,
-                  std::vector<double>& odds) {
-  for (std::size_t k = 0, left = terms.size(); left > 0; --left) {
-    if (!terms[k].is_of_the_record()) {
-      ++k;
-      continue;
-    }
-    std::rotate(terms.begin() + static_cast<std::ptrdiff_t>(k), terms.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-                terms.end());
-    std::rotate(groups.begin() + static_cast<std::ptrdiff_t>(k), groups.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-                groups.end());
-    std::rotate(odds.begin() + static_cast<std::ptrdiff_t>(k), odds.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-                odds.end());
-  }
+  return without(left, table_base(rows));
 }
 
 }  // namespace
@@ -312,21 +285,15 @@ std::optional<double> TableStudy::probability(std::string_view kind) const {
   return {};
 }
 
-TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation) {
+TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& records) {
   TableStudy study;
-  study.train = table_rows(training, model);
-  if (study.empty() || !(study.train.way.minCoeff() < study.train.way.maxCoeff())) return {};
-  study.judge = table_rows(validation, model);
-  const bool other_channels = study.judge.has_effort() != study.train.has_effort();
-  if (study.judge.size() == 0 || other_channels) study.judge = study.train;
-  if (study.judge.temp_C.size() == 0) study.train.temp_C.resize(0);
-  take_out_known(model, study.train);
-  take_out_known(model, study.judge);
-  study.noise_um = study.train.noise_um;
-  const double usual = std::max(rms(without(study.train.y, table_base(study.train))), study.noise_um);
-  Search search(model, study.train, usual);
-  const Index base = table_base(study.train).cols();
+  study.rows = table_rows(records, model);
+  if (study.empty() || !(study.rows.way.minCoeff() < study.rows.way.maxCoeff())) return {};
+  take_out_known(model, study.rows);
+  study.noise_um = study.rows.noise_um;
+  const double usual = std::max(rms(without(study.rows.y, table_base(study.rows))), study.noise_um);
+  Search search(model, study.rows, usual);
+  const Index base = table_base(study.rows).cols();
 
   std::vector<TableTerm> chosen;
   std::vector<std::vector<std::string>> groups;
@@ -388,7 +355,6 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
       search.note_motor(chosen, fit);
     }
   }
-  records_last(chosen, groups, odds);
   fit = search.fit_from(fit, chosen);
   // Whether each is still needed beside the others; once more when one has gone.
   std::vector<std::vector<TableTerm>> others_of(chosen.size());
@@ -413,18 +379,18 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     k = 0;
   }
   study.delay_s = -1e-3 * fit.factors(base - 1);
-  search.note_motor(study.judge, chosen, fit);
-  const MatrixXd covariance = factor_covariance(search.fit_slopes(fit, chosen), base, chosen, study.train, usual);
-  study.left = left_on(study.judge, chosen, fit.factors, base);
+  search.note_motor(chosen, fit);
+  const MatrixXd covariance = factor_covariance(search.fit_slopes(fit, chosen), base, chosen, study.rows, usual);
+  study.left = left_on(study.rows, chosen, fit.factors, base);
   study.left_um = rms(study.left);
-  study.before_um = rms(left_on(study.judge, {}, fit.factors, base));
+  study.before_um = rms(left_on(study.rows, {}, fit.factors, base));
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    TableEffect effect = table_effect(chosen[k], fit, covariance, search.first_column(chosen, k), study.train, model);
+    TableEffect effect = table_effect(chosen[k], fit, covariance, search.first_column(chosen, k), study.rows, model);
     // What stands in the model by itself is no other name of this one.
     for (const std::string& kind : groups[k])
       if (kind == chosen[k].kind || count_of(chosen, kind) == 0) effect.group.push_back(kind);
     effect.probability = odds[k];
-    effect.before = rms(left_on(study.judge, others_of[k], less_of[k].factors, base));
+    effect.before = rms(left_on(study.rows, others_of[k], less_of[k].factors, base));
     effect.after = study.left_um;
     const double taken = effect.before * effect.before - effect.after * effect.after;
     effect.worth_naming = taken >= kWorthNaming * effect.before * effect.before &&

@@ -28,7 +28,7 @@ struct TableEffect {
   std::vector<std::string> group;    ///< one kind, or those that these rows do not tell apart, most probable first
   std::string place;                 ///< of a cyclic error: "motor", "scale", "scale or motor"
   double probability = 0.0;          ///< of the group
-  double before = 0.0, after = 0.0;  ///< RMS on the rows that judge, um
+  double before = 0.0, after = 0.0;  ///< RMS without it and with all, um
   bool worth_naming = false;         ///< by the losses of infer/posterior.hpp
   std::vector<TableSize> sizes;
   std::vector<TablePoint> curve;  ///< of a pitch error
@@ -39,24 +39,24 @@ struct TableEffect {
 };
 
 struct TableStudy {
-  TableRows train, judge;                 ///< the same where nothing was held back
-  double before_um = 0.0, left_um = 0.0;  ///< RMS on the rows that judge: offsets and delay alone; with all effects
+  TableRows rows;
+  double before_um = 0.0, left_um = 0.0;  ///< RMS: offsets and delay alone; with all effects
   double noise_um = 0.0;
   double delay_s = 0.0;                                     ///< by which the table is read after the motor
   std::vector<TableEffect> effects;                         ///< in the order in which they were found
   std::vector<std::pair<std::string, double>> absent_odds;  ///< probability of each kind that was not found
-  Eigen::VectorXd left;                                     ///< of every row that judges, um
+  Eigen::VectorXd left;                                     ///< of every row, um
 
-  bool empty() const { return train.size() == 0; }
+  bool empty() const { return rows.size() == 0; }
   const TableEffect* find(std::string_view kind) const;
   /// That this kind is missing from the model, 0..1; nothing where these records cannot say.
   std::optional<double> probability(std::string_view kind) const;
 };
 
 /// Kinds that the model has already stand as they are. Empty where no record has a second position, or the axis does
-/// not move both ways. Throws Failure(bad_input) where the drive's constants are missing.
-TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& training,
-                       const std::vector<const Record*>& validation);
+/// not move both ways. Evidence needs no held-back records: every command sees the same rows. Throws Failure(bad_input)
+/// where the drive's constants are missing.
+TableStudy study_table(const sim::DriveDescription& model, const std::vector<const Record*>& records);
 
 /// "backlash 12.3 um (95 %: 12.0 to 12.6); …": sentences; what they leave.
 std::string table_words(const TableStudy& study);

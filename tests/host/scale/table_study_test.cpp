@@ -57,7 +57,7 @@ host::Record record(const Difference& difference, unsigned seed, const Motion& m
 host::TableStudy study(const Difference& training, const Difference& judging, const Motion& motor = {}) {
   static std::vector<host::Record> kept;
   kept = {record(training, 1, motor), record(judging, 2, motor)};
-  return host::study_table(drive(), {&kept[0]}, {&kept[1]});
+  return host::study_table(drive(), {&kept[0], &kept[1]});
 }
 
 /// The table in a gap of so many mm, from its middle; stays where it is until it is pushed.
@@ -80,7 +80,7 @@ TEST(TableStudy, FollowsWithinItsNoise) {
 TEST(TableStudy, IsEmptyWithoutASecondPosition) {
   host::Record plain = record([](double, double, double) { return 0.0; }, 1);
   plain.x2.clear();
-  EXPECT_TRUE(host::study_table(drive(), {&plain}, {}).empty());
+  EXPECT_TRUE(host::study_table(drive(), {&plain}).empty());
 }
 
 /// A scale's zero that moves by 3 um a kelvin is told from the table by the data sheet alone.
@@ -94,11 +94,11 @@ TEST(TableStudy, TakesTheScaleWarmingFromTheSheet) {
     return warmed;
   };
   const host::Record train = warming(1), judge = warming(2);
-  EXPECT_NE(host::study_table(drive(), {&train}, {&judge}).find("thermal_growth"), nullptr);
+  EXPECT_NE(host::study_table(drive(), {&train, &judge}).find("thermal_growth"), nullptr);
   sim::DriveDescription known = drive();
   known.data.load_encoder_resolution = 2e-4;
   known.data.load_encoder_offset_per_K = 0.003;
-  const host::TableStudy found = host::study_table(known, {&train}, {&judge});
+  const host::TableStudy found = host::study_table(known, {&train, &judge});
   EXPECT_TRUE(found.effects.empty()) << host::table_words(found);
 }
 
@@ -164,10 +164,10 @@ TEST(TableStudy, MeasuresAGapBesideASpring) {
 TEST(TableStudy, ReadsShortRecords) {
   host::Record whole = record(gap_of(0.03), 1);
   for (std::vector<double>* channel : {&whole.t_s, &whole.i_A, &whole.x, &whole.x2}) channel->resize(2001);
-  const host::TableStudy found = host::study_table(drive(), {&whole}, {});
+  const host::TableStudy found = host::study_table(drive(), {&whole});
   ASSERT_FALSE(found.empty());
-  EXPECT_EQ(found.train.records[0].stride, 1U);
-  for (const Eigen::VectorXd* values : {&found.train.y, &found.train.v, &found.train.a, &found.train.effort}) {
+  EXPECT_EQ(found.rows.records[0].stride, 1U);
+  for (const Eigen::VectorXd* values : {&found.rows.y, &found.rows.v, &found.rows.a, &found.rows.effort}) {
     EXPECT_EQ(values->size(), 2000);
     EXPECT_TRUE(values->allFinite());
   }
@@ -237,7 +237,7 @@ TEST(TableStudy, WhatTheModelHoldsIsNotMissing) {
                            .parameters = {{"lead_error", 40.0}, {"cosine", 0.0}, {"sine", 0.003}, {"period", 90.0}},
                            .ci95 = {},
                            .from = {}});
-  EXPECT_TRUE(host::study_table(model, {&kept[0]}, {}).effects.empty());
+  EXPECT_TRUE(host::study_table(model, {&kept[0]}).effects.empty());
 }
 
 }  // namespace
