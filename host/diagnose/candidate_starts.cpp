@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "host/compare/effort_residual.hpp"
+#include "host/evidence/coming_back.hpp"
 #include "host/evidence/period_search.hpp"
 #include "sim/catalogue.hpp"
 
@@ -243,8 +244,10 @@ bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& mod
   const sim::EffectEntry* coulomb = model.find("coulomb");
   if (info.kind == "coulomb_asymmetry") return coulomb != nullptr && coulomb->has("level");
   if (info.kind == "viscous_asymmetry") return model.find("viscous") != nullptr;
-  if (info.curve) return false;                       // names nothing: never a discovery
-  if (info.kind == "external_torque") return false;   // acts at one time: no other record shows it
+  if (info.curve) return false;                      // names nothing: never a discovery
+  if (info.kind == "external_torque") return false;  // acts at one time: no other record shows it
+  const auto returns = [](const ComparedRecord& compared) { return comes_back(*compared.prepared.record); };
+  if (info.kind == "spring_torque" && std::ranges::none_of(set.records, returns)) return false;
   if (info.stage == sim::Stage::table) return false;  // the motor does not show it
   if (set.measure == Measure::effort && info.stage == sim::Stage::tachometer) return false;
   const auto has_speed = [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); };

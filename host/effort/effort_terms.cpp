@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "host/effort/effort_waves.hpp"
+#include "host/evidence/coming_back.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/identify/motion.hpp"
 #include "sim/catalogue.hpp"
@@ -340,7 +341,9 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
   if (!rows.has_position) return terms;
   // A spring without an equilibrium within the travel is a weight and its remainder.
   constexpr int kCentres = 5;
-  if (may_have("spring_torque"))
+  const bool returns =
+      std::ranges::any_of(rows.signals, [](const EffortSignals& one) { return comes_back(*one.record); });
+  if (returns && may_have("spring_torque"))
     for (int k = 0; k < kCentres; ++k)
       terms.push_back(
           spring_term(rows, rows.x.minCoeff() + (rows.x.maxCoeff() - rows.x.minCoeff()) * k / (kCentres - 1)));
