@@ -51,12 +51,13 @@ struct Form {
   double log_unit;   ///< change of the log evidence when the residual is expressed in another unit
   std::function<EffortTerm()> term;
   std::vector<int> sign;
+  double log_prior = 0.0;  ///< among all forms of its kind
 };
 
 struct Weighed {
   const Form* form;
   double scale;
-  double log_gain;  ///< approximate
+  double log_gain;  ///< approximate, with the prior of the form
 };
 
 /// The columns of a term at RMS 1; empty if one of them vanishes.
@@ -88,18 +89,19 @@ bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
 using WaveColumns = std::function<MatrixXd(const Wave&)>;
 
 /// Of many waves, those with the largest plain gain.
-std::vector<Wave> most_promising(std::vector<Wave> waves, const WaveColumns& columns_of, const VectorXd& left) {
-  std::vector<std::pair<double, Wave>> ranked;
-  for (const Wave& wave : waves) {
-    const MatrixXd columns = columns_of(wave);
+std::vector<std::size_t> most_promising(const std::vector<Wave>& waves, const WaveColumns& columns_of,
+                                        const VectorXd& left) {
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (std::size_t k = 0; k < waves.size(); ++k) {
+    const MatrixXd columns = columns_of(waves[k]);
     const VectorXd pull = columns.transpose() * left;
-    ranked.emplace_back(-pull.dot(symmetric_solution(gram(columns), pull)), wave);
+    ranked.emplace_back(-pull.dot(symmetric_solution(gram(columns), pull)), k);
   }
-  std::ranges::stable_sort(ranked, {}, &std::pair<double, Wave>::first);
+  std::ranges::sort(ranked);
   ranked.resize(std::min(ranked.size(), kMostWavesWeighed));
-  waves.clear();
-  for (const auto& [gain, wave] : ranked) waves.push_back(wave);
-  return waves;
+  std::vector<std::size_t> best;
+  for (const auto& [gain, wave] : ranked) best.push_back(wave);
+  return best;
 }
 
 }  // namespace
@@ -177,18 +179,20 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
 
   // All forms, kind by kind.
   std::map<std::string, std::vector<Form>> forms;
-  std::map<std::string, double> counts;
+  std::map<std::string, std::size_t> counts;
   const auto is_excluded = [&](const std::string& kind) { return std::ranges::find(excluded, kind) != excluded.end(); };
   const auto weigh = [&](const EffortTerm& term) {
     if (is_excluded(term.kind)) return;
     std::optional<Form> form =
         form_of(term.kind, thin_.of(term.columns), term.sign, term.acting, [&term] { return term; });
-    counts[term.kind] += 1.0;
+    ++counts[term.kind];
     if (form) forms[term.kind].push_back(*std::move(form));
   };
   std::ranges::for_each(terms, weigh);
   if (std::ranges::none_of(chosen, [](const EffortTerm& term) { return sim::is_second_mass(term.kind); }))
     std::ranges::for_each(second_masses_, weigh);
+  for (auto& [kind, list] : forms)
+    for (Form& form : list) form.log_prior = -std::log(static_cast<double>(counts[kind]));
   if (rows_.has_position) {
     const VectorXd one = VectorXd::Ones(rows_.w.size());
     const VectorXd direction = rows_.w.unaryExpr([](double w) { return w > 0.0 ? 1.0 : -1.0; });
@@ -196,11 +200,13 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
     const double turn = turn_of(model_.data);
     const auto weigh_waves = [&](const std::string& kind, const std::vector<Wave>& waves, const WaveColumns& columns_of,
                                  const std::function<EffortTerm(const Wave&)>& term_of) {
-      counts[kind] += static_cast<double>(waves.size());
-      for (const Wave& wave : most_promising(waves, columns_of, left)) {
+      const std::vector<double> priors = log_priors(waves, model_.data);
+      for (const std::size_t k : most_promising(waves, columns_of, left)) {
         std::optional<Form> form =
-            form_of(kind, columns_of(wave), {0, 0}, 1.0, [term_of, wave] { return term_of(wave); });
-        if (form) forms[kind].push_back(*std::move(form));
+            form_of(kind, columns_of(waves[k]), {0, 0}, 1.0, [term_of, wave = waves[k]] { return term_of(wave); });
+        if (!form) continue;
+        form->log_prior = priors[k];
+        forms[kind].push_back(*std::move(form));
       }
     };
     const auto slow_waves = [&](double longest) {
@@ -259,7 +265,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       for (const Form& form : forms.at(kind.name)) {
         const VectorXd gains = evidence_.gains(without ? bare : now, form.columns, form.sign, scales);
         for (Index s = 0; s < kTailCount; ++s)
-          if (std::isfinite(gains(s))) ranked.push_back({&form, scales(s), gains(s) + form.log_unit});
+          if (std::isfinite(gains(s))) ranked.push_back({&form, scales(s), gains(s) + form.log_unit + form.log_prior});
       }
       std::ranges::stable_sort(ranked, std::greater(), &Weighed::log_gain);
       if (!ranked.empty()) kind.best = std::max(kind.best, ranked.front().log_gain);
@@ -318,8 +324,8 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       for (Index c = 0; c < width; ++c)
         if (weighed->form->sign[static_cast<std::size_t>(c)] > 0 && fit.factors(known.columns.cols() + c) < 0.0) return;
       const double log_evidence = fit.log_evidence + weighed->form->log_unit;
-      const double log_odds = log_evidence - now.log_evidence + spread -
-                              std::log(counts.at(kinds[k].name) * static_cast<double>(kTailCount));
+      const double log_odds = log_evidence - now.log_evidence + spread + weighed->form->log_prior -
+                              std::log(static_cast<double>(kTailCount));
       EffortTerm term = weighed->form->term();
       const std::optional<double> train = plain_fit(term);
       if (!train) return;
@@ -334,7 +340,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   for (std::size_t k = in_reach; k < kinds.size(); ++k)
     for (const std::vector<Weighed>& ranked : kinds[k].ranked) {
       if (ranked.empty()) continue;
-      const double log_odds = ranked.front().log_gain - std::log(counts.at(kinds[k].name) * kTailCount);
+      const double log_odds = ranked.front().log_gain - std::log(static_cast<double>(kTailCount));
       kinds[k].fitted.push_back({log_odds, 1.0, ranked.front().form->term()});
     }
   std::erase_if(kinds, [](const Kind& kind) { return kind.fitted.empty(); });

@@ -84,8 +84,10 @@ class Search {
     return list;
   }
 
-  /// Held-back motions decide: they must fit better with the effect than without.
-  bool is_refuted(const ScreenedModel& taken) const { return taken.validate >= screen_.best().validate; }
+  /// Held-back motions refute an effect as certainly as one is claimed: by chance they fit a little worse.
+  bool is_refuted(const ScreenedModel& taken) const {
+    return regression_.confidence(screen_.best(), taken) <= 1.0 - kClaimed;
+  }
 
   /// The first kind of a group after the leader that held-back motions refute: it is not a rival. Null if all kinds
   /// hold.

@@ -86,6 +86,16 @@ std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows,
   return waves;
 }
 
+std::vector<double> log_priors(const std::vector<Wave>& waves, const sim::DataSheet& data) {
+  const double turn = turn_of(data);
+  double of_turn = 0.0, free = 0.0;
+  for (const Wave& wave : waves) (wave.period == turn ? of_turn : free) += 1.0 / wave.order;
+  const double half = of_turn > 0.0 && free > 0.0 ? 0.5 : 1.0;
+  std::vector<double> logs;
+  for (const Wave& wave : waves) logs.push_back(std::log(half / wave.order / (wave.period == turn ? of_turn : free)));
+  return logs;
+}
+
 MatrixXd wave_columns(const EffortRows& rows, const VectorXd& weight, const Wave& wave) {
   MatrixXd columns(rows.x.size(), 2);
   const double per_travel = wave.order / wave.period;

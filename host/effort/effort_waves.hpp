@@ -26,6 +26,10 @@ double shortest_wave(const sim::DataSheet& data, const EffortRows& rows);
 /// period that repeats within the travel; `longest`: in travels, of the free ones.
 std::vector<Wave> waves_over(const sim::DataSheet& data, const EffortRows& rows, double longest);
 
+/// Natural logarithm of how probable each of these waves is before the measurement. Screw and motor cause most periods:
+/// half is theirs, by 1/order, which prefers no scale; the other half is shared evenly by the free periods.
+std::vector<double> log_priors(const std::vector<Wave>& waves, const sim::DataSheet& data);
+
 /// cos and sin of a wave, times `weight`: two columns.
 Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weight, const Wave& wave);
 
