@@ -275,9 +275,9 @@ class BoardApplication {
       if (is_excited(axis) || axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis))
         return refusal(axis);
     }
-    return path_.open(request, client, opened);
+    return path_.open(request, client, probe_contact(active_), opened);
   }
-  PathService<Axes, typename Board::ControlShutOut>& path() { return path_; }
+  PathService<Axes, Board>& path() { return path_; }
 
   /// The limit of travel on one side of an axis.
   RefusedValuePayload limit_of_travel(std::size_t axis, bool positive) const {
@@ -487,7 +487,7 @@ class BoardApplication {
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<kBoardKeepsCapture, Nothing, TriggeredMemory> own_memory_{};
   ExcitationService<Scalar> excitation_;
-  PathService<Axes, typename Board::ControlShutOut> path_{axes_};
+  PathService<Axes, Board> path_{axes_, board_};
   MotionOwner owner_;
   ParameterValues active_{kAxes};
   ParameterValues staged_{kAxes};

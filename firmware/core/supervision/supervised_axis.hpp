@@ -124,6 +124,7 @@ class SupervisedAxis {
   /// As of HomingSequence.
   constexpr std::int64_t index_way() const { return homing_.index_way(); }
 
+  constexpr std::int64_t table_counts_at(std::uint32_t reading) const { return axis_.table_counts_at(reading); }
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
   /// It read the index in its last step; the others of a group do so in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
