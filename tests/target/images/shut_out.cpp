@@ -21,7 +21,7 @@ namespace {
 
 using namespace target_image;
 using firmware::Status;
-using firmware::boards::MemoryFlash;
+using MemoryFlash = firmware::boards::MemoryFlashOf<12288>;  // two full tables of pitch errors fit
 using firmware::boards::ValueAxis;
 
 MemoryFlash::Cells flash_cells;
@@ -122,6 +122,24 @@ void report_shut_out(const char* name, Request request) {
   report(name, cost);
 }
 
+/// As many points as there may be, of each axis; no drive is enabled.
+void load_tables() {
+  for (std::uint16_t axis = 0; axis < CountedBoard::kAxes; ++axis) {
+    auto& store = application.store();
+    const std::uint32_t bits = firmware::resolution_bits(application.active(), axis);
+    firmware::Crc32 crc;
+    expect(store.begin_table(application.active().size(), axis, firmware::kMostPitchPoints, bits) ==
+               firmware::SaveResult::saved,
+           7);
+    for (int i = 0; i < static_cast<int>(firmware::kMostPitchPoints); ++i) {
+      const firmware::PitchPoint point{1000 * i, 100 * i, -70 * i};
+      expect(store.add_point(point), 8);
+      crc.add(std::as_bytes(std::span(&point, 1)));
+    }
+    expect(application.finish_table(crc.value(), true) == Status::ok, 9);
+  }
+}
+
 }  // namespace
 
 extern "C" [[noreturn]] void run_board() {
@@ -142,7 +160,10 @@ extern "C" [[noreturn]] void run_board() {
     shut_out.add(CountedBoard::ControlShutOut::longest);
     run(200);
   };
-  // All that takes long switched on: friction's curves, filters, cogging. Then other values of it.
+  expect(application.commit(refused) == Status::ok, 1);
+  load_tables();
+  application.staged() = application.active();
+  // All that takes long switched on: friction's curves, filters, cogging, pitch. Then other values of it.
   for (const float more : {0.0F, 1.0F, 2.0F}) {
     if (more > 0.0F) application.staged() = application.active();
     for (const char* axis : {"x", "y"}) {
