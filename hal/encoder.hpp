@@ -34,4 +34,11 @@ concept IndexedEncoder = Encoder<T> && requires(T& encoder) {
   { encoder.read_index() } -> std::same_as<IndexReading>;
 };
 
+/// An encoder whose counter a probe's edge latches (ProbeInput). Contract: `read_latch()` returns at once the counter
+/// at the last edge that latched it; valid: one came since the last call.
+template <typename T>
+concept LatchedEncoder = Encoder<T> && requires(T& encoder) {
+  { encoder.read_latch() } -> std::same_as<EncoderReading>;
+};
+
 }  // namespace hal

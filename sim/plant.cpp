@@ -59,11 +59,11 @@ void Plant::advance(double duration_s) {
   time_s_ += duration_s;
 }
 
-std::int64_t Plant::encoder_counts() const {
+std::int64_t Plant::counts_at(double encoder_travel) const {
   // Without a resolution the reading passes through a grid far below any real scale.
   const double resolution = data_.encoder_resolution > 0.0 ? data_.encoder_resolution : 1e-9;
-  if (foreign_) return std::llround(state_.x / resolution);
-  return static_cast<std::int64_t>(std::floor(drive_.encoder(state_) / resolution));
+  if (foreign_) return std::llround(encoder_travel / resolution);
+  return static_cast<std::int64_t>(std::floor(encoder_travel / resolution));
 }
 
 std::optional<double> Plant::read_load_encoder() const {

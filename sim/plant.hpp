@@ -33,7 +33,10 @@ class Plant {
 
   /// Encoder position, counts from the start: the edge that was passed last (rounding down), as a quadrature counter
   /// does.
-  std::int64_t encoder_counts() const;
+  std::int64_t encoder_counts() const { return counts_at(encoder_travel()); }
+  /// What the encoder's grid is laid over, mm or m, and the counts there.
+  double encoder_travel() const { return foreign_ ? state_.x : drive_.encoder(state_); }
+  std::int64_t counts_at(double encoder_travel) const;
 
   /// What the scale on the table reads, mm or m, on its own grid; empty for a drive without one, and where a foreign
   /// motion has taken the drive's place.

@@ -34,6 +34,7 @@ class Child {
   /// Does not run on, until it is killed.
   void pause() const { ::kill(process_, SIGSTOP); }
   void go_on() const { ::kill(process_, SIGCONT); }
+  void signal(int number) const { ::kill(process_, number); }
   /// Its exit code, once it has ended; the signal's number, negative, where one ended it.
   int wait() {
     int status = 0;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "firmware/app/axis_status.hpp"
+#include "firmware/app/board_limits.hpp"
 #include "firmware/app/capture_stream.hpp"
 #include "firmware/app/core_units.hpp"
 #include "firmware/app/excitation_service.hpp"
@@ -103,7 +104,7 @@ class BoardApplication {
     active_ = staged_;
     active_crc_ = set_crc(active_);
     if (changed == active_.size() && set_fits_) {
-      const BoardLimits limits = limits_of_board();  // all that may change while an axis moves
+      const BoardLimits limits = board_limits(active_);  // all that may change while an axis moves
       const typename Board::ControlShutOut guard;
       axes_.board().configure(limits);
       return Status::ok;
@@ -160,7 +161,6 @@ class BoardApplication {
     return set_fits_ && state != StoreState::damaged && state != StoreState::incomplete;
   }
 
-  // Motion, from the host.
   bool is_fitted(std::size_t axis) const { return active_.axis(axis).template get<"drive.fitted">(); }
 
   /// All axes of the mask or none of them; `refused` is the axis that cannot be enabled.
@@ -275,9 +275,9 @@ class BoardApplication {
       if (is_excited(axis) || axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis))
         return refusal(axis);
     }
-    return path_.open(request, client, opened);
+    return path_.open(request, client, probe_contact(active_), opened);
   }
-  PathService<Axes, typename Board::ControlShutOut>& path() { return path_; }
+  PathService<Axes, Board>& path() { return path_; }
 
   /// The limit of travel on one side of an axis.
   RefusedValuePayload limit_of_travel(std::size_t axis, bool positive) const {
@@ -346,7 +346,6 @@ class BoardApplication {
     if (!in_motion) axes_.board().host_commands(false);
   }
 
-  // Capture.
   void start_capture(const CaptureRequest& request) {
     const typename Board::ControlShutOut guard;
     capture_.start(request);
@@ -426,14 +425,6 @@ class BoardApplication {
     return axes_[axis].is_or_will_be_on() && (!axes_[axis].is_at_rest() || axes_[axis].is_homing());
   }
 
-  BoardLimits limits_of_board() const {
-    BoardLimits limits = BoardWatch::default_limits(1.0F / rate_Hz());
-    limits.heartbeat_samples = static_cast<std::int32_t>(active_.template get<"host.timeout">() * rate_Hz());
-    limits.stop_samples = static_cast<std::int32_t>(active_.template get<"emergency_stop.delay">() * rate_Hz());
-    limits.standing_samples = static_cast<std::int32_t>(active_.template get<"host.standing_timeout">() * rate_Hz());
-    return limits;
-  }
-
   void look_for_faults() {
     fault_log_.look(axes_, control_periods_, static_cast<std::uint32_t>(rate_Hz()),
                     [this](std::size_t axis, Scalar velocity) { return velocity_of_drive(axis, velocity); });
@@ -448,20 +439,29 @@ class BoardApplication {
     return result;
   }
 
+  /// While no drive is enabled. What takes long is done with the control interrupt running: SupervisedAxis::configure.
   void configure_all() {
-    const typename Board::ControlShutOut guard;
-    board_.set_control_rate(static_cast<std::uint32_t>(active_.template get<"control.rate">()));
-    axes_.board().configure(limits_of_board());
-    axes_.board().excuse_pause();
-    excitation_.forget();
+    const BoardLimits limits = board_limits(active_);
+    {
+      const typename Board::ControlShutOut guard;
+      board_.set_control_rate(static_cast<std::uint32_t>(active_.template get<"control.rate">()));
+      axes_.board().configure(limits);
+      axes_.board().excuse_pause();
+      excitation_.forget();
+    }
     if (!store_is_usable()) return;
     use_tables();
     for (std::size_t axis = 0; axis < kAxes; ++axis)
-      if (is_fitted(axis)) axes_[axis].configure(axis_parameters<Scalar>(active_.axis(axis)));
+      if (is_fitted(axis))
+        axes_[axis].template configure<typename Board::ControlShutOut>(axis_parameters<Scalar>(active_.axis(axis)));
   }
 
   void use_tables() {
-    for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].use_pitch_table(store_.table(axis).points);
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const PitchTable points = store_.table(axis).points;
+      const typename Board::ControlShutOut guard;
+      axes_[axis].use_pitch_table(points);
+    }
   }
 
   /// With the tables that go with the values.
@@ -487,7 +487,7 @@ class BoardApplication {
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<kBoardKeepsCapture, Nothing, TriggeredMemory> own_memory_{};
   ExcitationService<Scalar> excitation_;
-  PathService<Axes, typename Board::ControlShutOut> path_{axes_};
+  PathService<Axes, Board> path_{axes_, board_};
   MotionOwner owner_;
   ParameterValues active_{kAxes};
   ParameterValues staged_{kAxes};

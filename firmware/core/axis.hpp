@@ -164,6 +164,12 @@ class Axis {
 
   /// Position of an encoder reading in this axis's counts.
   constexpr std::int64_t counts_at(std::uint32_t reading) const { return counter_.counts_at(reading); }
+  /// The same without the present offsets of backlash and pitch compensation: where the table was.
+  constexpr std::int64_t table_counts_at(std::uint32_t reading) const {
+    CountPosition table = CountPosition::at(counts_at(reading));
+    table.advance(kOneCount / 2 - backlash_.offset(0) - pitch_.offset(0));
+    return table.counts;
+  }
 
   /// Velocity reference, mm/s (m/s), limited to the velocity limit; 0 slows down to standstill. False while disabled.
   constexpr bool jog(Scalar velocity) {

@@ -73,6 +73,14 @@ class SimulatedAxis {
       return {static_cast<std::uint32_t>(counts), true, passed < -1 || passed > 1};
     }
 
+    /// A probe's edge came at these counts.
+    void latch(std::int64_t counts) { latched_ = {static_cast<std::uint32_t>(counts), true}; }
+    EncoderReading read_latch() {
+      const EncoderReading latched = latched_;
+      latched_.valid = false;
+      return latched;
+    }
+
    private:
     std::int64_t turn_of(std::int64_t counts) const {
       if (!(wiring_.index_spacing > 0.0)) return 0;
@@ -83,6 +91,7 @@ class SimulatedAxis {
     sim::Plant& plant_;
     AxisWiring wiring_;
     std::int64_t last_turn_;
+    EncoderReading latched_{};
   };
 
   class SimulatedTachometer {
@@ -182,6 +191,7 @@ class SimulatedAxis {
 
 static_assert(AxisHal<SimulatedAxis>);
 static_assert(TableEncoderHal<SimulatedAxis>);
+static_assert(LatchedEncoder<SimulatedAxis::SimulatedEncoder>);
 static_assert(LimitInputs<SimulatedAxis::SimulatedLimits>);
 
 }  // namespace hal::pc

@@ -1,9 +1,11 @@
 // A board with simulated drives plugged in: the board's side of all connectors.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "hal/board.hpp"
 #include "hal/pc/simulated_axis.hpp"
@@ -38,6 +40,7 @@ class SimulatedBoardOf {
   SimulatedEmergencyStop& emergency_stop() { return stop_; }
   SimulatedRelay& power_relay() { return power_relay_; }
   SimulatedSupply& supply() { return supply_; }
+  SimulatedProbe& probe() { return probe_; }
   SimulatedClock& clock() { return clock_; }
   SimulatedUsb& usb() { return usb_; }
   SimulatedFlash& parameter_flash() { return flash_; }
@@ -54,16 +57,55 @@ class SimulatedBoardOf {
   bool wants_restart() const { return wants_restart_; }
   sim::Plant& plant(std::size_t index) { return plants_[index]; }
 
+  /// What the probe touches.
+  void put_surfaces(std::vector<SimulatedSurface> surfaces) { surfaces_ = std::move(surfaces); }
+  /// The probe's contact closes or opens now.
+  void touch(bool closed) {
+    if (probe_.turn(closed))
+      for (std::size_t i = 0; i < axes; ++i) axes_[i].encoder().latch(plants_[i].encoder_counts());
+  }
+
   /// Advances the environment by one control period.
   void advance() {
-    for (sim::Plant& plant : plants_) {
+    for (sim::Plant& plant : plants_)
       if (!power_relay_.is_closed()) plant.set_enabled(false);
-      plant.advance(1e-6 * control_period_us_);
+    const double period_s = 1e-6 * control_period_us_;
+    if (surfaces_.empty()) {
+      for (sim::Plant& plant : plants_) plant.advance(period_s);
+    } else {
+      const int parts = static_cast<int>((control_period_us_ + 249) / 250);
+      for (int part = 0; part < parts; ++part) advance_probe(period_s / parts);
     }
     clock_.advance_us(control_period_us_);
   }
 
  private:
+  /// With the probe's edge where the motion meets the surface, on a straight line through so short a time.
+  void advance_probe(double duration_s) {
+    std::array<double, axes> from{}, scale_from{};
+    for (std::size_t i = 0; i < axes; ++i) {
+      from[i] = plants_[i].table_travel();
+      scale_from[i] = plants_[i].encoder_travel();
+      plants_[i].advance(duration_s);
+    }
+    bool touches = false;
+    double first = 1.0, last = 0.0;  // changes, as shares of this time
+    for (const SimulatedSurface& one : surfaces_) {
+      const double to = plants_[one.axis].table_travel();
+      touches = touches || one.touches(to);
+      if (one.touches(to) == one.touches(from[one.axis])) continue;
+      const double share = (one.travel - from[one.axis]) / (to - from[one.axis]);
+      first = std::min(first, share);
+      last = std::max(last, share);
+    }
+    if (!probe_.turn(touches)) return;
+    const double share = touches ? first : last;
+    for (std::size_t i = 0; i < axes; ++i) {
+      const double way = plants_[i].encoder_travel() - scale_from[i];
+      axes_[i].encoder().latch(plants_[i].counts_at(scale_from[i] + share * way));
+    }
+  }
+
   template <std::size_t... index>
   static std::array<sim::Plant, axes> make_plants(const Drives& drives, std::uint64_t seed,
                                                   std::index_sequence<index...>) {
@@ -79,6 +121,8 @@ class SimulatedBoardOf {
   SimulatedEmergencyStop stop_;
   SimulatedRelay power_relay_;
   SimulatedSupply supply_;
+  SimulatedProbe probe_;
+  std::vector<SimulatedSurface> surfaces_;
   SimulatedClock clock_;
   SimulatedUsb usb_{16};
   SimulatedFlash flash_{4, 16384, 4};  // two full tables of pitch errors fit

@@ -1,10 +1,13 @@
 // Inputs of the simulated board that its axes share: time, emergency stop, supply.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "hal/clock.hpp"
 #include "hal/emergency_stop.hpp"
+#include "hal/probe.hpp"
 #include "hal/supply.hpp"
 
 namespace hal::pc {
@@ -47,6 +50,38 @@ class SimulatedSupply {
   bool is_low_ = false;
 };
 
+/// A wall across an axis: the probe touches it there and beyond.
+struct SimulatedSurface {
+  std::size_t axis = 0;
+  double travel = 0.0;      ///< mm (m)
+  bool is_upwards = false;  ///< beyond: at more travel
+  bool touches(double at) const { return is_upwards ? at >= travel : at <= travel; }
+};
+
+/// Closes on contact.
+class SimulatedProbe {
+ public:
+  bool is_closed() const { return is_closed_; }
+  void arm(bool closes) {
+    armed_for_ = closes;
+    has_latched_ = false;
+  }
+  bool has_latched() const { return has_latched_; }
+
+  /// True where this edge latches.
+  bool turn(bool closed) {
+    const bool latches = closed != is_closed_ && armed_for_ == closed && !has_latched_;
+    is_closed_ = closed;
+    has_latched_ = has_latched_ || latches;
+    return latches;
+  }
+
+ private:
+  std::optional<bool> armed_for_;
+  bool is_closed_ = false, has_latched_ = false;
+};
+
+static_assert(ProbeInput<SimulatedProbe>);
 static_assert(Clock<SimulatedClock>);
 static_assert(EmergencyStop<SimulatedEmergencyStop>);
 static_assert(PowerRelay<SimulatedRelay>);

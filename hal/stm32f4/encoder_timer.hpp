@@ -6,19 +6,21 @@
 
 namespace hal::stm32f4 {
 
-/// Channels 1 and 2 count every edge of A and B, channel 3 captures the counter at the index pulse. The hardware counts
-/// all 32 bits, so no overflow needs an interrupt.
+/// Channels 1 and 2 count every edge of A and B, channel 3 captures the counter at the index pulse, channel 4 at the
+/// trigger of the probe's timer (ProbeTimer). The hardware counts all 32 bits, so no overflow needs an interrupt.
 class EncoderTimer {
  public:
-  explicit EncoderTimer(Timer& registers) : registers_(registers) {}
+  /// `probe_trigger`: the input, ITR0 to ITR3, at which the probe's timer reaches this one (18.4.3).
+  EncoderTimer(Timer& registers, std::uint32_t probe_trigger) : registers_(registers), probe_trigger_(probe_trigger) {}
 
   void start() {
     constexpr std::uint32_t kInput = 1, kFilter = 3;  // CCxS: own pin; ICxF: 8 equal samples at 84 MHz (18.4.7)
     constexpr std::uint32_t kChannel = kInput | kFilter << 4;
     registers_.CCMR1 = kChannel | kChannel << 8;
-    registers_.CCMR2 = kChannel;
-    registers_.CCER = Timer::kCapture3Enable;
-    registers_.SMCR = Timer::kEncoderBothEdges;
+    constexpr std::uint32_t kTrigger = 3;  // CCxS: the internal trigger
+    registers_.CCMR2 = kChannel | kTrigger << 8;
+    registers_.CCER = Timer::kCapture3Enable | Timer::kCapture4Enable;
+    registers_.SMCR = Timer::from_trigger(probe_trigger_) | Timer::kEncoderBothEdges;
     registers_.ARR = 0xFFFFFFFFu;
     registers_.CNT = 0;
     registers_.CR1 = Timer::kEnable;
@@ -35,9 +37,15 @@ class EncoderTimer {
     return {.counts = counts, .seen = true, .missed = missed};
   }
 
+  EncoderReading read_latch() {
+    const bool came = (registers_.SR & Timer::kCapture4Flag) != 0;
+    return {.counts = registers_.CCR4, .valid = came};  // reading it clears the flag
+  }
+
  private:
   Timer& registers_;
+  std::uint32_t probe_trigger_;
 };
-static_assert(IndexedEncoder<EncoderTimer>);
+static_assert(IndexedEncoder<EncoderTimer> && LatchedEncoder<EncoderTimer>);
 
 }  // namespace hal::stm32f4

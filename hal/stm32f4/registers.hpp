@@ -36,7 +36,7 @@ struct Rcc {
   static constexpr std::uint32_t kGpioA = 1u << 0, kGpioB = 1u << 1, kGpioC = 1u << 2, kCcm = 1u << 20,
                                  kDma2 = 1u << 22;  // AHB1ENR, 7.3.10
   static constexpr std::uint32_t kOtgFs = 1u << 7;  // AHB2ENR, 7.3.11
-  static constexpr std::uint32_t kTim2 = 1u << 0, kTim3 = 1u << 1, kTim4 = 1u << 2, kTim5 = 1u << 3,
+  static constexpr std::uint32_t kTim2 = 1u << 0, kTim3 = 1u << 1, kTim4 = 1u << 2, kTim5 = 1u << 3, kTim13 = 1u << 7,
                                  kWindowWatchdog = 1u << 11, kPower = 1u << 28;                             // APB1ENR
   static constexpr std::uint32_t kUsart1 = 1u << 4, kAdc1 = 1u << 8, kSpi1 = 1u << 12, kSyscfg = 1u << 14;  // APB2ENR
   // AHB1RSTR to APB2RSTR, 7.3.5 to 7.3.9: every peripheral that a boot ROM or an earlier program may have used. The
@@ -90,17 +90,22 @@ struct Timer {
   std::uint32_t reserved0;
   Register CCR1, CCR2, CCR3, CCR4;
 
-  static constexpr std::uint32_t kEnable = 1u << 0;                                      // CR1, 18.4.1
-  static constexpr std::uint32_t kTriggerOnUpdate = 2u << 4;                             // CR2.MMS, 18.4.2
-  static constexpr std::uint32_t kEncoderBothEdges = 3u << 0;                            // SMCR.SMS, 18.4.3 and 18.3.12
-  static constexpr std::uint32_t kCapture3Flag = 1u << 3, kOvercapture3Flag = 1u << 11;  // SR, 18.4.5
-  static constexpr std::uint32_t kUpdate = 1u << 0;                                      // EGR, 18.4.6
-  static constexpr std::uint32_t kCapture3Enable = 1u << 8;                              // CCER, 18.4.9
+  static constexpr std::uint32_t kEnable = 1u << 0;                                           // CR1, 18.4.1
+  static constexpr std::uint32_t kTriggerWhileEnabled = 1u << 4, kTriggerOnUpdate = 2u << 4;  // CR2.MMS, 18.4.2
+  static constexpr std::uint32_t kEncoderBothEdges = 3u << 0, kStartOnTrigger = 6u << 0;   // SMCR.SMS, 18.4.3, 18.3.12
+  static constexpr std::uint32_t kFromInput1 = 5u << 4;                                    // SMCR.TS: TI1FP1
+  static constexpr std::uint32_t from_trigger(std::uint32_t input) { return input << 4; }  // likewise: ITR0 to ITR3
+  static constexpr std::uint32_t kCapture3Flag = 1u << 3, kOvercapture3Flag = 1u << 11,
+                                 kCapture4Flag = 1u << 4;  // SR, 18.4.5
+  static constexpr std::uint32_t kUpdate = 1u << 0;        // EGR, 18.4.6
+  static constexpr std::uint32_t kInput1Falls = 1u << 1, kCapture3Enable = 1u << 8,
+                                 kCapture4Enable = 1u << 12;  // CCER, 18.4.9
 };
 inline Timer& timer2() { return at_address<Timer>(0x40000000); }
 inline Timer& timer3() { return at_address<Timer>(0x40000400); }
 inline Timer& timer4() { return at_address<Timer>(0x40000800); }
 inline Timer& timer5() { return at_address<Timer>(0x40000C00); }
+inline Timer& timer13() { return at_address<Timer>(0x40001C00); }  // section 19.5: one channel, otherwise the same
 
 /// Serial peripheral interface, section 28.5.
 struct Spi {

@@ -58,15 +58,19 @@ void describe_board(const InfoArguments& arguments) {
     tables.push_back(
         host::read_pitch_text(board, axis, known->axis(axis).get<"pitch.on">(), host::count_mm_of(*known, axis)));
   const auto slots = host::read_slots(board);
+  const unsigned probe = known != nullptr ? board.probe_state().flags : 0;
+  const bool has_probe = (probe & firmware::kProbeWired) != 0, touches = (probe & firmware::kProbeTouches) != 0;
   if (!arguments.json.empty()) {
     nlohmann::json document = host::board_json(board.name(), identity, status, timing, known);
     for (std::size_t axis = 0; axis < tables.size(); ++axis) document["axes"][axis]["pitch_table"] = tables[axis];
     if (slots) document["slots"] = host::slots_json(*slots);
+    if (has_probe) document["probe_touches"] = touches;
     write_json(document, arguments.json);
   }
   if (!talks(arguments)) return;
   fmt::print("{}", host::board_text(board.name(), identity, status, timing, known));
   if (slots) fmt::print("{}", host::slots_text(*slots));
+  if (has_probe) fmt::print("probe        {}\n", touches ? "in contact" : "not in contact");
   for (std::size_t axis = 0; axis < tables.size(); ++axis)
     if (!tables[axis].empty()) fmt::print("pitch {}      {}\n", firmware::kAxisNames[axis], tables[axis]);
 }

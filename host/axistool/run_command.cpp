@@ -3,29 +3,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <memory>
-#include <numeric>
 #include <optional>
 
-#include "firmware/core/path/path_follower.hpp"
 #include "host/axistool/commands.hpp"
-#include "host/axistool/device_arguments.hpp"
-#include "host/axistool/interrupts.hpp"
 #include "host/axistool/json_output.hpp"
-#include "host/axistool/typed_keys.hpp"
+#include "host/axistool/program_run.hpp"
 #include "host/device/motion.hpp"
-#include "host/device/path_override.hpp"
-#include "host/device/path_run.hpp"
-#include "host/gcode/program.hpp"
 #include "host/parameters/parameter_file.hpp"
 #include "host/path/path_extents.hpp"
 #include "host/read_file.hpp"
-#include "host/record/read_record.hpp"
 
 namespace axistool {
 
@@ -35,77 +23,19 @@ using firmware::PathEnd;
 using host::ExitCode;
 using host::Failure;
 
-struct RunArguments : DeviceArguments {
-  std::string file, capture;
-  std::vector<std::string> linear, params;
-  double feed_percent = 100.0, rapid_percent = 100.0;
-  bool here = false, passes_stops = false;
-};
-
-std::atomic<bool> held = false;
-
-/// Ctrl-Z holds the feed and lets it go again; a terminal's other ways of stopping a program end the path.
-void catch_signals() {
-  catch_interrupts();
-  std::signal(SIGTSTP, [](int) { held = !held; });
-}
-
-std::string_view end_name(PathEnd end) {
-  switch (end) {
-    case PathEnd::none:
-      return "not ended";
-    case PathEnd::completed:
-      return "completed";
-    case PathEnd::asked:
-      return "interrupted";
-    case PathEnd::starved:
-      return "starved";
-    case PathEnd::host_lost:
-      return "host lost";
-    case PathEnd::fault:
-      return "fault";
-  }
-  return "unknown";
-}
-
-/// Start of the program: the present references.
-host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale) {
-  host::PathPoint point = host::PathPoint::Zero();
-  for (std::size_t i = 0; i < at.size(); ++i)
-    point[static_cast<Eigen::Index>(i)] = (static_cast<double>(at[i].counts) + at[i].fraction) * scale.count_mm[i];
-  return point;
-}
-
-std::vector<host::BoardPosition> standing(const host::BoardState& status, const host::PathScale& scale) {
+host::PathPoint standing(const host::BoardState& status, const host::PathScale& scale) {
   std::vector<host::BoardPosition> at;
   for (const std::size_t axis : scale.axes) at.push_back({status.axis.at(axis).counts(), 0.0});
-  return at;
+  return point_of(at, scale);
 }
 
-struct Planned {
-  host::GcodeProgram program;
-  host::PlannedPath path;
-};
-
+/// As if no probe met anything.
 Planned plan(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
-             const std::vector<host::BoardPosition>& at) {
-  host::GcodeMachine machine;
-  machine.axes = board.scale.axes.size();
-  machine.home = board.home;
-  machine.feed_share = 0.01 * arguments.feed_percent;
-  machine.rapid_share = 0.01 * arguments.rapid_percent;
-  machine.fastest_mm_s = board.limits.velocity;
-  Planned planned;
-  planned.program = host::read_gcode(text, arguments.file, point_of(at, board.scale), machine);
-  host::PathPlanOptions options;
-  options.limits = board.limits;
-  options.count_mm = *std::min_element(board.scale.count_mm.begin(), board.scale.count_mm.end());
-  options.shortest_s = std::max(options.shortest_s, 2.0 / board.scale.rate_Hz);
-  options.time_unit_s = 1.0 / board.scale.rate_Hz / (1u << firmware::kPathTimeBits);
-  planned.path = host::plan_path(planned.program.moves, options);
+             const host::PathPoint& start) {
+  Planned planned{read_program(text, arguments, board, start, {}), {}};
+  planned.path = plan_moves(planned.program.moves, arguments, board);
   if (planned.path.knots.size() < 2)
     throw Failure(ExitCode::bad_input, fmt::format("{}: nothing in it moves", arguments.file));
-  host::require_inside(planned.path, {board.least, board.most}, board.scale.axes.size(), arguments.file);
   return planned;
 }
 
@@ -125,6 +55,7 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
                              {"file", arguments.file},
                              {"lines", planned.program.lines},
                              {"duration_s", planned.path.duration_s()},
+                             {"probes", nlohmann::json::array()},
                              {"nodes", planned.path.knots.size() - 1},
                              {"contour_um", nullptr},
                              {"contour_rms_um", nullptr}};
@@ -134,63 +65,6 @@ nlohmann::json document_of(const RunArguments& arguments, const Planned& planned
   }
   return document;
 }
-
-/// Blocks signals until they are polled: in the middle of a report they would look like a lost board.
-class SignalsWait {
- public:
-  SignalsWait() {
-    sigemptyset(&signals_);
-    for (const int one : {SIGINT, SIGTERM, SIGTSTP}) sigaddset(&signals_, one);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-  }
-  ~SignalsWait() { pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr); }
-  SignalsWait(const SignalsWait&) = delete;
-  SignalsWait& operator=(const SignalsWait&) = delete;
-
-  /// Pending signals act now.
-  void let_in() {
-    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-  }
-
- private:
-  sigset_t signals_{};
-};
-
-/// Of the program, where the path is.
-std::size_t line_at(const host::PlannedPath& path, double elapsed_s) {
-  const auto next = std::ranges::upper_bound(path.curves, elapsed_s, {}, &host::PlannedCurve::time_s);
-  return next == path.curves.begin() ? 0 : (next - 1)->line;
-}
-
-/// One line on a terminal, rewritten.
-class RunLine {
- public:
-  RunLine(bool shows, const host::PlannedPath& path) : shows_(shows && ::isatty(STDERR_FILENO) != 0), path_(path) {}
-  ~RunLine() {
-    if (has_line_) fmt::print(stderr, "\r\033[K");
-  }
-
-  void draw(const host::PathProgress& progress, bool is_held) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!shows_ || (has_line_ && now - drawn_ < std::chrono::milliseconds(200))) return;
-    drawn_ = now;
-    has_line_ = true;
-    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line_at(path_, progress.elapsed_s),
-               100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
-               progress.state.permille / 10.0,
-               progress.waits != nullptr
-                   ? fmt::format(", WAITS at the stop in line {}: Enter continues", progress.waits->line)
-               : is_held ? ", HELD: Ctrl-Z continues"
-                         : "");
-    std::fflush(stderr);
-  }
-
- private:
-  bool shows_, has_line_ = false;
-  const host::PlannedPath& path_;
-  std::chrono::steady_clock::time_point drawn_;
-};
 
 bool has_terminal() { return ::isatty(STDIN_FILENO) != 0; }
 
@@ -203,56 +77,6 @@ void require_operator(const RunArguments& arguments, const host::PlannedPath& pa
                             arguments.file, path.stops.front().line));
 }
 
-/// Before a program starts or continues after a stop: the axes must be homed and without faults.
-void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative) {
-  const host::BoardState state = board.status();
-  for (const std::size_t axis : scale.axes) {
-    host::require_no_fault(state, static_cast<std::uint8_t>(axis));
-    if (!relative && (state.axis.at(axis).flags & firmware::kAxisHomed) == 0)
-      throw Failure(ExitCode::refused, fmt::format("axis {} is not homed: `axistool home {}` first, or --here, which "
-                                                   "takes its present count as its position",
-                                                   firmware::kAxisNames.at(axis), firmware::kAxisNames.at(axis)));
-  }
-}
-
-/// Whether a waiting program continues, and how fast it goes on.
-class Operator {
- public:
-  Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
-      : board_(board), scale_(scale), relative_(relative), arguments_(arguments) {}
-
-  host::PathWish wish(const host::PathProgress& progress, const Planned& planned) {
-    const std::string typed = keys_.take();  // also what was typed before a stop
-    for (const char key : typed) override_.press(key);
-    const bool is_rapid =
-        std::ranges::binary_search(planned.program.rapid_lines, line_at(planned.path, progress.elapsed_s));
-    return {.held = held,
-            .stop = interrupted(),
-            .permille = override_.permille(is_rapid),
-            .resume = goes_on(progress, typed.find('\n') != std::string::npos)};
-  }
-
- private:
-  bool goes_on(const host::PathProgress& progress, bool pressed) {
-    if (progress.waits != announced_ && progress.waits != nullptr)
-      fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
-                 arguments_.passes_stops ? ", and continues at once" : "; Enter continues, Ctrl-C ends it");
-    const bool is_new = progress.waits != announced_;
-    announced_ = progress.waits;
-    if (progress.waits == nullptr || !(arguments_.passes_stops || (pressed && !is_new))) return false;
-    require_startable(board_, scale_, relative_);
-    return true;
-  }
-
-  TypedKeys keys_;
-  host::PathOverride override_;
-  host::BoardClient& board_;
-  const host::PathScale& scale_;
-  bool relative_;
-  const RunArguments& arguments_;
-  const host::PathStop* announced_ = nullptr;
-};
-
 void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end) {
   if (end == PathEnd::fault || end == PathEnd::host_lost)
     for (const std::size_t axis : axes.scale.axes)
@@ -260,8 +84,54 @@ void say_end(host::BoardClient& board, const host::PathBoard& axes, PathEnd end)
   if (end == PathEnd::starved)
     throw Failure(ExitCode::time_out,
                   "the program arrived too slowly, so the board stopped on the path: is this computer busy?");
+  if (end == PathEnd::touched)
+    throw Failure(ExitCode::answer_is_no,
+                  "the probe made contact while the program did not probe; the axes stand on the path");
   if (end != PathEnd::completed)
     throw Failure(ExitCode::answer_is_no, fmt::format("{} before its end; the axes stand on the path", end_name(end)));
+}
+
+/// In words and, in `document`, for programs.
+void tell(const ProgramOutcome& outcome, const RunArguments& arguments, nlohmann::json& document) {
+  document["duration_s"] = outcome.path_s;
+  document["clock_s"] = outcome.clock_s;
+  document["planned_s"] = outcome.planned_s;
+  document["contour_um"] = outcome.worst_um;
+  document["contour_rms_um"] =
+      std::sqrt(outcome.squares_um2 / static_cast<double>(std::max<std::size_t>(1, outcome.rows)));
+  const std::string why(outcome.failure.empty() ? end_name(outcome.end) : "probe");
+  document["stopped_because"] = why;
+  document["lost_rows"] = outcome.lost_rows;
+  for (const ProbeResult& result : outcome.probes) {
+    const bool found = !result.mm.empty();
+    nlohmann::json one = {
+        {"line", result.line}, {"word", word_of(result.probe)}, {"found", found}, {"position_mm", nullptr}};
+    std::string where;
+    for (std::size_t i = 0; i < result.mm.size(); ++i) {
+      one["position_mm"][std::string(firmware::kAxisNames.at(i))] = result.mm[i];
+      where += fmt::format("{} {} {:.4f} mm", i > 0 ? "," : " at", firmware::kAxisNames.at(i), result.mm[i]);
+    }
+    document["probes"].push_back(one);
+    if (talks(arguments))
+      fmt::print("line {}: {}{}{}\n", result.line, found ? "" : "no ", sought_by(result.probe), where);
+  }
+  if (!talks(arguments)) return;
+  fmt::print("{}: {:.2f} s{}, contour error {:.1f} um at most\n", why, outcome.path_s,
+             outcome.clock_s > outcome.path_s + 0.1 ? fmt::format(" of motion in {:.2f} s", outcome.clock_s) : "",
+             outcome.worst_um);
+}
+
+/// A probing program needs a probe; its record would have gaps.
+void require_probe(host::BoardClient& board, const RunArguments& arguments, const host::GcodeProgram& program) {
+  if (program.probes.empty()) return;
+  const std::string where =
+      fmt::format("{} probes in line {}", arguments.file, program.moves[program.probes.front().move].line);
+  if ((board.probe_state().flags & firmware::kProbeWired) == 0)
+    throw Failure(
+        ExitCode::refused,
+        where + ", but no probe is wired: set probe.input to 1 (its input closes on contact) or 2 (it opens)");
+  if (!arguments.capture.empty())
+    throw Failure(ExitCode::refused, where + ", and is run in parts, of which --capture cannot make one record");
 }
 
 /// Checks the program before it needs a machine.
@@ -304,8 +174,8 @@ void run(const RunArguments& arguments) {
   const host::PathBoard machine = host::path_board(values, axes, metres, !arguments.dry_run);
   const auto mask = static_cast<std::uint8_t>((1u << axes) - 1u);
 
-  Planned planned = plan(text, arguments, machine,
-                         asked ? standing(asked->status(), machine.scale) : std::vector<host::BoardPosition>(axes));
+  const Planned planned =
+      plan(text, arguments, machine, asked ? standing(asked->status(), machine.scale) : host::PathPoint::Zero());
   nlohmann::json document = document_of(arguments, planned, axes);
   const host::PathExtents extents = host::extents_of(planned.path);
   if (talks(arguments))
@@ -319,42 +189,19 @@ void run(const RunArguments& arguments) {
   host::BoardClient& board = *asked;
   const bool relative = arguments.here || !planned.program.is_absolute;
   require_startable(board, machine.scale, relative);
+  require_probe(board, arguments, planned.program);
   require_operator(arguments, planned.path);
   require_consent(arguments, fmt::format("Run {}? The axes move within {}.", arguments.file, box_text(extents, axes)));
   catch_signals();
   const bool was_enabled = host::are_enabled(board, mask);
   if (!was_enabled) host::enable_and_wait(board, mask);
   // From where the references stand, now that the loops are closed.
-  planned = plan(text, arguments, machine, host::path_start(board, machine.scale, relative));
-  host::PathOutcome outcome;
-  {
-    RunLine line(talks(arguments), planned.path);
-    SignalsWait signals;
-    Operator at_machine(board, machine.scale, relative, arguments);
-    outcome = host::run_path(board, planned.path, machine, relative, true, [&](const host::PathProgress& progress) {
-      signals.let_in();
-      line.draw(progress, held);
-      return at_machine.wish(progress, planned);
-    });
-  }
+  const ProgramOutcome outcome = run_program(board, machine, relative, arguments, text);
   if (!was_enabled) host::disable_and_wait(board, mask);
-  const std::vector<double> contour_um = host::contour_error_um(outcome.capture, planned.path, machine.scale);
-  const double worst_um = contour_um.empty() ? 0.0 : *std::max_element(contour_um.begin(), contour_um.end());
-  if (!arguments.capture.empty())
-    host::write_record(host::path_record(outcome, machine, contour_um), arguments.capture);
-  const auto end = static_cast<PathEnd>(outcome.state.end);
-  document["duration_s"] = outcome.state.elapsed / machine.scale.rate_Hz;
-  document["planned_s"] = planned.path.duration_s();
-  document["contour_um"] = worst_um;
-  const double squares = std::inner_product(contour_um.begin(), contour_um.end(), contour_um.begin(), 0.0);
-  document["contour_rms_um"] = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, contour_um.size())));
-  document["stopped_because"] = end_name(end);
-  document["lost_rows"] = outcome.capture.lost;
+  tell(outcome, arguments, document);
   if (!arguments.json.empty()) write_json(document, arguments.json);
-  if (talks(arguments))
-    fmt::print("{}: {:.2f} s, contour error {:.1f} um at most\n", end_name(end), document["duration_s"].get<double>(),
-               worst_um);
-  say_end(board, machine, end);
+  if (!outcome.failure.empty()) throw Failure(ExitCode::answer_is_no, outcome.failure);
+  say_end(board, machine, outcome.end);
 }
 
 }  // namespace
@@ -381,9 +228,9 @@ void add_run(CLI::App& app) {
       "  axistool run part.ngc --dry-run              # time and extents, against the board's limits\n"
       "  axistool run part.ngc --capture part.csv\n"
       "  axistool run part.ngc --feed 120 --rapid 25\n"
-      "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30, X Y Z, N, "
-      "comments;\n"
-      "anything else is an error that names the line. The path is exact (G61) unless the program says G64; G64\n"
+      "Known: G0 G1 G2 G3 (I J, or R) G4 P G17 G20 G21 G28 G38.2 to G38.5 G54 G61 G64 P G90 G91, F, M0 M1 M2 M30,\n"
+      "X Y Z, N, comments; anything else is an error that names the line. The path is exact (G61) unless the program "
+      "says G64; G64\n"
       "without P has a tolerance of 0.05 mm. On a terminal Ctrl-Z holds and resumes the feed, Ctrl-C stops on the "
       "path,\n"
       "M0 and M1 wait for Enter, - and + override the feeds while it runs, and < and > the rapids: in steps of 10 %, "

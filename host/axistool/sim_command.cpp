@@ -16,6 +16,7 @@
 #include "host/external_plant/plant_server.hpp"
 #include "host/identify/paper_drives.hpp"
 #include "host/model/model_file.hpp"
+#include "host/number.hpp"
 #include "host/open_board.hpp"
 #include "host/output_target.hpp"
 #include "host/own_folder.hpp"
@@ -30,6 +31,7 @@ namespace {
 
 struct SimArguments {
   std::string socket, flash, plant;
+  std::vector<std::string> surfaces;
   std::array<std::string, hal::kMostAxes> models;
   std::size_t axes = hal::kAxisCount;
   std::string serial_number = "SIMULATED";
@@ -60,6 +62,16 @@ void make_folder_of(const std::string& flash_file) {
 host::SimulatedDrive drive(const std::string& file, std::size_t axis) {
   return host::usual_axis(file.empty() ? host::paper_drive(firmware::kAxisNames.at(axis % 2)).value()
                                        : host::read_drive(file));
+}
+
+/// AXIS=TRAVEL: beyond it, seen from 0.
+hal::pc::SimulatedSurface surface(const std::string& text, std::size_t axes) {
+  const std::size_t equals = text.find('=');
+  const auto travel = host::parse_number(equals == std::string::npos ? "" : text.substr(equals + 1));
+  if (!travel || *travel == 0.0)
+    throw host::Failure(host::ExitCode::usage,
+                        fmt::format("--probe {}: give an axis and a travel that is not 0, such as x=20", text));
+  return {host::axis_index(text.substr(0, equals), axes), *travel, *travel > 0.0};
 }
 
 /// The external program replaces the drives; only their data sheets are used.
@@ -111,6 +123,7 @@ void run(SimArguments arguments) {
   options.seed = arguments.seed;
   for (std::size_t axis = 0; axis < arguments.axes; ++axis)
     options.drives.push_back(drive(arguments.models[axis], axis));
+  for (const std::string& one : arguments.surfaces) options.surfaces.push_back(surface(one, arguments.axes));
   if (!arguments.plant.empty()) hand_over(options.drives, arguments);
   if (!arguments.forget) {
     options.flash_file = arguments.flash.empty() ? default_flash_file() : arguments.flash;
@@ -172,6 +185,10 @@ void add_sim(CLI::App& app) {
       ->excludes(plant)
       ->excludes(usb)
       ->excludes(socket);
+  command
+      ->add_option("--probe", arguments->surfaces,
+                   "wire a touch probe: it closes from this travel of an axis on, AXIS=mm (m), seen from power-up")
+      ->excludes(plant);
   command->add_option("--flash", arguments->flash, "file that keeps its parameters; default: in ~/.local/state/axis");
   command->add_flag("--forget", arguments->forget, "keep no parameters");
   command->add_option("--seed", arguments->seed, "seed of the sensors' noise")->capture_default_str();

@@ -306,6 +306,10 @@ firmware::PathStatePayload BoardClient::path_state() {
   return payload_of<firmware::PathStatePayload>(request(MessageType::path_state));
 }
 
+firmware::ProbeStatePayload BoardClient::probe_state() {
+  return payload_of<firmware::ProbeStatePayload>(request(MessageType::probe_state));
+}
+
 void BoardClient::arm_trigger(const firmware::TriggerRequest& wanted) { request(MessageType::arm_trigger, wanted); }
 
 firmware::TriggerStatePayload BoardClient::trigger_state() {

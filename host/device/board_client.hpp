@@ -85,6 +85,7 @@ class BoardClient {
   firmware::PathStatePayload path_rate(const firmware::PathRateRequest& wanted);
   firmware::PathStatePayload stop_path();
   firmware::PathStatePayload path_state();
+  firmware::ProbeStatePayload probe_state();
 
   void arm_trigger(const firmware::TriggerRequest& wanted);
   firmware::TriggerStatePayload trigger_state();

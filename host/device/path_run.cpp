@@ -28,8 +28,10 @@ constexpr int kReportsARound = 4;        // of rows, which never end: two millis
 constexpr double kHeadStart_s = 0.5;     // of nodes, before the board sets out
 constexpr double kMostRows_Hz = 1000.0;  // a cable takes so many rows of two axes beside the nodes
 
-firmware::OpenPathRequest open_request(const PathScale& scale, const firmware::PathUnits& units, bool relative) {
+firmware::OpenPathRequest open_request(const PathScale& scale, const firmware::PathUnits& units, bool relative,
+                                       firmware::ProbeStop probe = firmware::ProbeStop::none) {
   firmware::OpenPathRequest request;
+  request.probe = probe;
   for (const std::size_t axis : scale.axes) request.mask |= static_cast<std::uint8_t>(1u << axis);
   request.relative = relative ? 1 : 0;
   request.units = units;
@@ -198,10 +200,10 @@ std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale
 }
 
 PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative, bool captures,
-                     const std::function<PathWish(const PathProgress&)>& follow) {
+                     const std::function<PathWish(const PathProgress&)>& follow, firmware::ProbeStop probe) {
   PathOutcome outcome;
   const firmware::PathUnits units = units_of(path, scale.scale);
-  const auto start = positions(board.open_path(open_request(scale.scale, units, relative)), scale.scale);
+  const auto start = positions(board.open_path(open_request(scale.scale, units, relative, probe)), scale.scale);
   const PathWords words = path_words(path, scale.scale, units, start);
   Stream stream(board, words, scale.scale, path.stops);
   std::optional<PathRows> rows;
@@ -239,6 +241,9 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
       given = wish;
     }
     outcome.state = stream.state();
+    if (!outcome.capture.number.empty())
+      outcome.clock_s =
+          outcome.capture.row_period_s * (outcome.capture.number.back() - outcome.capture.number.front() + 1);
     if (rows) {
       for (int k = 0; k < 10; ++k) {
         rows->fetch(milliseconds(2));
@@ -257,6 +262,22 @@ PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoar
     throw;
   }
   return outcome;
+}
+
+std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale& scale) {
+  const firmware::ProbeStatePayload state = board.probe_state();
+  if ((state.flags & firmware::kProbeMet) == 0) return std::nullopt;
+  if ((state.flags & firmware::kProbeLatched) == 0)
+    throw Failure(
+        ExitCode::device_fault,
+        "the probe changed, but the board's timers did not latch where: check the probe's wire and its input");
+  std::vector<double> mm;
+  for (std::size_t i = 0; i < scale.axes.size(); ++i) {
+    const auto& at = state.axis.at(scale.axes[i]);
+    const auto high = static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.counts_high)) << 32;
+    mm.push_back(scale.count_mm[i] * static_cast<double>(static_cast<std::int64_t>(high | at.counts_low)));
+  }
+  return mm;
 }
 
 namespace {

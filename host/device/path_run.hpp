@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/core/path/probe_watch.hpp"
 #include "host/device/board_client.hpp"
 #include "host/path/path_words.hpp"
 #include "host/record/record.hpp"
@@ -48,16 +49,22 @@ struct PathCapture {
 
 struct PathOutcome {
   firmware::PathStatePayload state;
-  PathCapture capture;  ///< empty unless asked for
+  PathCapture capture;   ///< empty unless asked for
+  double clock_s = 0.0;  ///< of the board, from start to rest; by the capture's rows
 };
 
 /// Where the references of enabled, standing axes are: where a path must begin. Opens a path, which may be opened anew.
 std::vector<BoardPosition> path_start(BoardClient& board, const PathScale& scale, bool relative);
 
-/// Follows the path, from its begin to rest. However it ends, the board is told to stop. Throws what BoardClient
-/// throws, and Failure(refused) naming the node that the board refuses.
+/// Follows the path, from its begin to rest, or until the probe finds what it looks for. However it ends, the board is
+/// told to stop. Throws what BoardClient throws, and Failure(refused) naming the node that the board refuses.
 PathOutcome run_path(BoardClient& board, const PlannedPath& path, const PathBoard& scale, bool relative, bool captures,
-                     const std::function<PathWish(const PathProgress&)>& follow);
+                     const std::function<PathWish(const PathProgress&)>& follow,
+                     firmware::ProbeStop probe = firmware::ProbeStop::none);
+
+/// Where the probe found what the last path looked for, mm of each axis; empty where it did not. Throws
+/// Failure(device_fault) where its edge was not latched.
+std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale& scale);
 
 /// As a record of the first axis, with the others' positions and the contour error beside it.
 Record path_record(const PathOutcome& outcome, const PathBoard& board, const std::vector<double>& contour_um);

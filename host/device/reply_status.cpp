@@ -143,6 +143,13 @@ void require_ok(const Message& reply, const std::string& others) {
       give_up(ExitCode::refused,
               "the board runs a new image on trial, and drives stay disabled until it is confirmed: `axistool update` "
               "with the same file confirms it; otherwise the old image returns within a minute");
+    case Status::no_probe:
+      give_up(ExitCode::refused,
+              "no probe is wired: set probe.input to 1 (its input closes on contact) or 2 (it opens) once one is");
+    case Status::probe_already:
+      give_up(ExitCode::refused,
+              "the probe is in contact before the move towards it begins, or not in contact before the one away from "
+              "it (G38.4, G38.5): move it, or check its wires and probe.input");
     case Status::not_homed:
       give_up(ExitCode::refused, "the axis is not homed: `axistool home` first (or move it --relative, or jog it)");
     case Status::homing_mode:

@@ -46,7 +46,7 @@ class Reader {
   }
 
  private:
-  enum class Motion { none, rapid, feed, clockwise, counter_clockwise };
+  enum class Motion { none, rapid, feed, clockwise, counter_clockwise, probe };
 
   [[noreturn]] void fail(const std::string& what) const {
     throw Failure(ExitCode::bad_input, fmt::format("{}:{}: {}", name_, line_, what));
@@ -156,6 +156,14 @@ class Reader {
                   : tenths == 20 ? Motion::clockwise
                                  : Motion::counter_clockwise;
         return;
+      case 382:
+      case 383:
+      case 384:
+      case 385:
+        claim("motion");
+        motion_ = Motion::probe;
+        probe_ = {.is_away = tenths >= 384, .must_succeed = tenths % 2 == 0};
+        return;
       case 40:
         claim("dwell");
         block_.dwells = true;
@@ -184,7 +192,10 @@ class Reader {
         is_relative_ = tenths == 910;
         return;
       default:
-        fail(fmt::format("G{:g} is not supported; G0 G1 G2 G3 G4 G17 G20 G21 G28 G54 G61 G64 G90 G91 are", value));
+        fail(
+            fmt::format("G{:g} is not supported; G0 G1 G2 G3 G4 G17 G20 G21 G28 G38.2 to G38.5 G54 G61 G64 G90 "
+                        "G91 are",
+                        value));
     }
   }
 
@@ -248,7 +259,8 @@ class Reader {
   }
 
   void add(const PathCurve& curve, bool is_rapid) {
-    if (!is_rapid && !(feed_mm_s_ > 0.0)) fail("no feed: give F, in units per minute, before the first G1, G2 or G3");
+    if (!is_rapid && !(feed_mm_s_ > 0.0))
+      fail("no feed: give F, in units per minute, before the first G1, G2, G3 or G38");
     PathMove move;
     move.curve = curve;
     move.feed_mm_s = is_rapid ? rapid_mm_s(curve) : feed_mm_s_ * machine_.feed_share;
@@ -295,16 +307,31 @@ class Reader {
     const PathPoint to = target();
     switch (motion_) {
       case Motion::none:
-        fail("position without G0, G1, G2 or G3 before it");
+        fail("position without G0, G1, G2, G3 or G38 before it");
       case Motion::rapid:
       case Motion::feed:
         if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R are for arcs only, G2 or G3");
         add(PathCurve::line(at_, to), motion_ == Motion::rapid);
         break;
+      case Motion::probe:
+        return probe(to);
       default:
         arc(to, begins_somewhere);
     }
     at_ = to;
+  }
+
+  /// The axes stand before and after it; where they then stand, only the probe knows.
+  void probe(const PathPoint& to) {
+    if (block_.centre[0] || block_.centre[1] || block_.radius) fail("I, J and R are for arcs only, G2 or G3");
+    const bool is_certain = !machine_.begins_anywhere && program_.probes.size() <= machine_.probed.size();
+    if (is_certain && !((to - at_).norm() > 0.0)) fail("G38 leads nowhere: its target is where the axes stand");
+    add(PathCurve::line(at_, to), false);
+    program_.moves.back().kind = PathMoveKind::probe;
+    probe_.move = program_.moves.size() - 1;
+    program_.probes.push_back(probe_);
+    const std::size_t count = program_.probes.size();
+    at_ = count <= machine_.probed.size() ? machine_.probed[count - 1] : to;
   }
 
   void arc(const PathPoint& to, bool begins_somewhere) {
@@ -391,6 +418,7 @@ class Reader {
   Block block_;
   PathPoint at_;
   Motion motion_ = Motion::none;
+  GcodeProbe probe_;
   double unit_mm_ = 1.0, feed_mm_s_ = 0.0, tolerance_mm_ = 0.0, duration_s_ = 0.0;
   std::array<bool, 3> is_known_{};  ///< where the axis stands
   bool is_relative_ = false, has_ended_ = false;

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <span>
 
 #include "firmware/app/crc32.hpp"
 #include "host/exit_codes.hpp"
+#include "host/number.hpp"
 #include "host/parameters/parameter_names.hpp"
 
 namespace host {
@@ -20,6 +22,21 @@ constexpr std::string_view kCountKey = "count = ", kCrcKey = "crc32 = \"0x";
 constexpr std::string_view kPitchHead =
     "# Tables of pitch errors: axis, counts from home, forward, backward (2^-16 counts)";
 constexpr std::string_view kPitchKey = "#pitch ";
+
+/// Four whole numbers with blanks between them, and nothing else.
+std::optional<std::array<std::int32_t, 4>> four_whole(std::string_view text) {
+  std::array<std::int32_t, 4> all{};
+  for (std::int32_t& one : all) {
+    text = trim_blanks(text);
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::optional<double> number = parse_number(text.substr(0, end));
+    if (!number || *number != std::trunc(*number) || !(*number >= -2147483648.0 && *number <= 2147483647.0))
+      return std::nullopt;
+    one = static_cast<std::int32_t>(*number);
+    text.remove_prefix(end);
+  }
+  return trim_blanks(text).empty() ? std::optional(all) : std::nullopt;
+}
 
 /// Programs whose backups had no CRC knew boards of two axes.
 constexpr std::size_t kOldBoard = firmware::parameter_rows::kBoardRows + 2 * firmware::parameter_rows::kAxisRows;
@@ -119,15 +136,15 @@ std::optional<PitchTables> pitch_of_backup(std::string_view text, std::string_vi
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line(text.substr(begin, end - begin));
+    const std::string_view line = text.substr(begin, end - begin);
     begin = end + 1;
     if (line.starts_with(kPitchHead)) tables.emplace(axes);
     if (!line.starts_with(kPitchKey)) continue;
-    std::size_t axis = 0;
-    firmware::PitchPoint one;
-    const bool is_read = std::sscanf(line.c_str() + kPitchKey.size(), "%zu %d %d %d", &axis, &one.counts, &one.forward,
-                                     &one.backward) == 4;
-    auto* table = is_read && tables && axis < axes ? &(*tables)[axis] : nullptr;
+    const auto words = four_whole(line.substr(kPitchKey.size()));
+    const auto [axis, counts, forward, backward] = words.value_or(std::array{-1, 0, 0, 0});
+    const firmware::PitchPoint one{counts, forward, backward};
+    const bool is_there = tables && axis >= 0 && static_cast<std::size_t>(axis) < axes;
+    auto* table = is_there ? &(*tables)[static_cast<std::size_t>(axis)] : nullptr;
     if (table == nullptr || !is_valid(one) || table->size() == firmware::kMostPitchPoints ||
         (!table->empty() && !may_follow(table->back(), one)))
       throw Failure(ExitCode::bad_input,

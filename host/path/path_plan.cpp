@@ -174,8 +174,9 @@ class Joiner {
   Joiner(PlannedPath& path, const PathPlanOptions& options) : path_(path), options_(options) {}
 
   void add(const PathMove& move) {
-    if (move.kind != PathMoveKind::motion) {
-      stop();
+    const bool is_probe = move.kind == PathMoveKind::probe;
+    if (move.kind != PathMoveKind::motion) stop();
+    if (move.kind != PathMoveKind::motion && !is_probe) {
       dwell(move);
       if (move.kind == PathMoveKind::stop) path_.stops.push_back({path_.knots.size() - 1, move.line});
       return;
@@ -188,6 +189,7 @@ class Joiner {
     whole_mm_ = move.curve.length();
     begin_mm_ = taken_mm_;
     taken_mm_ = 0.0;
+    if (is_probe) stop();
   }
 
   /// The axes stand afterwards.

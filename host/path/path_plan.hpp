@@ -13,7 +13,7 @@ struct AxisLimits {
   PathPoint velocity, acceleration, jerk;
 };
 
-enum class PathMoveKind { motion, dwell, stop /* until the operator lets it go on */ };
+enum class PathMoveKind { motion, probe /* from rest to rest */, dwell, stop /* until the operator lets it go on */ };
 
 struct PathMove {
   PathMoveKind kind = PathMoveKind::motion;

@@ -62,6 +62,7 @@ class ProgramOf : public SimulatedProgram {
         server_(application_, image_, facts) {
     for (std::size_t i = 0; i < axes; ++i)
       if (options.drives[i].motion) board_.plant(i).hand_over(options.drives[i].motion);
+    board_.put_surfaces(options.surfaces);
     load_flash(board_.parameter_flash(), options.flash_file);
     application_.start();
   }

@@ -9,6 +9,7 @@
 
 #include "hal/pc/simulated_axis.hpp"
 #include "hal/pc/simulated_flash.hpp"
+#include "hal/pc/simulated_panel.hpp"
 #include "hal/pc/simulated_usb.hpp"
 #include "sim/drive_description.hpp"
 
@@ -25,6 +26,7 @@ struct SimulatedDeviceOptions {
   std::vector<SimulatedDrive> drives;  ///< of axis x, y, …; as many as the board has axes, 1 to hal::kMostAxes
   std::string flash_file;              ///< empty: the board forgets
   std::uint64_t seed = 1;              ///< of the sensors' noise
+  std::vector<hal::pc::SimulatedSurface> surfaces{};  ///< that a touch probe meets
 };
 
 /// The board's end of any way to a host; satisfies hal::UsbHid.

@@ -36,6 +36,7 @@ NOT_RUN = [
     (r"\bcommission\b", "a minute and more; host/commission's tests run it"),
     (r"\bbode\b", "two minutes of motion; host/response's tests run it"),
     (r"\bplan\b|run\.(toml|csv)", "a minute and more; host/plan's tests run it"),
+    (r"probe\.ngc", "needs a touch probe; host/axistool's tests run it"),
     (r"axistool circle\b", "needs records of circles; host/axes's tests run it"),
     (r"--response", "needs what bode writes; host/response's tests run it"),
     (r"\bimprove\b", "a minute; host/python's and host/diagnose's tests run it"),

@@ -1,6 +1,8 @@
 // Amplifier and brake between a request and motion, and between standstill and zero current.
 #include "firmware/core/supervision/drive_sequence.hpp"
 
+#include <vector>
+
 #include "tests/firmware/driven_axis.hpp"
 
 namespace {
@@ -278,6 +280,35 @@ TEST_F(Sequence, AReadyInputWithoutATimeIsRefused) {
   firmware::boards::ValueAxis io;
   firmware::SupervisedAxis<float, firmware::boards::ValueAxis> axis(io);
   EXPECT_EQ(axis.configure(p), firmware::Refusal::amplifier_ready);
+}
+
+/// Comes in whenever it is let in.
+struct ControlInterrupt {
+  ControlInterrupt() = default;
+  ControlInterrupt(const ControlInterrupt&) = delete;
+  ControlInterrupt& operator=(const ControlInterrupt&) = delete;
+  ~ControlInterrupt() {
+    axis->axis.step();
+    seen.push_back(axis->axis.telemetry().encoder_counts);
+  }
+  static inline DrivenAxis* axis = nullptr;
+  static inline std::vector<std::int64_t> seen;
+};
+
+/// Catches a control law that computes with one half of its parameters new.
+TEST_F(Sequence, AnAxisStandsAsideWhileItTakesParameters) {
+  DrivenAxis axis(parameters(false, false));
+  EXPECT_TRUE(axis.axis.disable());
+  for (int k = 0; k < 200; ++k) axis.step();
+  ASSERT_EQ(axis.axis.state(), SupervisorState::ready);
+  const std::int64_t before = axis.axis.telemetry().encoder_counts;
+  axis.io.encoder().reading.counts += 3;
+  ControlInterrupt::axis = &axis;
+  EXPECT_EQ(axis.axis.configure<ControlInterrupt>(parameters(false, true)), firmware::Refusal::none);
+  EXPECT_EQ(ControlInterrupt::seen, (std::vector<std::int64_t>{before, before + 3})) << "nothing, then a step";
+  EXPECT_EQ(axis.axis.state(), SupervisorState::self_test);
+  for (int k = 0; k < firmware::kSelfTestSamples + 1; ++k) axis.axis.step();
+  EXPECT_EQ(axis.axis.state(), SupervisorState::ready);
 }
 
 }  // namespace

@@ -147,6 +147,20 @@ TEST(PitchCorrection, IsContinuousAtAnySpeedAndPlace) {
   EXPECT_NEAR(reference.added(), -deviation(1e9, true), 1e-4);
 }
 
+/// What is added now is what was added to the newest increment so many samples ago.
+TEST(PitchCorrection, ItsPreviewReachesThePresentSampleBySample) {
+  Reference reference(true, 500);
+  std::vector<Increment> added(kPreviewSamples, reference.correction.offset(kPreviewSamples));
+  for (int k = 0; k < 200; ++k) {
+    reference.go(k < 100 ? 7.7 : -7.7);
+    added.push_back(reference.correction.offset(kPreviewSamples));
+    for (int ahead = 0; ahead < kPreviewSamples; ++ahead)
+      ASSERT_EQ(reference.correction.offset(ahead), added[added.size() - 1 - (kPreviewSamples - ahead)])
+          << k << ", " << ahead;
+  }
+  EXPECT_NE(added.front(), added.back());
+}
+
 /// At the ends of what is allowed nothing overflows.
 TEST(PitchCorrection, HoldsTheLargestTable) {
   std::vector<PitchPoint> table;

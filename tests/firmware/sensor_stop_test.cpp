@@ -211,6 +211,66 @@ TEST_F(SensorStop, AnAxisThatRunsAwayFromASilentEncoderIsLetGo) {
   });
 }
 
+/// The stop's arithmetic by itself: what each sensor shows is put in.
+class SensorStopAlone : public testing::Test {
+ protected:
+  SensorStopAlone() {
+    stop.configure(p);
+    most = 2.0f * p.monitors.disagreement_floor;
+  }
+  /// `encoder`, `tachometer` and `reference`, rad/s.
+  firmware::AxisTelemetry<float> seen(float encoder, float tachometer, float reference) const {
+    firmware::AxisTelemetry<float> all;
+    all.encoder_travel =
+        static_cast<std::int32_t>(std::lround(encoder * p.lead * p.sample_period_s / p.encoder_resolution));
+    all.tachometer_velocity = tachometer;
+    all.reference_velocity = reference;
+    return all;
+  }
+  float per_count() const { return p.encoder_resolution / (p.lead * p.sample_period_s); }
+
+  firmware::AxisParameters<float> p = firmware_test::parameters_of<float>(firmware_test::kPaperX);
+  firmware::SensorStop<float> stop;
+  float most = 0.0f;
+};
+
+/// Near rest a silent encoder looks like one that is right; at speed it does not.
+TEST_F(SensorStopAlone, SensorsThatDivergeNearRestLeaveTheEncoder) {
+  using firmware::TrustedSensor;
+  constexpr auto kDiverged = AxisFault::encoder_tachometer_disagreement;
+  for (const float sign : {1.0f, -1.0f}) {
+    EXPECT_EQ(stop.trusted_after(kDiverged, seen(0.0f, 0.0f, sign * 0.9f * most)), TrustedSensor::encoder);
+    EXPECT_EQ(stop.trusted_after(kDiverged, seen(0.0f, 0.0f, sign * 1.1f * most)), TrustedSensor::tachometer);
+    EXPECT_EQ(stop.trusted_after(kDiverged, seen(sign * 0.5f * most, 0.0f, sign * 1.1f * most)),
+              TrustedSensor::encoder);
+  }
+}
+
+/// Of sensors that diverged near rest neither is known to be wrong: the other one may not gain speed.
+TEST_F(SensorStopAlone, ADoubtfulEncoderIsLetGoOnceTheTachometerGainsSpeed) {
+  constexpr auto kDiverged = AxisFault::encoder_tachometer_disagreement;
+  for (const float sign : {1.0f, -1.0f}) {
+    stop.begin(firmware::TrustedSensor::encoder, kDiverged, seen(0.0f, sign * 3.0f, 0.0f), 0.0f);
+    EXPECT_TRUE(stop.next(seen(0.0f, sign * (2.9f + most), 0.0f)));
+    EXPECT_FALSE(stop.next(seen(0.0f, sign * (3.1f + most), 0.0f)));
+  }
+  stop.begin(firmware::TrustedSensor::encoder, AxisFault::tachometer_invalid, seen(0.0f, 3.0f, 0.0f), 0.0f);
+  EXPECT_TRUE(stop.next(seen(0.0f, 10.0f * most, 0.0f))) << "nobody doubts it";
+}
+
+/// A drive that creeps at rest meets a command that grows with the way: Kc1 times a count each sample, as far as the
+/// converter goes.
+TEST_F(SensorStopAlone, HoldsThePositionAtRest) {
+  constexpr float kLoad_V = 0.25f;
+  stop.begin(firmware::TrustedSensor::encoder, AxisFault::tachometer_invalid, seen(0.0f, 0.0f, 0.0f), kLoad_V);
+  const firmware::AxisTelemetry<float> creeping = seen(per_count(), 0.0f, 0.0f);
+  for (int k = 0; k < 30; ++k) EXPECT_TRUE(stop.next(creeping));
+  const float before_V = stop.command_V();
+  for (int k = 0; k < 10; ++k) EXPECT_TRUE(stop.next(creeping));
+  EXPECT_NEAR(stop.command_V() - before_V, -10.0f * p.Kc[0] * p.encoder_resolution, 1e-3f);
+  EXPECT_LT(before_V, kLoad_V - 28.0f * p.Kc[0] * p.encoder_resolution);
+}
+
 TEST_F(SensorStop, TheBrakeHoldsBeforeTheEnableDrops) {
   auto p = parameters();
   p.sequence = {

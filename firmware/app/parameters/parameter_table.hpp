@@ -29,6 +29,8 @@ inline constexpr std::array kOwnRows = std::to_array<ParameterInfo>({
      "the same for axes at rest: after it they are disabled"},
     {4, board, "emergency_stop.delay", real, "s", "s", 0, 5, 0, while_disabled,
      "for which axes may slow down along their ramps after the stop circuit has opened (stop category 1)"},
+    {5, board, "probe.input", whole, "", "", 0, 2, 0, while_disabled,
+     "touch probe: 0 none is wired; 1 its input closes on contact; 2 it opens on contact"},
 
     {16, axis, "drive.fitted", toggle, "", "", 0, 1, 0, while_disabled, "the axis exists: it can be enabled"},
     {17, axis, "drive.sample_period", real, "s", "s", 5e-5F, 4e-3F, 1e-3F, while_disabled,

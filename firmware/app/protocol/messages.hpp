@@ -54,6 +54,7 @@ enum class MessageType : std::uint8_t {
   path_rate = 0x53,
   stop_path = 0x54,
   path_state = 0x55,
+  probe_state = 0x56,
   begin_update = 0x60,
   update_block = 0x61,
   finish_update = 0x62,
@@ -98,6 +99,8 @@ enum class Status : std::uint8_t {
   brown_out_off = 24,   ///< nothing moves before the chip's brown-out reset is set
   bad_image = 25,       ///< RefusedImagePayload says why
   on_trial = 26,        ///< nothing moves, and no update begins, before the image that runs is confirmed
+  no_probe = 27,        ///< a path that probes, and probe.input is 0 or the board has no such input
+  probe_already = 28,   ///< a path looks for contact that is there already, or for its loss, and there is none
 };
 
 struct IdentityPayload {

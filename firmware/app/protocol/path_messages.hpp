@@ -3,6 +3,7 @@
 
 #include "firmware/app/protocol/messages.hpp"
 #include "firmware/core/path/path_node.hpp"
+#include "firmware/core/path/probe_watch.hpp"
 
 namespace firmware {
 
@@ -15,7 +16,8 @@ struct OpenPathRequest {
   std::uint8_t relative = 0;  ///< 1: axes need not be homed
   PathUnits units{};
   std::uint8_t node_format = kPathNodeFormat;  ///< another is refused: Status::wrong_version
-  std::array<std::uint8_t, 2> reserved{};
+  ProbeStop probe = ProbeStop::none;
+  std::uint8_t reserved = 0;
 };
 static_assert(sizeof(OpenPathRequest) == 8);
 
@@ -57,5 +59,21 @@ struct PathStatePayload {
   std::uint16_t permille = 0;  ///< of the clock, now
 };
 static_assert(sizeof(PathStatePayload) == 20);
+
+inline constexpr unsigned kProbeWired = 1;    ///< probe.input says so, and the board has the input
+inline constexpr unsigned kProbeTouches = 2;  ///< now
+inline constexpr unsigned kProbeMet = 4;      ///< the last path was opened for it, or hit something, and it came
+inline constexpr unsigned kProbeLatched = 8;  ///< and where it came is exact
+
+struct ProbeStatePayload {
+  struct Position {
+    std::uint32_t counts_low = 0;
+    std::int32_t counts_high = 0;
+  };
+  std::uint8_t flags = 0;  ///< kProbe…
+  std::array<std::uint8_t, 3> reserved{};
+  std::array<Position, hal::kMostAxes> axis{};  ///< where the edge came
+};
+static_assert(sizeof(ProbeStatePayload) == 36);
 
 }  // namespace firmware

@@ -22,6 +22,10 @@ class PathRequests {
         if (status == Status::ok) reply.put(opened);
         return status;
       });
+    if (request.type == MessageType::probe_state) {
+      reply.put(app_.path().probe_state(probe_contact(app_.active())));
+      return Status::ok;
+    }
     Status status = Status::ok;
     if (request.type == MessageType::stop_path)
       app_.path().stop();

@@ -85,6 +85,7 @@ inline constexpr std::array kRules = std::to_array<RequestRule>({
     {MessageType::path_rate,          path_client,    true,  false, kSize<PathRateRequest>, kSize<PathRateRequest>},
     {MessageType::stop_path,          anyone,         true,  false, 0, kPayloadSize},
     {MessageType::path_state,         anyone,         true,  false, 0, 0},
+    {MessageType::probe_state,        anyone,         true,  false, 0, 0},
     {MessageType::begin_update,       commander,      false, false, kSize<BeginUpdateRequest>,
                                                                     kSize<BeginUpdateRequest>},
     {MessageType::update_block,       commander,      false, false, kSize<UpdateBlockRequest>,

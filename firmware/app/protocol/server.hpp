@@ -159,6 +159,7 @@ class ProtocolServer {
       case MessageType::path_rate:
       case MessageType::stop_path:
       case MessageType::path_state:
+      case MessageType::probe_state:
         return PathRequests<Application>(app_).answer(request, reply);
       case MessageType::begin_update:
       case MessageType::update_block:

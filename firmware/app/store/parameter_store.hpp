@@ -117,9 +117,7 @@ class ParameterStore {
   /// Of the newest valid set; without points where the axis has none. Lies in flash, until the second save from now.
   StoredTable table(std::size_t axis) const {
     StoredTable found;
-    for_each_table([&](const StoredTable& one) {
-      if (one.head.axis == axis) found = one;
-    });
+    for_each_table([&](const StoredTable& one) { found = one; }, axis);
     return found;
   }
 
@@ -191,10 +189,10 @@ class ParameterStore {
 
   /// Of the newest set, unless it is known that another one came after it.
   template <typename Visit>
-  void for_each_table(Visit visit) const {
+  void for_each_table(Visit visit, std::size_t axis = kEveryAxis) const {
     if (!newest_ || slots_[*newest_].marks.superseded != kNotProgrammed) return;
     const std::size_t length = slots_[*newest_].header.length;
-    firmware::for_each_table(flash_.view(*newest_), kEntriesOffset + length, visit);
+    firmware::for_each_table(flash_.view(*newest_), kEntriesOffset + length, visit, axis);
   }
 
   struct Slot {

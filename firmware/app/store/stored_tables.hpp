@@ -34,9 +34,12 @@ struct StoredTable {
   std::span<const std::byte> bytes;  ///< head and points
 };
 
-/// Shows `visit` each table from `first` on, of a slot's bytes. False where one is not as it was written.
+inline constexpr std::size_t kEveryAxis = ~std::size_t{0};
+
+/// Shows `visit` each table from `first` on, of a slot's bytes, or one axis's. False where one is not as it was
+/// written.
 template <typename Visit>
-bool for_each_table(std::span<const std::byte> slot, std::size_t first, Visit visit) {
+bool for_each_table(std::span<const std::byte> slot, std::size_t first, Visit visit, std::size_t axis = kEveryAxis) {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   for (std::size_t offset = first; offset + sizeof(StoredTableHead) <= slot.size();) {
     StoredTable table;
@@ -47,10 +50,11 @@ bool for_each_table(std::span<const std::byte> slot, std::size_t first, Visit vi
       return false;
     table.bytes = slot.subspan(offset, size);
     const auto points = table.bytes.subspan(sizeof table.head);
+    offset += size;
+    if (axis != kEveryAxis && axis != table.head.axis) continue;
     if (crc_of_table(table.head, points) != table.head.crc) return false;
     table.points = {reinterpret_cast<const PitchPoint*>(points.data()), table.head.points};
     visit(table);
-    offset += size;
   }
   return true;
 }

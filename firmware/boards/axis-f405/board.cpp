@@ -9,8 +9,8 @@ using namespace hal::stm32f4;  // NOLINT(google-build-using-namespace): this fil
 namespace {
 
 // Alternate functions: STM32F405 datasheet, table 9.
-constexpr std::uint32_t kTimer2Function = 1, kTimer5Function = 2, kSpi1Function = 5, kUsart1Function = 7,
-                        kUsbFunction = 10;
+constexpr std::uint32_t kTimer2Function = 1, kTimer4Function = 2, kTimer5Function = 2, kSpi1Function = 5,
+                        kUsart1Function = 7, kUsbFunction = 10;
 
 /// What the chip lacks until its option bytes are written (front-end.md).
 constexpr std::uint32_t kBrownOutWanted = 270;
@@ -38,6 +38,7 @@ void connect_pins() {
     pin.make_alternate(kTimer2Function, Pull::up);
   for (const Pin& pin : {pins::encoder_y_a(), pins::encoder_y_b(), pins::encoder_y_index()})
     pin.make_alternate(kTimer5Function, Pull::up);
+  pins::probe().make_alternate(kTimer4Function, Pull::up);
   for (const Pin& pin : {pins::dac_clock(), pins::dac_data_in(), pins::dac_data_out()})
     pin.make_alternate(kSpi1Function);
   pins::serial_out().make_alternate(kUsart1Function);
@@ -58,7 +59,7 @@ bool Board::start() {
   clock.AHB1ENR = clock.AHB1ENR | Rcc::kGpioA | Rcc::kGpioB | Rcc::kGpioC | Rcc::kDma2;
   connect_pins();
   const bool clocks_run = clocks_reset && start_clocks(clock, power(), flash_interface());
-  clock.APB1ENR = clock.APB1ENR | Rcc::kTim2 | Rcc::kTim3 | Rcc::kTim4 | Rcc::kTim5;
+  clock.APB1ENR = clock.APB1ENR | Rcc::kTim2 | Rcc::kTim3 | Rcc::kTim4 | Rcc::kTim5 | Rcc::kTim13;
   clock.APB2ENR = clock.APB2ENR | Rcc::kUsart1 | Rcc::kAdc1 | Rcc::kSpi1;
   usart_.start(clocks_run ? kApb2Clock_Hz : kResetClock_Hz, 115200);
   stop_.start();
@@ -67,6 +68,7 @@ bool Board::start() {
   vbus_.start();
   pump_.start();
   clock_.start(kApb1TimerClock_Hz);
+  probe_.start();
   x_.start();
   y_.start();
   spi_.start();

@@ -18,6 +18,7 @@
 #include "hal/stm32f4/encoder_timer.hpp"
 #include "hal/stm32f4/microsecond_clock.hpp"
 #include "hal/stm32f4/option_bytes.hpp"
+#include "hal/stm32f4/probe_timer.hpp"
 #include "hal/stm32f4/spi_port.hpp"
 #include "hal/stm32f4/supply_detector.hpp"
 #include "hal/stm32f4/tachometer_adc.hpp"
@@ -36,6 +37,7 @@ class BoardAxisHal {
  public:
   struct Wiring {
     hal::stm32f4::Timer& encoder;
+    std::uint32_t probe_trigger;  ///< as of EncoderTimer
     const hal::stm32f4::TachometerSamples& samples;
     std::uint32_t tachometer_channel;
     Converter::Channel& dac;
@@ -43,7 +45,7 @@ class BoardAxisHal {
     hal::stm32f4::SwitchInputs::Pins switches;
   };
   explicit BoardAxisHal(const Wiring& w)
-      : encoder_(w.encoder),
+      : encoder_(w.encoder, w.probe_trigger),
         tachometer_(w.samples, w.tachometer_channel),
         dac_(w.dac),
         lines_(w.lines),
@@ -111,6 +113,7 @@ class Board {
   BoardAxisHal& axis(std::size_t index) { return index == 0 ? x_ : y_; }
   hal::stm32f4::StopInput& emergency_stop() { return stop_; }
   hal::stm32f4::RelayOutput& power_relay() { return power_relay_; }
+  hal::stm32f4::ProbeTimer& probe() { return probe_; }
   hal::stm32f4::SupplyDetector& supply() { return supply_; }
   hal::stm32f4::MicrosecondClock& clock() { return clock_; }
   static constexpr std::uint32_t processor_Hz() { return hal::stm32f4::kSystemClock_Hz; }
@@ -140,6 +143,7 @@ class Board {
   Converter converter_{spi_};
   BoardAxisHal x_{
       {.encoder = hal::stm32f4::timer2(),
+       .probe_trigger = 3,
        .samples = samples_,
        .tachometer_channel = 0,
        .dac = converter_.a(),
@@ -152,6 +156,7 @@ class Board {
            .positive_end = pins::positive_end_x(), .negative_end = pins::negative_end_x(), .home = pins::home_x()}}};
   BoardAxisHal y_{
       {.encoder = hal::stm32f4::timer5(),
+       .probe_trigger = 2,
        .samples = samples_,
        .tachometer_channel = 1,
        .dac = converter_.b(),
@@ -165,7 +170,8 @@ class Board {
   hal::stm32f4::StopInput stop_{pins::emergency_stop()};
   hal::stm32f4::RelayOutput power_relay_{pins::power_relay()};
   hal::stm32f4::SupplyDetector supply_{hal::stm32f4::power()};
-  hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer4()};
+  hal::stm32f4::MicrosecondClock clock_{hal::stm32f4::timer13()};
+  hal::stm32f4::ProbeTimer probe_{hal::stm32f4::timer4(), pins::probe()};  ///< timers 2 and 5 know it as a trigger
   hal::stm32f4::VbusInput vbus_{pins::usb_supply()};
   hal::stm32f4::ChargePump pump_{pins::charge_pump()};
   hal::stm32f4::ControlTimer control_timer_{hal::stm32f4::timer3()};

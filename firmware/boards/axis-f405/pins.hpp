@@ -41,6 +41,7 @@ inline Pin positive_end_y() { return {gpio_b(), 15}; }
 inline Pin negative_end_y() { return {gpio_c(), 8}; }
 inline Pin home_y() { return {gpio_c(), 9}; }
 inline Pin emergency_stop() { return {gpio_c(), 10}; }
+inline Pin probe() { return {gpio_b(), 6}; }
 inline Pin led_running() { return {gpio_b(), 8}; }
 inline Pin led_fault() { return {gpio_b(), 9}; }
 inline Pin charge_pump() { return {gpio_c(), 12}; }

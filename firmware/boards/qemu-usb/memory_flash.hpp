@@ -8,9 +8,10 @@
 
 namespace firmware::boards {
 
-class MemoryFlash {
+template <std::size_t size>
+class MemoryFlashOf {
  public:
-  static constexpr std::size_t kSectors = 4, kSectorSize = 4096, kProgramSize = 4;
+  static constexpr std::size_t kSectors = 4, kSectorSize = size, kProgramSize = 4;
 
   /// What lies in the memory; an object of static storage in .noinit.
   struct Cells {
@@ -19,7 +20,7 @@ class MemoryFlash {
   };
 
   /// Erased unless the memory has been one before.
-  explicit MemoryFlash(Cells& cells) : cells_(cells) {
+  explicit MemoryFlashOf(Cells& cells) : cells_(cells) {
     constexpr std::uint32_t kMagic = 0x464C5348;
     if (cells_.magic == kMagic) return;
     for (std::size_t sector = 0; sector < kSectors; ++sector) erase(sector);
@@ -56,12 +57,13 @@ class MemoryFlash {
   }
 
  private:
-  static bool contains(std::size_t sector, std::size_t offset, std::size_t size) {
-    return sector < kSectors && offset <= kSectorSize && size <= kSectorSize - offset;
+  static bool contains(std::size_t sector, std::size_t offset, std::size_t bytes) {
+    return sector < kSectors && offset <= kSectorSize && bytes <= kSectorSize - offset;
   }
 
   Cells& cells_;
 };
+using MemoryFlash = MemoryFlashOf<4096>;
 static_assert(hal::Flash<MemoryFlash>);
 
 }  // namespace firmware::boards

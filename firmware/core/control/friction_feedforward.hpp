@@ -27,12 +27,21 @@ struct FrictionParameters {
   Scalar blend_velocity_rad_s{};
 };
 
-/// Eq. (19) itself: the magnitude at a speed >= 0, V. Two exponentials: for the background.
+/// A point of eq. (19) itself.
 template <typename Scalar>
-constexpr Scalar friction_curve(const FrictionDirection<Scalar>& side, Scalar speed) {
+struct FrictionPoint {
+  Scalar level_V{}, slope_V_s_per_rad{};
+};
+
+/// At a speed >= 0. Two exponentials: for the background.
+template <typename Scalar>
+constexpr FrictionPoint<Scalar> friction_curve(const FrictionDirection<Scalar>& side, Scalar speed) {
   const auto decay = [speed](Scalar omega) { return omega > Scalar(0) ? exp_negative(speed / omega) : Scalar(0); };
-  return side.static_V * decay(side.omega1_rad_s) + side.coulomb_V * (Scalar(1) - decay(side.omega2_rad_s)) +
-         side.viscous_V_s_per_rad * speed;
+  const auto rate = [](Scalar left, Scalar omega) { return omega > Scalar(0) ? left / omega : Scalar(0); };
+  const Scalar first = decay(side.omega1_rad_s), second = decay(side.omega2_rad_s);
+  return {side.static_V * first + side.coulomb_V * (Scalar(1) - second) + side.viscous_V_s_per_rad * speed,
+          side.coulomb_V * rate(second, side.omega2_rad_s) - side.static_V * rate(first, side.omega1_rad_s) +
+              side.viscous_V_s_per_rad};
 }
 
 /// The curve as cubic pieces with its values and slopes at their ends: narrow pieces up to eight times the smaller
@@ -72,23 +81,15 @@ class FrictionPieces {
     const Scalar width = (end - begin) / ScalarTraits<Scalar>::from_integer(number);
     if (!(width > Scalar(0))) return;
     per_speed = Scalar(1) / width;
+    FrictionPoint<Scalar> from = friction_curve(side_, begin);
     for (std::int32_t i = 0; i <= number; ++i) {
-      const Scalar v0 = begin + width * ScalarTraits<Scalar>::from_integer(i);
-      const Scalar v1 = v0 + width;
-      const Scalar f0 = friction_curve(side_, v0), f1 = friction_curve(side_, v1);
-      const Scalar s0 = slope(v0) * width, s1 = slope(v1) * width;
-      const Scalar rise = f1 - f0;
+      const auto to = friction_curve(side_, begin + width * ScalarTraits<Scalar>::from_integer(i + 1));
+      const Scalar f0 = from.level_V, rise = to.level_V - f0;
+      const Scalar s0 = from.slope_V_s_per_rad * width, s1 = to.slope_V_s_per_rad * width;
       piece_[static_cast<std::size_t>(first) + static_cast<std::size_t>(i)] = {
           f0, s0, Scalar(3) * rise - Scalar(2) * s0 - s1, s0 + s1 - Scalar(2) * rise};
+      from = to;
     }
-  }
-
-  constexpr Scalar slope(Scalar speed) const {
-    const auto rate = [speed](Scalar omega) {
-      return omega > Scalar(0) ? exp_negative(speed / omega) / omega : Scalar(0);
-    };
-    return side_.coulomb_V * rate(side_.omega2_rad_s) - side_.static_V * rate(side_.omega1_rad_s) +
-           side_.viscous_V_s_per_rad;
   }
 
   constexpr Scalar piece(std::int32_t first, Scalar place) const {

@@ -28,6 +28,8 @@ enum class PathEnd : std::uint8_t {
   starved = 3,    ///< nodes came too slowly
   host_lost = 4,  ///< the host is silent
   fault = 5,      ///< an axis stopped on its own and left the path
+  probed = 6,     ///< the probe found what the path looked for
+  touched = 7,    ///< the probe made contact on a path that does not probe
 };
 
 /// push() adds nodes to a ring of `nodes`; prepare() makes the next few polynomials of them; both run in the

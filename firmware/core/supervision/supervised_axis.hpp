@@ -27,18 +27,16 @@ class SupervisedAxis {
   explicit constexpr SupervisedAxis(Hal& hal) : hal_(hal), axis_(hal) { axis_.leave_sensors_to_supervisor(); }
 
   /// Takes new parameters and begins the self-test; if they are wrong, returns why and keeps the old ones. Only while
-  /// the outputs are off.
+  /// the outputs are off. `ShutOut` keeps the control interrupt away for its beginning and its end alone: in between,
+  /// which is long, the axis stands aside, and its steps do nothing.
+  template <typename ShutOut = NoShutOut>
   constexpr Refusal configure(const AxisParameters<Scalar>& parameters) {
-    if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
-    const Refusal error = check_supervised(parameters);
-    return error == Refusal::none ? take(parameters) : error;
+    return take<ShutOut>(parameters, check_supervised(parameters));
   }
 
   /// The same for an axis without a controller, for excitation in open loop only: gains and thresholds have no effect.
   constexpr Refusal configure_bare(const AxisParameters<Scalar>& parameters) {
-    if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
-    const Refusal error = check_sequence(parameters.sequence);
-    return error == Refusal::none ? take(parameters) : error;
+    return take<NoShutOut>(parameters, check_sequence(parameters.sequence));
   }
 
   // Requests take effect in the next control period. They return false if the state does not allow them.
@@ -49,8 +47,7 @@ class SupervisedAxis {
     axis_.open_loop();
     return true;
   }
-  /// As of Axis.
-  constexpr void excite(Scalar volts) { axis_.excite(volts); }
+  constexpr void excite(Scalar volts) { axis_.excite(volts); }  ///< as of Axis
   /// Ready, and the encoder has been at rest for a while: a loop that closes on a moving axis would stop it with a
   /// jerk. The amplifier's ready contact is open: while it is closed it cannot tell when the amplifier drives.
   constexpr bool may_be_enabled() const { return state_ == SupervisorState::ready && stands() && !says_ready(); }
@@ -105,7 +102,7 @@ class SupervisedAxis {
   /// Begins homing, from rest. False while the axis is not enabled, moves, or its homing mode finds nothing.
   constexpr bool home() {
     if (state_ != SupervisorState::enabled || !is_at_rest() || !homing_.begin()) return false;
-    if constexpr (kHasIndex) static_cast<void>(look_at_index());  // earlier pulses
+    if constexpr (kHasIndexPulse<Hal>) static_cast<void>(look_at_index());  // earlier pulses
     is_interpolated_ = false;
     is_guided_ = true;
     axis_.forget_home();  // the limits of an old home must not apply
@@ -121,9 +118,9 @@ class SupervisedAxis {
   constexpr void use_pitch_table(PitchTable table) { axis_.use_pitch_table(table); }  ///< as of Axis
   constexpr bool is_homed() const { return axis_.telemetry().homed; }
   constexpr bool is_homing() const { return homing_.is_active(); }
-  /// As of HomingSequence.
-  constexpr std::int64_t index_way() const { return homing_.index_way(); }
+  constexpr std::int64_t index_way() const { return homing_.index_way(); }  ///< as of HomingSequence
 
+  constexpr std::int64_t table_counts_at(std::uint32_t reading) const { return axis_.table_counts_at(reading); }
   constexpr hal::EncoderReading read_encoder() { return hal_.encoder().read(); }
   /// It read the index in its last step; the others of a group do so in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
@@ -131,8 +128,7 @@ class SupervisedAxis {
   /// As of Axis, before a step that comes late.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
-  /// As of Axis.
-  constexpr CountPosition leading() const { return axis_.leading(); }
+  constexpr CountPosition leading() const { return axis_.leading(); }  ///< as of Axis
   /// A position that a path may lead to: within the travel of a homed axis.
   constexpr bool may_reach(std::int64_t counts) const { return !is_homed() || monitors_.travel().is_inside(counts); }
 
@@ -198,9 +194,24 @@ class SupervisedAxis {
   constexpr Hal& hal() const { return hal_; }
 
  private:
-  static constexpr bool kHasIndex = kHasIndexPulse<Hal>;
+  template <typename ShutOut>
+  constexpr Refusal take(const AxisParameters<Scalar>& parameters, Refusal error) {
+    if (outputs_are_on(state_)) return Refusal::controller_is_enabled;
+    if (error != Refusal::none) return error;
+    {
+      [[maybe_unused]] const ShutOut guard{};
+      is_guided_ = stands_aside_ = true;
+    }
+    error = prepare(parameters);
+    [[maybe_unused]] const ShutOut guard{};
+    is_guided_ = stands_aside_ = false;
+    if (error != Refusal::none) return error;
+    begin_self_test();
+    advance_by(SupervisorEvent::configured);
+    return error;
+  }
 
-  constexpr Refusal take(const AxisParameters<Scalar>& parameters) {
+  constexpr Refusal prepare(const AxisParameters<Scalar>& parameters) {
     const Refusal error = axis_.configure(parameters);
     if (error != Refusal::none) return error;
     monitors_.configure(parameters, axis_.farthest_stop(), axis_.largest_offset());
@@ -216,8 +227,6 @@ class SupervisedAxis {
     drop_watch_.configure(parameters);
     standstill_.configure(monitors_.travel().play());
     capture_.configure(parameters.monitors.capture_stride);
-    begin_self_test();
-    advance_by(SupervisorEvent::configured);
     return error;
   }
 
@@ -255,6 +264,7 @@ class SupervisedAxis {
 
   /// Of an axis that follows only its own reference.
   [[gnu::noinline]] constexpr void step_by_itself(AxisFault outer, const hal::EncoderReading& encoder) {
+    if (stands_aside_) return;
     if (sensor_stop_.is_active()) return step_sensor_stop(outer, encoder);
     is_guided_ = homing_.is_active();
     axis_.step(encoder);
@@ -267,7 +277,7 @@ class SupervisedAxis {
     seen.counts = axis_.telemetry().encoder_counts;
     seen.at_switch = home_switch_.filtered(hal_.limits().read().home);
     seen.at_rest = axis_.is_at_rest();
-    if constexpr (kHasIndex) {
+    if constexpr (kHasIndexPulse<Hal>) {
       const AxisFault miscounted = look_at_index();
       if (miscounted != AxisFault::none) return miscounted;
       seen.index_seen = index_.seen().seen;
@@ -296,7 +306,7 @@ class SupervisedAxis {
   constexpr void supervise(AxisFault outer) {
     const AxisTelemetry<Scalar>& seen = axis_.telemetry();
     AxisFault own = watch(seen);
-    if constexpr (kHasIndex)
+    if constexpr (kHasIndexPulse<Hal>)
       if (index_.is_due() && own == AxisFault::none) own = look_at_index();
     if (own == AxisFault::none && outer == AxisFault::none) {
       capture_.take(seen);
@@ -404,13 +414,11 @@ class SupervisedAxis {
   }
 
   constexpr void latch_first(AxisFault found) {
-    latched_.begin(found, activity(), is_homed());
+    const AxisActivity activity =
+        activity_of(state_, homing_.is_active(), axis_.is_open_loop(), axis_.is_at_rest(), is_interpolated_);
+    latched_.begin(found, activity, is_homed());
     capture_.freeze(axis_.telemetry());
     axis_.brake_hard();
-  }
-
-  constexpr AxisActivity activity() const {
-    return activity_of(state_, homing_.is_active(), axis_.is_open_loop(), axis_.is_at_rest(), is_interpolated_);
   }
 
   constexpr bool brake_holds() {
@@ -477,7 +485,8 @@ class SupervisedAxis {
   IncrementLimits increments_;
   Increment led_increment_ = 0;
   bool is_led_ = false;
-  bool is_guided_ = false;  ///< led, or looking for home: the next step may be another one
+  bool is_guided_ = false;  ///< led, looking for home or aside: the next step may be another one
+  bool stands_aside_ = false;
   std::int32_t self_test_samples_ = 0;
   Standstill standstill_;
   StopEnd stop_end_;

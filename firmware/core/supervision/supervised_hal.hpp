@@ -15,6 +15,9 @@ concept SupervisedHal = hal::AxisHal<T> && requires(T& axis) {
   requires hal::LimitInputs<std::remove_reference_t<decltype(axis.limits())>>;
 };
 
+/// Where nothing interrupts.
+struct NoShutOut {};
+
 /// Limitations of the motion that are not faults.
 struct LimitingReasons {
   bool saturated = false;         ///< the D/A converter is at its limit

@@ -67,6 +67,7 @@ const std::map<int, Expected> kMessages{
     {0x53, {4, Status::others_motion}},
     {0x54, {0, Status::ok, true}},
     {0x55, {}},
+    {0x56, {}},
     {0x60, {32, Status::others_motion}},
     {0x61, {52, Status::others_motion}},
     {0x62, {0, Status::others_motion}},

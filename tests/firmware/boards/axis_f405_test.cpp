@@ -152,6 +152,21 @@ TEST_F(AxisBoard, EachAxisHasItsOwnLines) {
   EXPECT_TRUE(board.emergency_stop().is_pressed());
 }
 
+TEST_F(AxisBoard, TheProbeLatchesBothEncoders) {
+  start();
+  board.probe().arm(true);
+  chip.timer2.turn(100);
+  chip.timer5.turn(-7);
+  chip.probe(true);
+  chip.timer2.turn(5);
+  chip.timer5.turn(5);
+  ASSERT_TRUE(board.probe().has_latched() && board.probe().is_closed());
+  const auto x = board.axis(0).encoder().read_latch(), y = board.axis(1).encoder().read_latch();
+  ASSERT_TRUE(x.valid && y.valid);
+  EXPECT_EQ(x.counts, 100u);
+  EXPECT_EQ(y.counts, 0xFFFFFFF9u);
+}
+
 TEST_F(AxisBoard, PowerAndDynamicBrakesHaveTheirOwnPinsAndAFaultOfTheProcessorDropsThem) {
   start();
   board.power_relay().close(true);

@@ -187,6 +187,28 @@ TEST_P(UsbBoard, OpensAtOnceWhereLinuxPollsItAlways) {
   EXPECT_EQ(load_usbhid(""), 0);
 }
 
+/// An image goes over the bus block by block; the board leaves it at the restart and comes back with the new program.
+TEST_P(UsbBoard, IsUpdated) {
+  const auto image = [this](const std::string& version) {
+    EXPECT_EQ(run("sim --write-image " + folder_.path(version) + " --image-version " + version).exit_code, 0);
+    return folder_.path(version);
+  };
+  const auto told = [this](const std::string& command) {
+    const ProgramRun done = run(command + " --json -", "", "2>/dev/null");
+    EXPECT_EQ(done.exit_code, 0) << command << "\n" << done.output;
+    return nlohmann::json::parse(done.output, nullptr, false);
+  };
+  ASSERT_EQ(told("info")["version"], "host");
+  const nlohmann::json update = told("update " + image("next"));
+  EXPECT_EQ(update["written"], true);
+  EXPECT_EQ(update["confirmed"], true);
+  EXPECT_EQ(told("info")["version"], "next");
+  const ProgramRun failed = run("update " + image("hangs"));
+  EXPECT_EQ(failed.exit_code, 6) << failed.output;
+  EXPECT_THAT(failed.output, HasSubstr("returned to version next"));
+  EXPECT_EQ(told("info")["version"], "next");
+}
+
 TEST_P(UsbBoard, RunsTheWorkflow) {
   const ProgramRun workflow = run_workflow("usb:BENCH", kCase, folder_.path(""));
   ASSERT_EQ(workflow.exit_code, 0) << workflow.output;

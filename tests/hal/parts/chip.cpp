@@ -7,7 +7,7 @@ namespace {
 enum : std::uint32_t { kAhb1Reset = 0x10, kAhb2Reset = 0x14, kApb1Reset = 0x20, kApb2Reset = 0x24 };
 enum : std::uint32_t { kAhb1Enable = 0x30, kAhb2Enable = 0x34, kApb1Enable = 0x40, kApb2Enable = 0x44 };
 constexpr unsigned kAdcInterrupt = 18, kDma2Stream0Interrupt = 56;
-constexpr int kSpi1 = 5, kTimer2 = 1, kTimer5 = 2;  // alternate functions: datasheet, table 9
+constexpr int kSpi1 = 5, kTimer2 = 1, kTimer4 = 2, kTimer5 = 2;  // alternate functions: datasheet, table 9
 
 }  // namespace
 
@@ -34,6 +34,7 @@ Chip::Chip() {
   attach(0x40000400, 0x50, timer3, kApb1Enable, kApb1Reset, 1);
   attach(0x40000800, 0x50, timer4, kApb1Enable, kApb1Reset, 2);
   attach(0x40000C00, 0x50, timer5, kApb1Enable, kApb1Reset, 3);
+  attach(0x40001C00, 0x50, timer13, kApb1Enable, kApb1Reset, 7);
   attach(0x40011000, 0x1C, serial, kApb2Enable, kApb2Reset, 4);
   attach(0x40012000, 0x400, adc, kApb2Enable, kApb2Reset, 8);
   attach(0x40013000, 0x24, spi, kApb2Enable, kApb2Reset, 12);
@@ -62,7 +63,17 @@ void Chip::wire_ports() {
   timer5.is_wired = [this] {
     return port_a.function(0) == kTimer5 && port_a.function(1) == kTimer5 && port_a.function(2) == kTimer5;
   };
+  timer4.is_wired = [this] { return port_b.function(6) == kTimer4; };
+  timer4.on_trigger = [this] {  // 18.4.3: TIM4 is ITR3 of TIM2, ITR2 of TIM5
+    timer2.internal_trigger(3);
+    timer5.internal_trigger(2);
+  };
   adc.is_wired = [this](unsigned channel) { return channel >= 10 && port_c.is_analogue(channel - 10); };
+}
+
+void Chip::probe(bool closed, double lasts_ns) {
+  port_b.put(6, closed ? Outside::low : Outside::open);
+  timer4.line_edge(!closed, lasts_ns);
 }
 
 /// ARMv7-M ARM, B3.4.4: ISER; what is not enabled stays pending.
@@ -75,7 +86,7 @@ void Chip::interrupt(unsigned number) {
 void Chip::run_at_full_speed() {
   clock.write(kAhb1Enable, 0x00500007);
   clock.write(kAhb2Enable, 0x00000080);
-  clock.write(kApb1Enable, 0x1000080F);
+  clock.write(kApb1Enable, 0x1000088F);
   clock.write(kApb2Enable, 0x00001110);
   flash.write(0x00, 5);
   clock.write(0x00, 0x00010083);

@@ -28,6 +28,9 @@ class Chip {
   /// Lets time pass, in steps short enough that interrupts come when they should.
   void pass_ms(double time_ms);
 
+  /// The probe's contact at PB6 closes to ground or opens, for this long.
+  void probe(bool closed, double lasts_ns = 1e9);
+
   Bus bus;
   PowerPart power;
   FlashPart flash{bus};
@@ -37,6 +40,7 @@ class Chip {
   TimerPart timer3{bus, 16, [this] { return clock.apb1_timers_Hz(); }};
   TimerPart timer4{bus, 16, [this] { return clock.apb1_timers_Hz(); }};
   TimerPart timer5{bus, 32, [this] { return clock.apb1_timers_Hz(); }};
+  TimerPart timer13{bus, 16, [this] { return clock.apb1_timers_Hz(); }};
   SpiPart spi{bus, [this] { return clock.apb2_Hz(); }};
   ConverterPart converter{bus};
   DmaPart dma{bus};

@@ -66,6 +66,8 @@ void TimerPart::write(std::uint32_t offset, std::uint32_t value) {
       control2_ = value;
       break;
     case 0x08:
+      if (bits(slave_, 0, 3) != 0 && bits(value, 0, 3) != 0 && bits(value, 4, 3) != bits(slave_, 4, 3))
+        bus_.complain("timer: trigger selected while it is used: TS cannot be changed");  // 18.4.3
       slave_ = value;
       break;
     case 0x0C:
@@ -172,9 +174,31 @@ void TimerPart::index_spike(double length_ns) {
 
 void TimerPart::index() {
   if (!is_wired() || !is_input(2) || bits(enabled_, 8) == 0) return;
-  if (bits(status_, 3) != 0) status_ |= 1u << 11;
-  status_ |= 1u << 3;
-  capture_[2] = counter_;
+  capture(2);
+}
+
+/// 18.3.5: a second capture before the first was read is told, and holds.
+void TimerPart::capture(unsigned channel) {
+  if (bits(status_, channel + 1) != 0) status_ |= 1u << (channel + 9);
+  status_ |= 1u << (channel + 1);
+  capture_[channel] = counter_;
+}
+
+/// 18.3.14, trigger mode: SMS 6 and TS 5 start the counter at an edge of TI1FP1, which CC1P chooses; 18.4.2: with MMS 1
+/// the trigger output follows its running.
+void TimerPart::line_edge(bool rises, double lasts_ns) {
+  if (!is_wired() || !is_input(0) || lasts_ns < filter_ns(0)) return;
+  if (bits(slave_, 0, 3) != 6 || bits(slave_, 4, 3) != 5 || rises == (bits(enabled_, 1) != 0)) return;
+  if (bits(control_, 0) != 0) return;
+  control_ |= 1u;
+  counted_until_ns_ = bus_.now_ns();
+  if (bits(control2_, 4, 3) == 1 && on_trigger) on_trigger();
+}
+
+/// 18.4.7: CC4S 3 captures at TRC, the trigger that TS selects; in encoder mode too (18.3.12).
+void TimerPart::internal_trigger(unsigned input) {
+  if (bits(mode_[1], 8, 2) != 3 || bits(slave_, 4, 3) != input || bits(enabled_, 12) == 0) return;
+  capture(3);
 }
 
 }  // namespace parts

@@ -24,6 +24,10 @@ class TimerPart : public Part {
   void index();
   /// Noise on the index line: a spike of this length.
   void index_spike(double length_ns);
+  /// An edge on the line of channel 1 that lasts this long.
+  void line_edge(bool rises, double lasts_ns = 1e9);
+  /// A pulse on one of the trigger inputs ITR0 to ITR3.
+  void internal_trigger(unsigned input);
   /// False: the lines end at a pin that does not carry them to this timer.
   std::function<bool()> is_wired = [] { return true; };
 
@@ -32,6 +36,7 @@ class TimerPart : public Part {
 
  private:
   void update();
+  void capture(unsigned channel);
   void count(bool up);
   void edge(unsigned channel, bool rises, bool other_level);
   double filter_ns(unsigned channel) const;

@@ -15,7 +15,7 @@ class Encoder : public driver_test::OnRunningChip {
     chip.timer2.is_wired = [] { return true; };
     encoder.start();
   }
-  EncoderTimer encoder{timer2()};
+  EncoderTimer encoder{timer2(), 3};
 };
 
 TEST_F(Encoder, CountsEveryEdgeForwardsAndBackwards) {

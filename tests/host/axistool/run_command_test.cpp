@@ -23,6 +23,14 @@ const std::string kModel = AXIS_TEST_DATA "/drive-cases/none/case-00/model.toml"
 const std::string kPrograms = AXIS_TEST_DATA "/gcode/";
 
 class RunCommand : public testing::Test {
+ public:
+  explicit RunCommand(std::vector<std::string> more = {})
+      : board_(folder_.path(""), [&] {
+          std::vector<std::string> all = {"--x", kModel, "--y", kModel};
+          all.insert(all.end(), more.begin(), more.end());
+          return all;
+        }()) {}
+
  protected:
   std::string file(const char* name) const { return folder_.path(name); }
   std::string written(const char* name, const std::string& text) const {
@@ -49,7 +57,7 @@ class RunCommand : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  SimulatedBoardProcess board_{folder_.path(""), {"--x", kModel, "--y", kModel}};
+  SimulatedBoardProcess board_;
 };
 
 /// The paper's circle, over the protocol, streamed: as near as the same loop in one process comes to it.
@@ -149,6 +157,112 @@ TEST_F(RunCommand, KeysOverrideFeedsAndRapidsWhileItRuns) {
   const double slowed = duration("-----");
   EXPECT_GT(slowed, 1.2);
   EXPECT_LT(slowed, 2.05);
+}
+
+/// A feed hold is no motion of the path, and takes its time.
+TEST_F(RunCommand, TheClockGoesOnWhileTheFeedIsHeld) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  fit();
+  const std::string circle = written("circle.ngc", "F6000 G3 X0 Y0 I35 J0\nM2\n");  // 2.3 s
+  Child process = board_.start("run " + circle + " --yes --json " + file("run.json"));
+  ASSERT_TRUE(wait_until([this] { return board_.moves(); }));
+  process.signal(SIGTSTP);
+  ASSERT_TRUE(wait_until([this] { return !board_.moves(); }));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  process.signal(SIGTSTP);
+  EXPECT_EQ(process.wait(), 0);
+  std::ifstream in(file("run.json"));
+  const auto told = nlohmann::json::parse(in);
+  EXPECT_NEAR(told["duration_s"], told["planned_s"].get<double>(), 0.01) << "of the path";
+  EXPECT_GT(told["clock_s"], told["duration_s"].get<double>() + 1.0);
+}
+
+/// Walls on either side in x; y has none.
+class ProbingCommand : public RunCommand {
+ protected:
+  ProbingCommand() : RunCommand({"--probe", "x=20.0007", "--probe", "x=-20.0007"}) {}
+
+  void fit_probe() const {
+    fit();
+    ASSERT_EQ(run("set-params probe.input=1").exit_code, 0);
+  }
+  nlohmann::json told(const std::string& program, int exit_code = 0) const {
+    const ProgramRun done = run("run " + written("probe.ngc", program) + " --yes --json -", "2>/dev/null");
+    EXPECT_EQ(done.exit_code, exit_code) << program << done.output;
+    return nlohmann::json::parse(done.output, nullptr, false);
+  }
+  /// The position of the count that the encoder shows at the wall.
+  static double at_count(double mm) { return std::floor(mm / kCount_mm) * kCount_mm; }
+
+  static constexpr double kCount_mm = 10.0 / 4096.0;
+};
+
+TEST_F(ProbingCommand, MeasuresWhereItTouchesAndGoesOnFromThere) {
+  fit_probe();
+  const auto both =
+      told("F600\nG38.2 X40\nG91\nG38.4 X-5\nG90\nG0 X0\nG38.3 X-40\nG38.5 X0\nG38.3 Y10\nG1 X0 Y0\nM2\n");
+  EXPECT_EQ(both["stopped_because"], "completed");
+  const auto& probes = both["probes"];
+  ASSERT_EQ(probes.size(), 5u);
+  const double expected[] = {20.0007, 20.0007, -20.0007, -20.0007};
+  const char* words[] = {"G38.2", "G38.4", "G38.3", "G38.5", "G38.3"};
+  const int lines[] = {2, 4, 7, 8, 9};
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_EQ(probes[k]["word"], words[k]);
+    EXPECT_EQ(probes[k]["line"], lines[k]);
+    EXPECT_EQ(probes[k]["found"], k < 4);
+    if (k < 4)
+      EXPECT_NEAR(probes[k]["position_mm"]["x"], at_count(expected[k]), 1e-6) << k;
+    else
+      EXPECT_TRUE(probes[k]["position_mm"].is_null());
+  }
+  const ProgramRun text = run("run " + written("one.ngc", "F600\nG38.2 X40\nG0 X0\n") + " --yes");
+  EXPECT_EQ(text.exit_code, 0) << text.output;
+  EXPECT_THAT(text.output, HasSubstr("line 2: contact at x 20.0000 mm, y"));
+}
+
+TEST_F(ProbingCommand, WithoutContactTheStrictFormsFail) {
+  fit_probe();
+  const ProgramRun none = run("run " + written("none.ngc", "F600\nG38.2 X15\nG0 X0\n") + " --yes");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.output, HasSubstr("none.ngc:2: G38.2 ended without contact"));
+  const auto json = told("F600\nG38.2 X14\nG0 X0\n", 1);
+  EXPECT_EQ(json["stopped_because"], "probe");
+  EXPECT_EQ(json["probes"][0]["found"], false);
+  ASSERT_EQ(told("F600\nG38.2 X30\n")["probes"][0]["found"], true);
+  const ProgramRun still = run("run " + written("still.ngc", "F600\nG91 G38.4 X1\n") + " --yes");
+  EXPECT_EQ(still.exit_code, 1);
+  EXPECT_THAT(still.output, HasSubstr("G38.4 ended without loss of contact"));
+  EXPECT_EQ(told("F600\nG91 G38.5 X1\nG90 G38.4 X0\nG38.3 X5\nG0 X0\n")["stopped_because"], "completed");
+}
+
+TEST_F(ProbingCommand, RefusesWhatCannotBeProbed) {
+  fit();
+  const auto refused = [this](const std::string& program, const std::string& cause, const std::string& more = "") {
+    const ProgramRun done = run("run " + written("refused.ngc", program) + " --yes" + more);
+    EXPECT_EQ(done.exit_code, 8) << done.output;
+    EXPECT_THAT(done.output, HasSubstr(cause));
+  };
+  const std::string program = "F600\nG38.2 X40\n";
+  refused(program, "probes in line 2, but no probe is wired");
+  ASSERT_EQ(run("set-params probe.input=1").exit_code, 0);
+  refused(program, "--capture cannot make one record", " --capture " + file("p.csv"));
+  EXPECT_THAT(run("info").output, HasSubstr("probe        not in contact"));
+  refused("F600\nG38.4 X5\n", "not in contact before the one away");
+  ASSERT_EQ(told(program)["probes"][0]["found"], true);
+  EXPECT_THAT(run("info").output, HasSubstr("probe        in contact"));
+  refused("F600\nG38.2 X40\n", "in contact before the move towards it");
+}
+
+TEST_F(ProbingCommand, ARapidIntoAWallIsStoppedAndNamed) {
+  fit_probe();
+  const ProgramRun done = run("run " + written("rapid.ngc", "G0 X60\nG0 X0\n") + " --yes --json " + file("run.json"));
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.output, HasSubstr("the probe made contact while the program did not probe"));
+  std::ifstream in(file("run.json"));
+  EXPECT_EQ(nlohmann::json::parse(in)["stopped_because"], "unexpected contact");
+  const std::string back = "run " + written("back.ngc", "G0 X0\n") + " --yes";
+  EXPECT_TRUE(wait_until([&] { return run(back).exit_code == 0; })) << "and away from it again, once it is at rest";
 }
 
 /// Whoever kills the program leaves a board that stops by itself, and says why.

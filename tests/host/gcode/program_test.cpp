@@ -131,6 +131,42 @@ TEST(Gcode, HelixRisesEvenlyWhereThereIsAThirdAxis) {
   EXPECT_NEAR(moves[0].curve.at(moves[0].curve.length() / 2).point.z(), 3.0, 1e-9);
 }
 
+TEST(Gcode, HasFourKindsOfProbingMoves) {
+  const host::GcodeProgram program = read("F300 G38.2 X10\nG38.3 X20\nY5\nG38.4 X15\nG0 X0\nG38.5 X-5\n");
+  ASSERT_EQ(program.probes.size(), 5u);
+  for (const auto& [probe, move, tenths] : {std::tuple{0, 0, 2}, {1, 1, 3}, {2, 2, 3}, {3, 3, 4}, {4, 5, 5}}) {
+    const host::GcodeProbe& one = program.probes[static_cast<std::size_t>(probe)];
+    EXPECT_EQ(one.move, static_cast<std::size_t>(move));
+    EXPECT_EQ(one.tenths(), tenths) << "G38 is modal, as G1 is";
+    EXPECT_EQ(program.moves[one.move].kind, host::PathMoveKind::probe);
+    EXPECT_EQ(program.moves[one.move].feed_mm_s, 5.0);
+  }
+}
+
+/// Where a probe met something, the program goes on: absolute positions stay, steps count from there.
+TEST(Gcode, GoesOnFromWhereAProbeEnded) {
+  host::GcodeMachine machine;
+  machine.probed = {host::PathPoint(4.25, 0.0, 0.0)};
+  const auto program = host::read_gcode("F300\nG38.2 X10\nG1 Y2\nG91 G0 X-1\nG38.2 X3\nG90 G0 X0\n", "part.ngc",
+                                        host::PathPoint::Zero(), machine);
+  ASSERT_EQ(program.moves.size(), 5u);
+  EXPECT_EQ(program.moves[0].curve.end().x(), 10.0) << "the probe may go so far";
+  EXPECT_EQ(program.moves[1].curve.begin().x(), 4.25);
+  EXPECT_EQ(program.moves[1].curve.end(), host::PathPoint(4.25, 2.0, 0.0));
+  EXPECT_EQ(program.moves[2].curve.end().x(), 3.25);
+  EXPECT_EQ(program.moves[3].curve.end().x(), 6.25);
+  EXPECT_EQ(program.moves[4].curve.begin().x(), 6.25) << "not probed yet: as if nothing were there";
+}
+
+/// What follows a probe that has not run cannot be judged by where it might end.
+TEST(Gcode, IsNotRefusedForWhereAProbeMightEnd) {
+  EXPECT_EQ(refusal("F300 G38.3 X10\nG38.3 X10\n"), "taken");
+  host::GcodeMachine machine;
+  machine.probed = {host::PathPoint(10.0, 0.0, 0.0)};
+  EXPECT_THROW(host::read_gcode("F300 G38.3 X10\nG38.3 X10\n", "part.ngc", host::PathPoint::Zero(), machine),
+               host::Failure);
+}
+
 TEST(Gcode, SaysWhetherItNeedsToKnowWhereItIs) {
   EXPECT_FALSE(read("G91 G1 F60 X1 Y1\nG2 X1 Y1 I1").is_absolute);
   EXPECT_TRUE(read("G1 F60 X1").is_absolute);

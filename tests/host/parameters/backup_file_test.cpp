@@ -52,7 +52,8 @@ TEST(Backup, KeepsTablesOfPitchErrors) {
   };
   EXPECT_THAT(refusal("60000", "-200"), HasSubstr("b.toml:")) << "in falling order";
   EXPECT_THAT(refusal("65536", "2000000000"), HasSubstr("no point")) << "more than a board takes";
-  EXPECT_THAT(refusal("60000", "sixty"), HasSubstr("no point"));
+  for (const char* odd : {"sixty", "60000.5", "99999999999999999999", "inf", "60000 7", ""})
+    EXPECT_THAT(refusal("60000", odd), HasSubstr("no point")) << odd;
   EXPECT_THAT(refusal("60000", "60000", 1), HasSubstr("no point")) << "a board with fewer axes";
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 using namespace target_image;
 using firmware::Status;
-using firmware::boards::MemoryFlash;
+using MemoryFlash = firmware::boards::MemoryFlashOf<12288>;  // two full tables of pitch errors fit
 using firmware::boards::ValueAxis;
 
 MemoryFlash::Cells flash_cells;
@@ -122,6 +122,24 @@ void report_shut_out(const char* name, Request request) {
   report(name, cost);
 }
 
+/// As many points as there may be, of each axis; no drive is enabled.
+void load_tables() {
+  for (std::uint16_t axis = 0; axis < CountedBoard::kAxes; ++axis) {
+    auto& store = application.store();
+    const std::uint32_t bits = firmware::resolution_bits(application.active(), axis);
+    firmware::Crc32 crc;
+    expect(store.begin_table(application.active().size(), axis, firmware::kMostPitchPoints, bits) ==
+               firmware::SaveResult::saved,
+           7);
+    for (int i = 0; i < static_cast<int>(firmware::kMostPitchPoints); ++i) {
+      const firmware::PitchPoint point{1000 * i, 100 * i, -70 * i};
+      expect(store.add_point(point), 8);
+      crc.add(std::as_bytes(std::span(&point, 1)));
+    }
+    expect(application.finish_table(crc.value(), true) == Status::ok, 9);
+  }
+}
+
 }  // namespace
 
 extern "C" [[noreturn]] void run_board() {
@@ -135,9 +153,32 @@ extern "C" [[noreturn]] void run_board() {
   const std::size_t standing = firmware_test::find_place("", "host.standing_timeout").value_or(0);
   application.staged().set(timeout, 10.0F);
   firmware::RefusedValuePayload refused;
+  Cost commits, shut_out;
+  const auto commit_all = [&] {
+    CountedBoard::ControlShutOut::longest = 0;
+    commits.add(count([&] { expect(application.commit(refused) == Status::ok, 1); }));
+    shut_out.add(CountedBoard::ControlShutOut::longest);
+    run(200);
+  };
   expect(application.commit(refused) == Status::ok, 1);
-  const std::uint32_t reconfigured = CountedBoard::ControlShutOut::longest;
-  run(200);
+  load_tables();
+  application.staged() = application.active();
+  // All that takes long switched on: friction's curves, filters, cogging, pitch. Then other values of it.
+  for (const float more : {0.0F, 1.0F, 2.0F}) {
+    if (more > 0.0F) application.staged() = application.active();
+    for (const char* axis : {"x", "y"}) {
+      const auto put = [&](const char* name, float value) {
+        application.staged().set(firmware_test::find_place(axis, name).value_or(0), value);
+      };
+      for (const char* name : {"notch.on", "low_pass.on", "cogging.on", "position_friction.on", "backlash.on"})
+        put(name, 1.0F);
+      put("notch.frequency", 400.0F + more);
+      put("low_pass.frequency", 430.0F + more);
+      put("backlash.gap", 0.01F);
+      put("friction.omega1_positive", 2.0F + 0.1F * more);
+    }
+    commit_all();
+  }
   std::size_t refused_axis = 0;
   expect(application.enable(3, refused_axis) == Status::ok, 2);
   application.become_owner(firmware::ClientToken{1});
@@ -163,8 +204,7 @@ extern "C" [[noreturn]] void run_board() {
     application.excitation_state();
     application.start_capture({});
   });
-  Cost standstill;
-  standstill.add(reconfigured);
-  report("reconfiguration_at_standstill", standstill);
+  report("commit_at_standstill", commits);
+  report("commit_at_standstill_shut_out", shut_out);
   hal::qemu::exit_emulator(0);
 }

@@ -1,0 +1,68 @@
+// What a touch probe says while axes follow a path.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/core/supervision/input_filter.hpp"
+#include "hal/probe.hpp"
+
+namespace firmware {
+
+/// What its input does on contact. Numbers are permanent: of the parameter probe.input.
+enum class ProbeContact : std::uint8_t { none = 0 /* not wired */, closes = 1, opens = 2 };
+
+/// What ends a path. Numbers are permanent: they stand in requests.
+enum class ProbeStop : std::uint8_t {
+  none = 0,  ///< no probing path: a contact during it is unexpected
+  contact = 1,
+  release = 2,
+};
+
+/// What is looked for counts once the input has said so for a while. The position is of the first edge, which the
+/// hardware latched; an edge after which the input returns for as long was a spark, and is forgotten.
+class ProbeWatch {
+ public:
+  /// `samples`: that while, control periods.
+  constexpr void configure(ProbeContact contact, ProbeStop stop, std::int32_t samples) {
+    contact_ = contact;
+    stop_ = stop;
+    found_ = missing_ = {};
+    found_.configure(samples);
+    missing_.configure(samples);
+  }
+  constexpr bool is_on() const { return contact_ != ProbeContact::none; }
+  constexpr bool is_probing() const { return stop_ != ProbeStop::none; }
+
+  /// At the path's start. False for a probing path where what it looks for is there already.
+  template <hal::ProbeInput Probe>
+  constexpr bool begin(Probe& probe) {
+    probe.arm(wants_closed());
+    was_missing_ = !is_there(probe);
+    return was_missing_ || !is_probing();
+  }
+
+  /// Once a control period: what is looked for has come. On a path that does not probe, a contact that was there when
+  /// it began must have been lost before.
+  template <hal::ProbeInput Probe>
+  constexpr bool has_come(Probe& probe) {
+    const bool there = is_there(probe), stays_away = missing_.filtered(!there);
+    was_missing_ = was_missing_ || stays_away;
+    if (stays_away && probe.has_latched()) probe.arm(wants_closed());
+    return found_.filtered(there) && was_missing_;
+  }
+
+  template <hal::ProbeInput Probe>
+  constexpr bool is_there(Probe& probe) const {
+    return probe.is_closed() == wants_closed();
+  }
+
+ private:
+  constexpr bool wants_closed() const { return (contact_ == ProbeContact::closes) == (stop_ != ProbeStop::release); }
+
+  ProbeContact contact_ = ProbeContact::none;
+  ProbeStop stop_ = ProbeStop::none;
+  InputFilter found_, missing_;
+  bool was_missing_ = false;
+};
+
+}  // namespace firmware

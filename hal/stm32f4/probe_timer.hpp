@@ -1,0 +1,40 @@
+// Touch probe on channel 1 of a timer, whose trigger output latches the encoders. RM0090, sections 18.3.14 and 18.3.15.
+#pragma once
+
+#include "hal/probe.hpp"
+#include "hal/stm32f4/pin.hpp"
+
+namespace hal::stm32f4 {
+
+/// The first edge starts the counter (trigger mode), and the counter's running is the trigger output. While it runs,
+/// further edges start nothing. The filter is the one of the encoders' lines, so the delays are equal. The contact
+/// pulls the pin low.
+class ProbeTimer {
+ public:
+  ProbeTimer(Timer& registers, Pin pin) : registers_(registers), pin_(pin) {}
+
+  void start() {
+    constexpr std::uint32_t kInput = 1, kFilter = 3;  // as of EncoderTimer
+    registers_.CCMR1 = kInput | kFilter << 4;
+    registers_.CR2 = Timer::kTriggerWhileEnabled;
+    registers_.SMCR = Timer::kFromInput1;
+  }
+
+  bool is_closed() { return !pin_.read(); }
+
+  void arm(bool closes) {
+    registers_.SMCR = Timer::kFromInput1;  // nothing starts it while its edge changes
+    registers_.CR1 = 0;
+    registers_.CCER = closes ? Timer::kInput1Falls : 0;
+    registers_.SMCR = Timer::kFromInput1 | Timer::kStartOnTrigger;
+  }
+
+  bool has_latched() const { return (registers_.CR1 & Timer::kEnable) != 0; }
+
+ private:
+  Timer& registers_;
+  Pin pin_;
+};
+static_assert(ProbeInput<ProbeTimer>);
+
+}  // namespace hal::stm32f4

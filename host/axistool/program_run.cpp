@@ -1,0 +1,287 @@
+#include "host/axistool/program_run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <numeric>
+
+#include "host/axistool/interrupts.hpp"
+#include "host/axistool/typed_keys.hpp"
+#include "host/device/motion.hpp"
+#include "host/device/path_override.hpp"
+#include "host/path/path_extents.hpp"
+#include "host/record/read_record.hpp"
+
+namespace axistool {
+
+namespace {
+
+using firmware::PathEnd;
+using host::ExitCode;
+using host::Failure;
+
+std::atomic<bool> held = false;
+
+/// Blocks signals until they are polled: in the middle of a report they would look like a lost board.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigemptyset(&signals_);
+    for (const int one : {SIGINT, SIGTERM, SIGTSTP}) sigaddset(&signals_, one);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr); }
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+  /// Pending signals act now.
+  void let_in() {
+    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+
+ private:
+  sigset_t signals_{};
+};
+
+/// Of the program, where the path is.
+std::size_t line_at(const host::PlannedPath& path, double elapsed_s) {
+  const auto next = std::ranges::upper_bound(path.curves, elapsed_s, {}, &host::PlannedCurve::time_s);
+  return next == path.curves.begin() ? 0 : (next - 1)->line;
+}
+
+/// One line on a terminal, rewritten.
+class RunLine {
+ public:
+  RunLine(bool shows, const host::PlannedPath& path) : shows_(shows && ::isatty(STDERR_FILENO) != 0), path_(path) {}
+  ~RunLine() {
+    if (has_line_) fmt::print(stderr, "\r\033[K");
+  }
+
+  void draw(const host::PathProgress& progress, bool is_held) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!shows_ || (has_line_ && now - drawn_ < std::chrono::milliseconds(200))) return;
+    drawn_ = now;
+    has_line_ = true;
+    fmt::print(stderr, "\r\033[Kline {}, {:.0f} %, {:.1f} s left, feed {:.0f} %{} ", line_at(path_, progress.elapsed_s),
+               100.0 * progress.elapsed_s / path_.duration_s(), path_.duration_s() - progress.elapsed_s,
+               progress.state.permille / 10.0,
+               progress.waits != nullptr
+                   ? fmt::format(", WAITS at the stop in line {}: Enter continues", progress.waits->line)
+               : is_held ? ", HELD: Ctrl-Z continues"
+                         : "");
+    std::fflush(stderr);
+  }
+
+ private:
+  bool shows_, has_line_ = false;
+  const host::PlannedPath& path_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+/// Whether a waiting program continues, and how fast it goes on.
+class Operator {
+ public:
+  Operator(host::BoardClient& board, const host::PathScale& scale, bool relative, const RunArguments& arguments)
+      : board_(board), scale_(scale), relative_(relative), arguments_(arguments) {}
+
+  host::PathWish wish(const host::PathProgress& progress, const Planned& planned) {
+    const std::string typed = keys_.take();  // also what was typed before a stop
+    for (const char key : typed) override_.press(key);
+    const bool is_rapid =
+        std::ranges::binary_search(planned.program.rapid_lines, line_at(planned.path, progress.elapsed_s));
+    return {.held = held,
+            .stop = interrupted(),
+            .permille = override_.permille(is_rapid),
+            .resume = goes_on(progress, typed.find('\n') != std::string::npos)};
+  }
+
+ private:
+  bool goes_on(const host::PathProgress& progress, bool pressed) {
+    if (progress.waits != announced_ && progress.waits != nullptr)
+      fmt::print(stderr, "\r\033[Kline {}: the program waits{}\n", progress.waits->line,
+                 arguments_.passes_stops ? ", and continues at once" : "; Enter continues, Ctrl-C ends it");
+    const bool is_new = progress.waits != announced_;
+    announced_ = progress.waits;
+    if (progress.waits == nullptr || !(arguments_.passes_stops || (pressed && !is_new))) return false;
+    require_startable(board_, scale_, relative_);
+    return true;
+  }
+
+  TypedKeys keys_;
+  host::PathOverride override_;
+  host::BoardClient& board_;
+  const host::PathScale& scale_;
+  bool relative_;
+  const RunArguments& arguments_;
+  const host::PathStop* announced_ = nullptr;
+};
+
+/// A program on a board, in parts: a probing move is one, and where it ended the next one begins.
+class Parts {
+ public:
+  Parts(host::BoardClient& board, const host::PathBoard& machine, bool relative, const RunArguments& arguments)
+      : board_(board),
+        machine_(machine),
+        relative_(relative),
+        arguments_(arguments),
+        at_machine_(board, machine.scale, relative, arguments) {}
+
+  ProgramOutcome run(const std::string& text) {
+    const host::PathPoint start = here();
+    std::vector<host::PathPoint> probed;
+    for (std::size_t begin = 0; outcome_.end == PathEnd::completed;) {
+      planned_.program = read_program(text, arguments_, machine_, start, probed);
+      const std::vector<host::PathMove>& moves = planned_.program.moves;
+      if (probed.size() == planned_.program.probes.size()) {
+        follow({moves.begin() + static_cast<std::ptrdiff_t>(begin), moves.end()});
+        break;
+      }
+      const host::GcodeProbe probe = planned_.program.probes[probed.size()];
+      const auto move = moves.begin() + static_cast<std::ptrdiff_t>(probe.move);
+      follow({moves.begin() + static_cast<std::ptrdiff_t>(begin), move});
+      if (outcome_.end != PathEnd::completed) break;
+      follow({*move}, probe.is_away ? firmware::ProbeStop::release : firmware::ProbeStop::contact);
+      note(probe, move->line);
+      if (outcome_.end == PathEnd::probed) outcome_.end = PathEnd::completed;
+      if (!outcome_.failure.empty() || outcome_.end != PathEnd::completed) break;
+      probed.push_back(here());
+      begin = probe.move + 1;
+    }
+    return outcome_;
+  }
+
+ private:
+  host::PathPoint here() const { return point_of(host::path_start(board_, machine_.scale, relative_), machine_.scale); }
+
+  void follow(const std::vector<host::PathMove>& moves, firmware::ProbeStop stop = firmware::ProbeStop::none) {
+    planned_.path = plan_moves(moves, arguments_, machine_);
+    if (planned_.path.knots.size() < 2) return;
+    host::PathOutcome part;
+    {
+      RunLine line(talks(arguments_), planned_.path);
+      SignalsWait signals;
+      part = host::run_path(
+          board_, planned_.path, machine_, relative_, true,
+          [&](const host::PathProgress& progress) {
+            signals.let_in();
+            line.draw(progress, held);
+            return at_machine_.wish(progress, planned_);
+          },
+          stop);
+    }
+    outcome_.end = static_cast<PathEnd>(part.state.end);
+    outcome_.path_s += part.state.elapsed / machine_.scale.rate_Hz;
+    outcome_.clock_s += part.clock_s;
+    outcome_.planned_s += planned_.path.duration_s();
+    outcome_.lost_rows += part.capture.lost;
+    const std::vector<double> contour_um = host::contour_error_um(part.capture, planned_.path, machine_.scale);
+    for (const double one : contour_um) outcome_.worst_um = std::max(outcome_.worst_um, one);
+    outcome_.rows += contour_um.size();
+    outcome_.squares_um2 += std::inner_product(contour_um.begin(), contour_um.end(), contour_um.begin(), 0.0);
+    if (!arguments_.capture.empty())
+      host::write_record(host::path_record(part, machine_, contour_um), arguments_.capture);
+  }
+
+  void note(const host::GcodeProbe& probe, std::size_t line) {
+    const auto mm = host::probed_mm(board_, machine_.scale);
+    outcome_.probes.push_back({probe, line, mm.value_or(std::vector<double>{})});
+    const bool has_ended = outcome_.end == PathEnd::completed || outcome_.end == PathEnd::probed;
+    if (!mm && has_ended && probe.must_succeed)
+      outcome_.failure = fmt::format("{}:{}: {} ended without {}; the axes stand at its end (G38.{} would go on)",
+                                     arguments_.file, line, word_of(probe), sought_by(probe), probe.tenths() + 1);
+  }
+
+  host::BoardClient& board_;
+  const host::PathBoard& machine_;
+  bool relative_;
+  const RunArguments& arguments_;
+  Operator at_machine_;
+  Planned planned_;
+  ProgramOutcome outcome_;
+};
+
+}  // namespace
+
+void catch_signals() {
+  catch_interrupts();
+  std::signal(SIGTSTP, [](int) { held = !held; });
+}
+
+std::string_view end_name(PathEnd end) {
+  switch (end) {
+    case PathEnd::none:
+      return "not ended";
+    case PathEnd::completed:
+      return "completed";
+    case PathEnd::asked:
+      return "interrupted";
+    case PathEnd::starved:
+      return "starved";
+    case PathEnd::host_lost:
+      return "host lost";
+    case PathEnd::fault:
+      return "fault";
+    case PathEnd::probed:
+      return "probed";
+    case PathEnd::touched:
+      return "unexpected contact";
+  }
+  return "unknown";
+}
+
+std::string word_of(const host::GcodeProbe& probe) { return fmt::format("G38.{}", probe.tenths()); }
+
+host::GcodeProgram read_program(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
+                                const host::PathPoint& start, const std::vector<host::PathPoint>& probed) {
+  host::GcodeMachine machine;
+  machine.axes = board.scale.axes.size();
+  machine.home = board.home;
+  machine.feed_share = 0.01 * arguments.feed_percent;
+  machine.rapid_share = 0.01 * arguments.rapid_percent;
+  machine.fastest_mm_s = board.limits.velocity;
+  machine.probed = probed;
+  return host::read_gcode(text, arguments.file, start, machine);
+}
+
+host::PlannedPath plan_moves(const std::vector<host::PathMove>& moves, const RunArguments& arguments,
+                             const host::PathBoard& board) {
+  host::PathPlanOptions options;
+  options.limits = board.limits;
+  options.count_mm = *std::min_element(board.scale.count_mm.begin(), board.scale.count_mm.end());
+  options.shortest_s = std::max(options.shortest_s, 2.0 / board.scale.rate_Hz);
+  options.time_unit_s = 1.0 / board.scale.rate_Hz / (1u << firmware::kPathTimeBits);
+  host::PlannedPath path = host::plan_path(moves, options);
+  host::require_inside(path, {board.least, board.most}, board.scale.axes.size(), arguments.file);
+  return path;
+}
+
+host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale) {
+  host::PathPoint point = host::PathPoint::Zero();
+  for (std::size_t i = 0; i < at.size(); ++i)
+    point[static_cast<Eigen::Index>(i)] = (static_cast<double>(at[i].counts) + at[i].fraction) * scale.count_mm[i];
+  return point;
+}
+
+void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative) {
+  const host::BoardState state = board.status();
+  for (const std::size_t axis : scale.axes) {
+    host::require_no_fault(state, static_cast<std::uint8_t>(axis));
+    if (!relative && (state.axis.at(axis).flags & firmware::kAxisHomed) == 0)
+      throw Failure(ExitCode::refused, fmt::format("axis {} is not homed: `axistool home {}` first, or --here, which "
+                                                   "takes its present count as its position",
+                                                   firmware::kAxisNames.at(axis), firmware::kAxisNames.at(axis)));
+  }
+}
+
+ProgramOutcome run_program(host::BoardClient& board, const host::PathBoard& machine, bool relative,
+                           const RunArguments& arguments, const std::string& text) {
+  return Parts(board, machine, relative, arguments).run(text);
+}
+
+}  // namespace axistool

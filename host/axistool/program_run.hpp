@@ -1,0 +1,67 @@
+// A G-code program on a board's axes: planned, followed in parts where it probes, with an operator beside it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/core/path/path_follower.hpp"
+#include "host/axistool/device_arguments.hpp"
+#include "host/device/path_run.hpp"
+#include "host/gcode/program.hpp"
+
+namespace axistool {
+
+struct RunArguments : DeviceArguments {
+  std::string file, capture;
+  std::vector<std::string> linear, params;
+  double feed_percent = 100.0, rapid_percent = 100.0;
+  bool here = false, passes_stops = false;
+};
+
+struct Planned {
+  host::GcodeProgram program;
+  host::PlannedPath path;
+};
+
+/// What a probing move found.
+struct ProbeResult {
+  host::GcodeProbe probe;
+  std::size_t line = 0;    ///< of the program
+  std::vector<double> mm;  ///< of each axis, where its edge came; empty: it did not come
+};
+
+struct ProgramOutcome {
+  firmware::PathEnd end = firmware::PathEnd::completed;
+  std::string failure;  ///< of a probing move that the program needs
+  double path_s = 0.0, planned_s = 0.0;
+  double clock_s = 0.0;  ///< with holds, overrides and stops
+  double worst_um = 0.0, squares_um2 = 0.0;
+  std::size_t rows = 0, lost_rows = 0;
+  std::vector<ProbeResult> probes;
+};
+
+std::string_view end_name(firmware::PathEnd end);
+std::string word_of(const host::GcodeProbe& probe);
+inline std::string_view sought_by(const host::GcodeProbe& probe) {
+  return probe.is_away ? "loss of contact" : "contact";
+}
+
+/// `probed`: where its first probing moves ended.
+host::GcodeProgram read_program(const std::string& text, const RunArguments& arguments, const host::PathBoard& board,
+                                const host::PathPoint& start, const std::vector<host::PathPoint>& probed);
+host::PlannedPath plan_moves(const std::vector<host::PathMove>& moves, const RunArguments& arguments,
+                             const host::PathBoard& board);
+host::PathPoint point_of(const std::vector<host::BoardPosition>& at, const host::PathScale& scale);
+
+/// Before a program starts or continues after a stop: the axes must be homed and without faults.
+void require_startable(host::BoardClient& board, const host::PathScale& scale, bool relative);
+
+/// Ctrl-Z holds the feed and lets it go again; a terminal's other ways of stopping a program end the path.
+void catch_signals();
+
+/// Of enabled axes, from where they stand. Throws what run_path throws.
+ProgramOutcome run_program(host::BoardClient& board, const host::PathBoard& machine, bool relative,
+                           const RunArguments& arguments, const std::string& text);
+
+}  // namespace axistool
