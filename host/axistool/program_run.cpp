@@ -146,8 +146,12 @@ class Parts {
       const auto move = moves.begin() + static_cast<std::ptrdiff_t>(probe.move);
       follow({moves.begin() + static_cast<std::ptrdiff_t>(begin), move});
       if (outcome_.end != PathEnd::completed) break;
-      follow({*move}, probe.is_away ? firmware::ProbeStop::release : firmware::ProbeStop::contact);
-      note(probe, move->line);
+      if (!probe.must_succeed && is_there(probe)) {
+        note_here(probe, move->line);
+      } else {
+        follow({*move}, probe.is_away ? firmware::ProbeStop::release : firmware::ProbeStop::contact);
+        note(probe, move->line);
+      }
       if (outcome_.end == PathEnd::probed) outcome_.end = PathEnd::completed;
       if (!outcome_.failure.empty() || outcome_.end != PathEnd::completed) break;
       probed.push_back(here());
@@ -186,6 +190,18 @@ class Parts {
     outcome_.squares_um2 += std::inner_product(contour_um.begin(), contour_um.end(), contour_um.begin(), 0.0);
     if (!arguments_.capture.empty())
       host::write_record(host::path_record(part, machine_, contour_um), arguments_.capture);
+  }
+
+  /// Whether the probe says already what a move looks for. G38.3 and G38.5 end there at once (LinuxCNC,
+  /// motion/command.c: G38.2 and G38.4 are errors then, as the board says).
+  bool is_there(const host::GcodeProbe& probe) {
+    const bool touches = (board_.probe_state().flags & firmware::kProbeTouches) != 0;
+    return touches != probe.is_away;
+  }
+
+  void note_here(const host::GcodeProbe& probe, std::size_t line) {
+    const host::PathPoint at = here();
+    outcome_.probes.push_back({probe, line, {at.data(), at.data() + machine_.scale.axes.size()}});
   }
 
   void note(const host::GcodeProbe& probe, std::size_t line) {

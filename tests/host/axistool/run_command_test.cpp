@@ -236,6 +236,19 @@ TEST_F(ProbingCommand, WithoutContactTheStrictFormsFail) {
   EXPECT_EQ(told("F600\nG91 G38.5 X1\nG90 G38.4 X0\nG38.3 X5\nG0 X0\n")["stopped_because"], "completed");
 }
 
+TEST_F(ProbingCommand, WhatIsThereAlreadyEndsTheLenientFormsAtOnce) {
+  fit_probe();
+  const auto probes = told("F600\nG38.2 X40\nG38.3 X45\nG91 G38.4 X-5\nG38.5 X-1\nM2\n")["probes"];
+  ASSERT_EQ(probes.size(), 4u);
+  for (const auto& probe : probes) EXPECT_EQ(probe["found"], true);
+  // Where the axis stands: past the edge by its stopping way.
+  EXPECT_GT(probes[1]["position_mm"]["x"], probes[0]["position_mm"]["x"]);
+  EXPECT_LT(probes[1]["position_mm"]["x"], 22.0);
+  EXPECT_LT(probes[3]["position_mm"]["x"], probes[2]["position_mm"]["x"]);
+  const ProgramRun strict = run("run " + written("strict.ngc", "F600\nG38.2 X40\nG38.2 X45\n") + " --yes");
+  EXPECT_EQ(strict.exit_code, 8) << strict.output;
+}
+
 TEST_F(ProbingCommand, RefusesWhatCannotBeProbed) {
   fit();
   const auto refused = [this](const std::string& program, const std::string& cause, const std::string& more = "") {
