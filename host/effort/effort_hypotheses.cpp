@@ -360,7 +360,11 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
         effect.others.push_back(std::move(fitted[other].term));
     found.effects.push_back(std::move(effect));
   }
-  std::ranges::stable_sort(found.effects, std::greater(), &NextEffect::probability);
+  // Between effects that are one and the same to these rows, rounding is not to choose.
+  std::ranges::sort(found.effects, {}, [](const NextEffect& effect) {
+    constexpr double kSame = 1e-3;  // nats
+    return std::pair(-std::round(effect.log_odds / kSame), effect.term.kind);
+  });
   return found;
 }
 

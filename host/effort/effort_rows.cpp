@@ -275,4 +275,20 @@ Eigen::VectorXd ThinnedRows::spread(const Eigen::VectorXd& values, Eigen::Index 
   return spread;
 }
 
+void take_mean_speeds(EffortRows& rows) {
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<double> sums(rows.signals.size(), 0.0), counts(rows.signals.size(), 0.0);
+    const auto each = [&](auto use) {
+      for (Eigen::Index k = 0; k < rows.w.size(); ++k)
+        if (rows.w(k) * sign > 0.0) use(k, rows.record[static_cast<std::size_t>(k)]);
+    };
+    each([&](Eigen::Index k, std::size_t r) {
+      sums[r] += rows.w(k);
+      counts[r] += 1.0;
+    });
+    each([&](Eigen::Index k, std::size_t r) { rows.w(k) = sums[r] / counts[r]; });
+  }
+  rows.acceleration.setZero();
+}
+
 }  // namespace host

@@ -41,6 +41,10 @@ struct EffortRows {
   std::size_t size() const { return judges.size(); }
 };
 
+/// If the speed hardly changes, its residual changes follow the torque as much as they cause it: each record has one
+/// speed per direction, and no acceleration.
+void take_mean_speeds(EffortRows& rows);
+
 /// RMS of one value per row, over validation rows or training rows.
 double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges);
 

@@ -427,24 +427,6 @@ class Search {
   EvidenceFit left_ = {};
 };
 
-/// If the speed hardly changes, its residual changes follow the torque as much as they cause it: each record has one
-/// speed per direction, and no acceleration.
-void take_mean_speeds(EffortRows& rows) {
-  for (const double sign : {1.0, -1.0}) {
-    std::vector<double> sums(rows.signals.size(), 0.0), counts(rows.signals.size(), 0.0);
-    const auto each = [&](auto use) {
-      for (Eigen::Index k = 0; k < rows.w.size(); ++k)
-        if (rows.w(k) * sign > 0.0) use(k, rows.record[static_cast<std::size_t>(k)]);
-    };
-    each([&](Eigen::Index k, std::size_t r) {
-      sums[r] += rows.w(k);
-      counts[r] += 1.0;
-    });
-    each([&](Eigen::Index k, std::size_t r) { rows.w(k) = sums[r] / counts[r]; });
-  }
-  rows.acceleration.setZero();
-}
-
 }  // namespace
 
 EffortScreen screen_effort(const sim::DriveDescription& model, const RecordSet& training, const RecordSet& validation,

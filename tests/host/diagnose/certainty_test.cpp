@@ -61,6 +61,16 @@ TEST(Certainty, APairStaysNamedWhileItsFirstIsMoreProbableThanNot) {
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("cogging", "backlash"));
 }
 
+/// Was "missing: encoder_cyclic_error + presliding" with 16 % for the second.
+TEST(Certainty, TheSecondOfAPairIsNamedOnlyWhereItIsMoreProbableThanNot) {
+  const Diagnosis diagnosis =
+      claimed({"encoder_cyclic_error", "presliding"},
+              {candidate({"encoder_cyclic_error"}, 0.05), candidate({"encoder_cyclic_error", "presliding"}, 0.16),
+               candidate({"encoder_cyclic_error", "stribeck"}, 0.6)});
+  EXPECT_EQ(diagnosis.verdict.status, Status::missing);
+  EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("encoder_cyclic_error"));
+}
+
 TEST(Certainty, WhatTakesLessThanATenthIsNotNamedHoweverCertain) {
   EXPECT_EQ(claimed({"cogging"}, {candidate({"cogging"}, 0.99, 19.5)}).verdict.status, Status::unexplained);
 }
