@@ -14,6 +14,7 @@
 #include "host/axistool/typed_keys.hpp"
 #include "host/device/motion.hpp"
 #include "host/device/path_override.hpp"
+#include "host/exit_codes.hpp"
 #include "host/path/path_extents.hpp"
 #include "host/record/read_record.hpp"
 
