@@ -144,6 +144,9 @@ void settle_status(Diagnosis& diagnosis) {
     }
     if (!together.empty() && together.front() == verdict.effects.front()) {
       verdict.effects = std::move(together);
+      std::erase_if(verdict.alternatives, [&](const Kinds& group) {
+        return group.size() > kLargestGroup && !holds(verdict.effects, group.front());
+      });
       return;
     }
   }

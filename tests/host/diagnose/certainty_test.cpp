@@ -69,6 +69,12 @@ TEST(Certainty, TheSecondOfAPairIsNamedOnlyWhereItIsMoreProbableThanNot) {
                candidate({"encoder_cyclic_error", "stribeck"}, 0.6)});
   EXPECT_EQ(diagnosis.verdict.status, Status::missing);
   EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("encoder_cyclic_error"));
+
+  Diagnosis of_many = diagnosis;
+  of_many.verdict.effects = {"encoder_cyclic_error", "presliding"};
+  of_many.verdict.alternatives = {{"presliding", "stribeck"}, {"presliding", "a", "b", "c", "d", "e", "f"}};
+  settle_status(of_many);
+  EXPECT_THAT(of_many.verdict.alternatives, ElementsAre(ElementsAre("presliding", "stribeck"))) << "many are no answer";
 }
 
 TEST(Certainty, WhatTakesLessThanATenthIsNotNamedHoweverCertain) {
