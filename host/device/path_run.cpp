@@ -42,8 +42,7 @@ std::vector<BoardPosition> positions(const firmware::OpenPathPayload& opened, co
   std::vector<BoardPosition> at;
   for (const std::size_t axis : scale.axes) {
     const auto& one = opened.axis.at(axis);
-    const auto high = static_cast<std::uint64_t>(static_cast<std::uint32_t>(one.counts_high)) << 32;
-    at.push_back({static_cast<std::int64_t>(high | one.counts_low), std::ldexp(one.fraction, -32)});
+    at.push_back({firmware::whole_counts(one.counts_low, one.counts_high), std::ldexp(one.fraction, -32)});
   }
   return at;
 }
@@ -274,8 +273,7 @@ std::optional<std::vector<double>> probed_mm(BoardClient& board, const PathScale
   std::vector<double> mm;
   for (std::size_t i = 0; i < scale.axes.size(); ++i) {
     const auto& at = state.axis.at(scale.axes[i]);
-    const auto high = static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.counts_high)) << 32;
-    mm.push_back(scale.count_mm[i] * static_cast<double>(static_cast<std::int64_t>(high | at.counts_low)));
+    mm.push_back(scale.count_mm[i] * static_cast<double>(firmware::whole_counts(at.counts_low, at.counts_high)));
   }
   return mm;
 }

@@ -158,7 +158,7 @@ void require_unchanged(BoardClient& board, const firmware::TriggerStatePayload& 
 /// The rows of one axis out of those of all.
 Capture capture_of(BoardClient& board, const firmware::TriggerStatePayload& state, const CaptureSettings& settings) {
   const firmware::ParameterValues values = board.read_values();
-  const std::int64_t counts = static_cast<std::int64_t>(state.counts_high) * (std::int64_t{1} << 32) + state.counts_low;
+  const std::int64_t counts = firmware::whole_counts(state.counts_low, state.counts_high);
   ChannelScale scale(values.axis(settings.axis), board.identify().fixed_point != 0, counts);
   const std::vector<std::uint16_t> half = fetch(board, state);
   require_unchanged(board, state);

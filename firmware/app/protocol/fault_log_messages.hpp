@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "firmware/app/protocol/whole_counts.hpp"
+
 namespace firmware {
 
 inline constexpr std::size_t kLoggedFaults = 64;  ///< the newest ones
@@ -26,10 +28,7 @@ struct LoggedFault {
   std::uint8_t reset = 0;     ///< boards::ResetCause of the start that wrote this
 
   constexpr bool is_event() const { return fault != 0 || reset != 0; }  ///< else it says the time alone
-  constexpr std::int64_t counts() const {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
-                                     counts_low);
-  }
+  constexpr std::int64_t counts() const { return whole_counts(counts_low, counts_high); }
   bool operator==(const LoggedFault&) const = default;
 };
 static_assert(sizeof(LoggedFault) == 28 && std::is_trivially_copyable_v<LoggedFault>);

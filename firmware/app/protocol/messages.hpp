@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware/app/protocol/whole_counts.hpp"
 #include "hal/axis_count.hpp"
 
 namespace firmware {
@@ -123,10 +124,7 @@ struct AxisStatus {
   std::uint8_t flags = 0;         ///< kAxis…
   std::uint8_t second_fault = 0;  ///< what went wrong besides while the fault brought the axis to a stop
 
-  constexpr std::int64_t counts() const {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(counts_high)) << 32 |
-                                     counts_low);
-  }
+  constexpr std::int64_t counts() const { return whole_counts(counts_low, counts_high); }
 };
 inline constexpr std::uint8_t kAxisFitted = 1, kAxisSaturated = 2, kAxisVelocityLimited = 4, kAxisAtRest = 8,
                               kAxisHomed = 16, kAxisHoming = 32,

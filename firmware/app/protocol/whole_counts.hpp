@@ -1,0 +1,12 @@
+// A position of 64 bits, as messages carry it in two words.
+#pragma once
+
+#include <cstdint>
+
+namespace firmware {
+
+constexpr std::int64_t whole_counts(std::uint32_t low, std::int32_t high) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | low);
+}
+
+}  // namespace firmware
