@@ -61,8 +61,7 @@ void print(const host::Plan& plan, const std::string& file) {
 void run(const PlanArguments& arguments) {
   const InsightRecords records(arguments);
   const host::ExcitationLimits box = host::parse_box(arguments.box, records.model.data.kind);
-  std::vector<const host::Record*> all = records.measurements.training_records();
-  for (const host::Record* record : records.measurements.validation_records()) all.push_back(record);
+  const std::vector<const host::Record*> all = records.measurements.all_records();
   std::vector<host::Rival> rivals;
   {
     SearchProgress progress("rivals");

@@ -42,8 +42,7 @@ class Separation {
  public:
   Separation(CommissionSession& session, sim::DriveDescription model)
       : session_(session), model_(std::move(model)), measured_(read_measurements(session, model_)) {
-    all_ = measured_.training_records();
-    for (const Record* record : measured_.validation_records()) all_.push_back(record);
+    all_ = measured_.all_records();
   }
 
   CommissionStepResult run() {

@@ -254,10 +254,8 @@ void take_figures(const sim::DriveDescription& given, Diagnosis& diagnosis) {
 
 Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
                    const Diagnosis* before, const std::vector<std::string>& known_absent) {
-  std::vector<const Record*> all = measured.training_records();
-  for (const Record* record : measured.validation_records()) all.push_back(record);
   const std::shared_ptr<const TableStudy> table =
-      before != nullptr ? before->table : std::make_shared<TableStudy>(study_table(given, all));
+      before != nullptr ? before->table : std::make_shared<TableStudy>(study_table(given, measured.all_records()));
   const std::vector<std::string> absent = without_excluded(known_absent, measured, table.get());
   Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent);
   diagnosis.table = table;

@@ -57,8 +57,7 @@ Answer plan(const py::object& model, const py::sequence& train, const py::sequen
     const sim::DriveDescription drive = asked.drive();
     const host::ExcitationLimits limits = host::parse_box(box, drive.data.kind);
     const host::Measurements measured = asked.measurements(drive);
-    std::vector<const host::Record*> all = measured.training_records();
-    for (const host::Record* record : measured.validation_records()) all.push_back(record);
+    const std::vector<const host::Record*> all = measured.all_records();
     const auto half = [&](double from) { return [&done, from](double share) { done(from + 0.5 * share); }; };
     const std::vector<host::Rival> fitted = host::rivals_for(drive, measured, all, rivals, half(0.0));
     host::PlanOptions options;

@@ -21,6 +21,12 @@ class Measurements {
   const std::vector<Record>& validation() const { return validation_; }
   std::vector<const Record*> training_records() const { return pointers(training_); }
   std::vector<const Record*> validation_records() const { return pointers(validation_); }
+  /// Those of training, then those of validation.
+  std::vector<const Record*> all_records() const {
+    std::vector<const Record*> all = training_records();
+    for (const Record& record : validation_) all.push_back(&record);
+    return all;
+  }
 
   /// Faults that are doubtful only, and fatal ones that the user accepted.
   const std::vector<LogFault>& log() const { return log_; }
