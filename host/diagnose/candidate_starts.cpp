@@ -134,12 +134,22 @@ std::vector<sim::EffectEntry> grid_entries(const sim::EffectInfo& info, const si
   return entries;
 }
 
+bool has_speed(const ComparedRecord& compared) { return compared.prepared.record->has_speed(); }
+bool has_position(const ComparedRecord& compared) { return compared.prepared.record->has_position(); }
+
+/// Whether a sensor's error is looked for in the tachometer's, in the records that have one; otherwise in the torque.
+bool shows_in_speed(const sim::EffectInfo& info, const RecordSet& set) {
+  return info.stage == sim::Stage::tachometer ||
+         (info.stage == sim::Stage::encoder && std::ranges::any_of(set.records, has_speed));
+}
+
 /// The signal over the travel in which a periodic effect shows, and the weight that its harmonic carries there.
 TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription& model, const RecordSet& set) {
   // Some 50,000 samples are plenty for a spectrum.
   constexpr std::size_t kSamples = 50000;
   std::size_t rows = 0;
   for (const ComparedRecord& compared : set.records) rows += compared.prepared.u_V.size();
+  const bool in_speed = shows_in_speed(info, set);
   TravelSignal signal;
   for (const ComparedRecord& compared : set.records) {
     const ResidualSamples samples =
@@ -148,7 +158,8 @@ TravelSignal signal_of(const sim::EffectInfo& info, const sim::DriveDescription&
       double value = samples.missing[k], weight = 1.0;
       if (info.kind == "torque_ripple") weight = samples.effort[k];
       if (info.kind == "position_dependent_friction") weight = samples.w[k] > 0.0 ? 1.0 : -1.0;
-      if ((info.stage == sim::Stage::tachometer || info.stage == sim::Stage::encoder) && !samples.tach_error.empty()) {
+      if (in_speed) {
+        if (samples.tach_error.empty()) break;
         value = samples.tach_error[k];
         weight = samples.w[k];
       }
@@ -176,10 +187,11 @@ void encoder_error_from_effort(const sim::DriveDescription& model, double v, Per
 
 /// Amplitudes of an effect's own harmonic from those of the signal: an encoder's error shows as speed through its
 /// slope, friction and ripple are relative.
-void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription& model, bool has_tachometer,
-                        double speed, PeriodPeak& peak) {
-  if (info.stage == sim::Stage::encoder && !has_tachometer) encoder_error_from_effort(model, speed, peak);
-  if (info.stage == sim::Stage::encoder && has_tachometer) {
+void convert_amplitudes(const sim::EffectInfo& info, const sim::DriveDescription& model, bool in_speed, double speed,
+                        PeriodPeak& peak) {
+  if (info.stage == sim::Stage::encoder && !in_speed) {
+    encoder_error_from_effort(model, speed, peak);
+  } else if (info.stage == sim::Stage::encoder) {
     // The smoothed speed carries w e'(x), so the tachometer reads that much less.
     const double per_length = peak.period / (2.0 * std::numbers::pi);
     const double cosine = peak.sine * per_length;
@@ -203,12 +215,10 @@ std::vector<sim::EffectEntry> periodic_entries(const sim::EffectInfo& info, cons
   const double shortest =
       slow ? scales.travel / 12.0 : std::max(40.0 * model.data.encoder_resolution, scales.travel / 2000.0);
   const double longest = slow ? 3.0 * scales.travel : scales.travel / 3.0;
-  const bool has_tachometer = std::ranges::all_of(
-      set.records, [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); });
   std::vector<PeriodPeak> peaks = find_periods(signal, shortest, longest, kPeaks);
   std::vector<sim::EffectEntry> entries;
   for (PeriodPeak& peak : peaks) {
-    convert_amplitudes(info, model, has_tachometer, scales.top_speed * model.data.lead, peak);
+    convert_amplitudes(info, model, shows_in_speed(info, set), scales.top_speed * model.data.lead, peak);
     entries.push_back(
         {std::string(info.kind), {{"cosine", peak.cosine}, {"sine", peak.sine}, {"period", peak.period}}, {}, {}});
   }
@@ -250,8 +260,6 @@ bool is_applicable(const sim::EffectInfo& info, const sim::DriveDescription& mod
   if (info.kind == "spring_torque" && std::ranges::none_of(set.records, returns)) return false;
   if (info.stage == sim::Stage::table) return false;  // the motor does not show it
   if (set.measure == Measure::effort && info.stage == sim::Stage::tachometer) return false;
-  const auto has_speed = [](const ComparedRecord& compared) { return compared.prepared.record->has_speed(); };
-  const auto has_position = [](const ComparedRecord& compared) { return compared.prepared.record->has_position(); };
   if (info.stage == sim::Stage::tachometer)
     return std::ranges::all_of(set.records, has_speed) && std::ranges::all_of(set.records, has_position);
   if (info.stage == sim::Stage::encoder || info.periodic) return std::ranges::all_of(set.records, has_position);
