@@ -65,8 +65,11 @@ std::vector<std::string> absent_by_table(const TableStudy& study) {
 void settle_by_table(const TableStudy& study, Diagnosis& diagnosis) {
   if (study.empty()) return;
   DiagnosisVerdict& verdict = diagnosis.verdict;
-  const std::optional<std::string> rival = study.rows.has_effort() ? other_connection(study, verdict) : std::nullopt;
-  if (study.rows.has_effort()) take_back(study, verdict);
+  std::optional<std::string> rival;
+  if (study.rows.has_effort()) {
+    rival = other_connection(study, verdict);
+    take_back(study, verdict);
+  }
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> groups;
   for (const TableEffect& effect : study.effects) {
