@@ -14,11 +14,8 @@ class EncoderTimer {
   EncoderTimer(Timer& registers, std::uint32_t probe_trigger) : registers_(registers), probe_trigger_(probe_trigger) {}
 
   void start() {
-    constexpr std::uint32_t kInput = 1, kFilter = 3;  // CCxS: own pin; ICxF: 8 equal samples at 84 MHz (18.4.7)
-    constexpr std::uint32_t kChannel = kInput | kFilter << 4;
-    registers_.CCMR1 = kChannel | kChannel << 8;
-    constexpr std::uint32_t kTrigger = 3;  // CCxS: the internal trigger
-    registers_.CCMR2 = kChannel | kTrigger << 8;
+    registers_.CCMR1 = Timer::kFilteredPin | Timer::kFilteredPin << 8;
+    registers_.CCMR2 = Timer::kFilteredPin | Timer::kInternalTrigger << 8;
     registers_.CCER = Timer::kCapture3Enable | Timer::kCapture4Enable;
     registers_.SMCR = Timer::from_trigger(probe_trigger_) | Timer::kEncoderBothEdges;
     registers_.ARR = 0xFFFFFFFFu;

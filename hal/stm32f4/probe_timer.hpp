@@ -14,8 +14,7 @@ class ProbeTimer {
   ProbeTimer(Timer& registers, Pin pin) : registers_(registers), pin_(pin) {}
 
   void start() {
-    constexpr std::uint32_t kInput = 1, kFilter = 3;  // as of EncoderTimer
-    registers_.CCMR1 = kInput | kFilter << 4;
+    registers_.CCMR1 = Timer::kFilteredPin;
     registers_.CR2 = Timer::kTriggerWhileEnabled;
     registers_.SMCR = Timer::kFromInput1;
   }

@@ -98,6 +98,8 @@ struct Timer {
   static constexpr std::uint32_t kCapture3Flag = 1u << 3, kOvercapture3Flag = 1u << 11,
                                  kCapture4Flag = 1u << 4;  // SR, 18.4.5
   static constexpr std::uint32_t kUpdate = 1u << 0;        // EGR, 18.4.6
+  /// Of a channel in CCMR, 18.4.7: CCxS its own pin, ICxF 8 equal samples at 84 MHz; or CCxS the internal trigger.
+  static constexpr std::uint32_t kFilteredPin = 1u << 0 | 3u << 4, kInternalTrigger = 3u << 0;
   static constexpr std::uint32_t kInput1Falls = 1u << 1, kCapture3Enable = 1u << 8,
                                  kCapture4Enable = 1u << 12;  // CCER, 18.4.9
 };

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/pc/simulated_panel.hpp"
+
 namespace {
 
 using firmware::ProbeContact;
@@ -11,23 +13,9 @@ using firmware::ProbeWatch;
 
 constexpr int kSamples = 3;
 
-struct Input {
-  bool is_closed() const { return closed; }
-  void arm(bool closes) {
-    armed_for = closes;
-    latched = false;
-  }
-  bool has_latched() const { return latched; }
-  void turn(bool to) {
-    latched = latched || (to != closed && to == armed_for);
-    closed = to;
-  }
-  bool closed = false, armed_for = false, latched = false;
-};
-
 struct WatchedProbe {
   WatchedProbe(ProbeContact contact, ProbeStop stop, bool closed) {
-    input.closed = closed;
+    input.turn(closed);
     watch.configure(contact, stop, kSamples);
     began = watch.begin(input);
   }
@@ -37,7 +25,7 @@ struct WatchedProbe {
       if (watch.has_come(input)) return k;
     return 0;
   }
-  Input input;
+  hal::pc::SimulatedProbe input;
   ProbeWatch watch;
   bool began = false;
 };
