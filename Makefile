@@ -116,6 +116,13 @@ test-linuxcnc: ## LinuxCNC drives machines with a hidden effect, before and afte
 	ninja -C $(BUILD) -j $(JOBS) axistool
 	ctest --test-dir $(BUILD) --no-tests=error --verbose --tests-regex '^linuxcnc$$'
 
+.PHONY: test-mujoco
+test-mujoco: ## MuJoCo replays exported models (installs npm, which fetches MuJoCo)
+	$(NEED) build test mujoco
+	$(call configure,$(BUILD))
+	ninja -C $(BUILD) -j $(JOBS) axistool
+	ctest --test-dir $(BUILD) --no-tests=error --verbose --tests-regex '^mujoco$$'
+
 .PHONY: firmware
 firmware: ## Build the board's images (.elf, .bin, .hex in build/firmware/images), with size and stack report
 	$(NEED) firmware

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "host/interchange/export_model.hpp"
+#include "host/known_by_current.hpp"
 
 namespace host {
 
@@ -14,6 +15,19 @@ std::string xml_comment(const std::vector<std::string>& notes) {
     text += fmt::format("  {}\n", note);
   }
   return text + "-->\n";
+}
+
+/// The control at which the converter saturates, A, or Nm or N where no motor constant is known.
+std::string control_range(const sim::DataSheet& data, double gear) {
+  if (is_known_by_current(data) || !(data.dac_limit_V > 0.0)) return {};
+  const double most = data.dac_limit_V * data.effort_per_volt() / gear;
+  return fmt::format(" ctrllimited=\"true\" ctrlrange=\"{:.17g} {:.17g}\"", -most, most);
+}
+
+/// MuJoCo turns its dry friction about at a speed of acceleration times a time constant: 20 ms as a rule, which is as
+/// short as two steps may make it (its manual, "Solver parameters").
+std::string sharp_friction(double step_s) {
+  return fmt::format(" solreffriction=\"{:.17g} 1\" solimpfriction=\"0.99 0.99 0.001\"", 2.0 * step_s);
 }
 
 }  // namespace
@@ -31,14 +45,17 @@ std::string mjcf_joint(const PortableModel& model, const std::vector<std::string
   std::string spring;
   if (model.stiffness != 0.0)
     spring = fmt::format(" stiffness=\"{:.17g}\" springref=\"{:.17g}\"", model.stiffness * lead, model.centre / lead);
+  const double gear = model.data.torque_constant_Nm_per_A > 0.0 ? model.data.torque_constant_Nm_per_A : 1.0;
+  const double step_s = model.data.sample_period_s;
   return fmt::format(
-      "{}<mujoco model=\"{}\">\n  <worldbody>\n    <body name=\"{}\">\n      <joint name=\"{}\" type=\"{}\" axis=\"0 0 "
-      "1\" armature=\"{:.17g}\" damping=\"{:.17g}\" frictionloss=\"{:.17g}\"{}/>\n"
+      "{}<mujoco model=\"{}\">\n  <compiler angle=\"radian\"/>\n  <option timestep=\"{:.17g}\"/>\n  <worldbody>\n    "
+      "<body name=\"{}\">\n"
+      "      <joint name=\"{}\" type=\"{}\" axis=\"0 0 1\" armature=\"{:.17g}\" damping=\"{:.17g}\" "
+      "frictionloss=\"{:.17g}\"{}{}/>\n"
       "      <inertial pos=\"0 0 0\" mass=\"1e-6\" diaginertia=\"1e-9 1e-9 1e-9\"/>\n    </body>\n  </worldbody>\n  "
-      "<actuator>\n    <motor name=\"{}_motor\" joint=\"{}\" gear=\"{:.17g}\"/>\n  </actuator>\n</mujoco>\n",
-      xml_comment(notes), name, name, name, model.rotary() ? "hinge" : "slide", model.inertia, friction.viscous,
-      friction.level, spring, name, name,
-      model.data.torque_constant_Nm_per_A > 0.0 ? model.data.torque_constant_Nm_per_A : 1.0);
+      "<actuator>\n    <motor name=\"{}_motor\" joint=\"{}\" gear=\"{:.17g}\"{}/>\n  </actuator>\n</mujoco>\n",
+      xml_comment(notes), name, step_s, name, name, model.rotary() ? "hinge" : "slide", model.inertia, friction.viscous,
+      friction.level, sharp_friction(step_s), spring, name, name, gear, control_range(model.data, gear));
 }
 
 std::string urdf_joint(const PortableModel& model, const std::vector<std::string>& notes) {
