@@ -80,7 +80,7 @@ nlohmann::json judge(const OpenArguments& arguments, const host::Opening& openin
     if (record->axis == axis) records.push_back(record->record);
   const auto lead = opening.files.front().understood.lead_mm_per_rad;
   const sim::DriveDescription sheet =
-      arguments.sheet.empty() ? host::sheet_of_constant(records.front(), arguments.torque_constant, lead.value_or(0.0))
+      arguments.sheet.empty() ? host::sheet_of_constant(records, arguments.torque_constant, lead.value_or(0.0))
                               : host::read_drive(arguments.sheet);
   std::unique_ptr<host::LogVerdict> found;
   {

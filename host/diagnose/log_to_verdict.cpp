@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "host/evidence/measured_sensors.hpp"
 #include "host/evidence/measurement_gate.hpp"
+#include "host/known_by_current.hpp"
 #include "host/record/channel_checks.hpp"
 
 namespace host {
@@ -18,15 +20,21 @@ bool is_to_judge(const Record& record) {
 
 }  // namespace
 
-sim::DriveDescription sheet_of_constant(const Record& record, double motor_constant, double lead_mm_per_rad) {
+sim::DriveDescription sheet_of_constant(const std::vector<Record>& records, double motor_constant,
+                                        double lead_mm_per_rad) {
+  const Record& record = records.front();
   sim::DriveDescription sheet;
   sheet.name = record.drive.empty() ? "axis" : record.drive;
   sheet.data.kind = record.kind;
   sheet.data.torque_constant_Nm_per_A = motor_constant;
-  sheet.data.amplifier_gain_A_per_V = 1.0;
-  sheet.data.force_constant_N_per_V = motor_constant;
+  know_by_current(sheet.data);
   sheet.data.lead = record.kind == sim::DriveKind::rotary && lead_mm_per_rad > 0.0 ? lead_mm_per_rad : 1.0;
   sheet.data.sample_period_s = record.sample_period_s;
+  if (record.has_position()) {
+    std::vector<const Record*> all;
+    for (const Record& one : records) all.push_back(&one);
+    sheet.data.encoder_resolution = with_measured_sensors(sheet, all).data.encoder_resolution;
+  }
   return sheet;
 }
 

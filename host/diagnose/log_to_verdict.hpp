@@ -9,9 +9,11 @@
 
 namespace host {
 
-/// The data sheet of a log of the current of which the motor's constant alone is known (Nm/A; N/A where the record is
-/// of a linear drive): a millimetre for a radian where `lead_mm_per_rad` is 0, no converter.
-sim::DriveDescription sheet_of_constant(const Record& record, double motor_constant, double lead_mm_per_rad);
+/// The data sheet of logs of the current (one or more) of which the motor's constant alone is known (Nm/A; N/A where
+/// the records are of a linear drive): a millimetre for a radian where `lead_mm_per_rad` is 0, no converter, the
+/// encoder's step as the positions show it.
+sim::DriveDescription sheet_of_constant(const std::vector<Record>& records, double motor_constant,
+                                        double lead_mm_per_rad);
 
 struct LogVerdict {
   Measurements measured;

@@ -10,7 +10,9 @@
 #include <map>
 #include <numbers>
 
+#include "host/diagnose/log_to_verdict.hpp"
 #include "host/exit_codes.hpp"
+#include "host/known_by_current.hpp"
 #include "tests/host/temporary_folder.hpp"
 
 namespace {
@@ -255,6 +257,11 @@ TEST_F(Opening, ControllerLogs) {
           << file.path;
       EXPECT_EQ(found[german ? "Iist [A]" : "Iq(A)"].taken_as, "i_A") << file.path;
     }
+    std::vector<host::Record> records;
+    for (const host::OpenedRecord* opened : opening.records()) records.push_back(opened->record);
+    const sim::DataSheet sheet = host::sheet_of_constant(records, 0.6, 0.0).data;
+    EXPECT_NEAR(sheet.encoder_resolution, german ? 1.25e-4 : 1.52587890625e-4, 1e-9) << name;
+    EXPECT_TRUE(host::is_known_by_current(sheet)) << name;
   }
 }
 
