@@ -110,12 +110,9 @@ class Search {
     screen_.steps.push_back(std::move(list));
   }
 
-  /// Whether a fit explains enough of the squared error on validation rows: of the residual, and of the base's
-  /// residual.
+  /// Whether a fit explains enough of the error on validation rows.
   bool is_worth_naming(double before, double after) const {
-    const double left = before * before, taken = left - after * after;
-    return taken >= kWorthOfLeft * left ||
-           (taken >= kWorthNaming * left && taken >= kWorthOfAll * std::pow(screen_.base.validate, 2));
+    return host::is_worth_naming(before, after, screen_.base.validate);
   }
   bool is_worth_naming(const ScreenedModel& fitted) const {
     return is_worth_naming(screen_.best().validate, fitted.validate);

@@ -18,6 +18,13 @@ inline constexpr double kWorthNaming = 0.1;
 inline constexpr double kWorthOfAll = 0.01;
 /// Unless it explains the larger part of the remaining error.
 inline constexpr double kWorthOfLeft = 0.5;
+/// Whether an effect that takes an error (RMS, any unit) from `before` to `after` is to be named, where the base alone
+/// leaves `base`: what is certain need not be important.
+inline bool is_worth_naming(double before, double after, double base) {
+  const double left = before * before, taken = left - after * after;
+  return taken >= kWorthOfLeft * left || (taken >= kWorthNaming * left && taken >= kWorthOfAll * base * base);
+}
+
 /// Prior: that nothing (more) is missing is as probable as that something is.
 inline constexpr double kNothingMore = 0.5;
 

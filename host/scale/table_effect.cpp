@@ -236,9 +236,10 @@ std::string table_words(const TableStudy& study) {
   if (study.empty()) return {};
   std::vector<std::string> parts;
   for (const TableEffect& effect : study.effects)
-    parts.push_back(effect.words + (effect.group.size() > 1
-                                        ? fmt::format(" (or {}: these records do not tell)", spaced(effect.group[1]))
-                                        : ""));
+    parts.push_back(
+        effect.words +
+        (effect.group.size() > 1 ? fmt::format(" (or {}: these records do not tell)", spaced(effect.group[1])) : "") +
+        (effect.worth_naming ? "" : " (certain, but too small to matter here)"));
   if (parts.empty())
     return fmt::format("The table follows the motor's encoder within {:.3g} um RMS; nothing shows between them.",
                        study.before_um);
@@ -255,6 +256,7 @@ nlohmann::json table_json(const TableStudy& study) {
     for (const TablePoint& point : effect.curve)
       curve.push_back({{"x_mm", point.x_mm}, {"um", point.um}, {"sd_um", point.deviation_um}});
     found.push_back({{"kinds", effect.group},
+                     {"worth_naming", effect.worth_naming},
                      {"probability", effect.probability},
                      {"rms_um", {{"without", effect.before}, {"with", effect.after}}},
                      {"sizes", std::move(sizes)},

@@ -153,10 +153,10 @@ class Search {
       if (term.is_driven()) term.drive = drive;
   }
 
-  /// From all starts: after a gap or a spring came or went. `known`: see drive_starts().
-  void settle_drive_anew(std::vector<TableTerm>& terms, const NoiseColour& colour, const TableDrive* known) const {
+  /// From all starts: after a gap or a spring came or went.
+  void settle_drive_anew(std::vector<TableTerm>& terms, const NoiseColour& colour) const {
     const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
-    if (gap || spring) settle_drive(terms, colour, drive_starts(gap, spring, rows_, deceleration_, known));
+    if (gap || spring) settle_drive(terms, colour, drive_starts(gap, spring, rows_, deceleration_));
   }
 
   /// Where the motor is, without the errors of its encoder that are among the terms.
@@ -195,7 +195,7 @@ class Search {
     std::vector<TableTerm> other = terms;
     other.back().kind = terms.back().kind == "backlash" ? "compliance" : "backlash";
     if (stands_in(model_, other.back().kind)) return {};
-    settle_drive_anew(other, fit.colour, nullptr);
+    settle_drive_anew(other, fit.colour);
     EvidenceFit again = fit_from(fit, other);
     refine(other, again);
     const double gain = again.log_evidence - fit.log_evidence;
@@ -220,7 +220,7 @@ class Search {
                                     const EvidenceFit& before) const {
     std::vector<TableTerm> all = chosen;
     all.push_back({std::string(kind), {}, {}, deceleration_});
-    settle_drive_anew(all, before.colour, drive_of(chosen));
+    settle_drive_anew(all, before.colour);
     EvidenceFit fit = fit_from(before, all);
     refine(all, fit);
     if (wrong_way(all, fit) || rms_of_last(all, fit) < rows_.step_um / std::sqrt(12.0)) return {};
@@ -362,7 +362,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   for (std::size_t k = 0; k < chosen.size();) {
     others_of[k] = chosen;
     others_of[k].erase(others_of[k].begin() + static_cast<std::ptrdiff_t>(k));
-    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.colour, nullptr);
+    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.colour);
     less_of[k] = search.fit(others_of[k]);
     const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
     const double needed = logistic(fit.log_evidence - less_of[k].log_evidence + prior);
@@ -392,9 +392,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     effect.probability = odds[k];
     effect.before = rms(left_on(study.rows, others_of[k], less_of[k].factors, base));
     effect.after = study.left_um;
-    const double taken = effect.before * effect.before - effect.after * effect.after;
-    effect.worth_naming = taken >= kWorthNaming * effect.before * effect.before &&
-                          taken >= kWorthOfAll * study.before_um * study.before_um;
+    effect.worth_naming = is_worth_naming(effect.before, effect.after, study.before_um);
     study.effects.push_back(std::move(effect));
   }
   return study;

@@ -171,8 +171,7 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows)
   return forms;
 }
 
-std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration,
-                                     const TableDrive* known) {
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration) {
   // Gaps of good ball screws up to worn ones, within what is there; springs from 10 to 400 Hz with the motor held.
   constexpr double kLeastGap_mm = 0.001, kMostGap_mm = 0.6, kLeastLag = 1.6e-7, kMostLag = 2.6e-4, kNoSlide = 1e5;
   const double whole = 1e-3 * (rows.y.maxCoeff() - rows.y.minCoeff());
@@ -186,20 +185,6 @@ std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& row
   if (spring) lags.clear();
   for (double lag = kLeastLag; spring && lag <= kMostLag; lag *= 1.6) lags.push_back(lag);
   std::vector<TableDrive> starts;
-  if (known != nullptr && known->gap > 0.0 && !(known->lag > 0.0))
-    // What friction bends of the spring had counted as free travel.
-    for (const double lag : lags) {
-      TableDrive one = *known;
-      one.lag = lag;
-      one.gap = std::max(known->gap - 2.0 * lag * known->deceleration, kLeastGap_mm);
-      starts.push_back(one);
-    }
-  if (known != nullptr && known->lag > 0.0 && !(known->gap > 0.0))
-    for (const double free : gaps) {
-      TableDrive one = *known;
-      one.gap = free;
-      starts.push_back(one);
-    }
   for (const double lag : lags)
     for (const double one : slower)
       for (const double free : gaps) starts.push_back({.gap = free, .lag = lag, .deceleration = one});

@@ -49,9 +49,8 @@ inline constexpr std::string_view kTableKinds[] = {"compliance", "backlash", "en
 std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows);
 
 /// Where the fit of a driven table may begin: a grid over gap, spring and friction. `deceleration`: see shape_ranges().
-/// `known`: the drive that has one of both already, or null; starts beside it are among them. At least one.
-std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration,
-                                     const TableDrive* known);
+/// A gap or a spring that was found alone is no start: its friction is that of a table which follows otherwise.
+std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration);
 
 /// Always there: each record's offset, and the time by which one sensor is read after the other.
 Eigen::MatrixXd table_base(const TableRows& rows);

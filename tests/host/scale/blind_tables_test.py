@@ -29,9 +29,11 @@ def axistool(*arguments: object) -> dict:
 
 
 def names_in(table: dict) -> "set[str]":
-    """The causes as the machine calls them."""
+    """The causes as the machine calls them; what is certain and too small to matter is none."""
     found = set()
     for effect in table["found"]:
+        if not effect["worth_naming"]:
+            continue
         kind = effect["kinds"][0]
         if len(effect["kinds"]) > 1:
             found.add(" or ".join(effect["kinds"]))
