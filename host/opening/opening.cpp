@@ -73,7 +73,7 @@ class RecordMaker {
   RecordMaker(const Log& log, OpenedFile& file, std::string drive) : log_(log), file_(file), drive_(std::move(drive)) {}
 
   void make(const OpenedAxis& axis) {
-    const std::vector<std::size_t>& starts = file_.understood.time.run_starts;
+    const std::vector<std::size_t>& starts = time_of(axis, file_.understood).run_starts;
     std::size_t begin = 0, runs = 0, short_runs = 0;
     for (std::size_t k = 0; k <= starts.size(); ++k) {
       const std::size_t end = k < starts.size() ? starts[k] : longest();
@@ -99,7 +99,8 @@ class RecordMaker {
   }
 
   void make_run(const OpenedAxis& axis, const Log& log, std::size_t run, bool several) {
-    const TimeBase time = several ? time_of(log) : file_.understood.time;
+    const TimeBase& all = time_of(axis, file_.understood);
+    const TimeBase time = several ? time_of_run(log, all) : all;
     if (time.source.empty()) return;
     ImportOptions options;
     options.drive = drive_;
@@ -123,15 +124,15 @@ class RecordMaker {
     }
   }
 
-  TimeBase time_of(const Log& log) const {
+  static TimeBase time_of_run(const Log& log, const TimeBase& all) {
     for (const LogColumn& column : log.columns)
-      if (column.name == file_.understood.time.source) {
+      if (column.name == all.source) {
         const ChannelName name = understand_name(column);
         TimeBase time = time_base_of(log, &column, &name, {});
-        if (!name.unit) time.factor = file_.understood.time.factor;
+        if (!name.unit) time.factor = all.factor;
         return time;
       }
-    return file_.understood.time;
+    return all;
   }
 
   /// Stamps of their own that are the log's own all the same.
@@ -178,6 +179,7 @@ void override_by(const std::vector<Mapping>& mappings, const Log& log, Understan
       understood.time.source = mapping.source;
       understood.time.factor = mapping.factor;
       understood.time.why = "as given";
+      for (OpenedAxis& axis : understood.axes) axis.own_time.reset();
       understood.time.sure = 1.0;
       if (mapping.source == kRowSource) understood.time.period_s = mapping.factor;
       if (mapping.source == kRowSource) understood.time.resample_s.reset();
@@ -214,7 +216,8 @@ void override_by(const std::vector<Mapping>& mappings, const Log& log, Understan
     if (effort)
       std::erase_if(understood.missing,
                     [](const std::string& text) { return text.find("the effort:") != std::string::npos; });
-    axis.makes_record = effort && has({"x_mm", "x_m", "w_rad_s", "v_mm_s", "v_m_s"}) && !understood.time.source.empty();
+    axis.makes_record =
+        effort && has({"x_mm", "x_m", "w_rad_s", "v_mm_s", "v_m_s"}) && !time_of(axis, understood).source.empty();
   }
 }
 
@@ -326,7 +329,7 @@ std::string format_mapping(const Opening& opening) {
   for (const OpenedFile& file : opening.files)
     for (const OpenedAxis& axis : file.understood.axes) {
       if (!axis.makes_record || !seen.insert(axis.name).second) continue;
-      const TimeBase& time = file.understood.time;
+      const TimeBase& time = time_of(axis, file.understood);
       MappedAxis mapped;
       mapped.name = axis.name;
       mapped.map = mapping_text({"t_s", time.source, {}, time.factor, 0.0});
