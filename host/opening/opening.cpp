@@ -28,13 +28,23 @@ constexpr std::size_t kMostExtra = 16;
 
 /// 64 MiB: numbers of two characters take a gigabyte by the time they are understood.
 constexpr std::uintmax_t kLargest = std::uintmax_t{64} << 20U;
+constexpr std::size_t kMostOpened = kLargest / 2;
 
 void refuse_huge(const std::string& path) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  if (!unknown && size > kLargest)
+  if (!unknown && size > kLargest && !is_container(path))
     throw Failure(ExitCode::bad_input, fmt::format("{}: {} MiB exceeds the limit of {} MiB; cut the log", path,
                                                    size >> 20U, kLargest >> 20U));
+}
+
+void refuse_huge(const Log& log) {
+  std::size_t numbers = 0;
+  for (const LogColumn& column : log.columns) numbers += column.values.size();
+  if (numbers > kMostOpened)
+    throw Failure(ExitCode::bad_input, fmt::format("{}: {} numbers exceed the limit of {}; cut the log, or keep fewer "
+                                                   "channels of it",
+                                                   log.path, numbers, kMostOpened));
 }
 
 bool same_channels(const Log& a, const Log& b) {
@@ -272,6 +282,7 @@ Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& o
   for (const std::string& path : paths) {
     refuse_huge(path);
     logs.push_back(read_log(path));
+    refuse_huge(logs.back());
     if (!options.hal_path.empty()) name_by_hal(logs.back(), options.hal_path);
     decode_signs(logs.back());
   }

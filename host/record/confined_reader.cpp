@@ -14,6 +14,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <mutex>
 #include <new>
 
 #include "host/exit_codes.hpp"
@@ -27,8 +28,8 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kMostMemory = 1024 * kMebibyte, kLongestText = kMebibyte, kMostColumns = 100'000;
 
-/// Seconds of a processor: a damaged file may make a library run in circles. Whole files take a tenth of it.
-unsigned time_limit_s(std::size_t bytes) { return 10U + static_cast<unsigned>(bytes / (16 * kMebibyte)); }
+/// Seconds of a processor: a damaged file may make a library run in circles. Whole files take less than a tenth of it.
+unsigned time_limit_s(std::size_t bytes) { return 5U + static_cast<unsigned>(bytes / (16 * kMebibyte)); }
 
 /// What the parts of the answer begin with.
 enum class Part : char { column = 'c', header = 'h', preamble = 'p', layout = 'l', failure = 'f', end = 'e' };
@@ -39,6 +40,11 @@ class Sender {
   explicit Sender(int pipe) : pipe_(pipe) {}
 
   void send(const Log& log) const {
+    if (log.columns.size() > kMostColumns)
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{}: more than {} columns, the most that a log may have; save those "
+                                "of the log",
+                                log.path, kMostColumns));
     part(Part::layout, {log.layout});
     for (const auto& [key, value] : log.header) part(Part::header, {key, value});
     for (const std::string& line : log.preamble) part(Part::preamble, {line});
@@ -210,10 +216,14 @@ Log read_confined(const std::string& path, std::string_view library, Log (*read)
                                                    kLogSize.bytes / kMebibyte, kLogSize.of));
   const unsigned seconds = time_limit_s(unknown ? 0 : size);
   std::array<int, 2> ends{};
+  // one at a time: no other child may keep this pipe open when its own has crashed
+  static std::mutex forking;
+  std::unique_lock alone(forking);
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure(ExitCode::permission, "cannot create a pipe");
   const pid_t child = fork();
   if (child == 0) run_child(ends[1], seconds, path, read);
   close(ends[1]);
+  alone.unlock();
   Log log;
   log.path = path;
   std::string failure;

@@ -33,6 +33,8 @@ std::string without_colon(std::string_view name) {
   return plain;
 }
 
+constexpr std::string_view kSqliteMagic = "SQLite format 3", kHdf5Magic = "\x89HDF";
+
 /// The first bytes of a file; none of a pipe, which gives its bytes only once.
 std::string start_of(const std::string& path) {
   std::string start(16, '\0');
@@ -84,18 +86,26 @@ std::string Log::inventory() const {
   return text.empty() ? "nothing" : text;
 }
 
+bool is_container(const std::string& path) {
+  const std::string start = start_of(path);
+  return start.starts_with(kSqliteMagic) || start.starts_with(kHdf5Magic) || start.starts_with(kMcapMagic);
+}
+
 Log read_log(const std::string& path) {
   const std::string start = start_of(path), extension = std::filesystem::path(path).extension();
   if (start.starts_with("MATLAB ") || (!start.empty() && extension == ".mat")) return read_mat(path);
-  if (start.starts_with("\x89HDF") || (!start.empty() && (extension == ".h5" || extension == ".hdf5")))
+  if (start.starts_with(kHdf5Magic) || (!start.empty() && (extension == ".h5" || extension == ".hdf5")))
     return read_hdf5(path);
-  if (start.starts_with("SQLite format 3")) return read_rosbag(path);
+  if (start.starts_with(kSqliteMagic)) return read_rosbag(path);
   refuse_unread(start, path);
-  const std::string text = read_file(path, kLogSize);
-  if (text.starts_with(kMcapMagic)) return parse_mcap(text, path);
-  if (text.starts_with("\x93NUMPY")) return parse_npy(text, path);
-  if (text.starts_with("PK\x03\x04")) return parse_npz(text, path);
-  return parse_log_text(text, path);
+  return parse_log(read_file(path, kLogSize), path);
+}
+
+Log parse_log(std::string_view bytes, std::string_view name) {
+  if (bytes.starts_with(kMcapMagic)) return parse_mcap(bytes, name);
+  if (bytes.starts_with("\x93NUMPY")) return parse_npy(bytes, name);
+  if (bytes.starts_with("PK\x03\x04")) return parse_npz(bytes, name);
+  return parse_log_text(bytes, name);
 }
 
 Log parse_log_text(std::string_view text, std::string_view name) {

@@ -46,6 +46,12 @@ struct Log {
 /// each value) and SINUMERIK traces (XML) are known by their content. Throws Failure(bad_input).
 Log read_log(const std::string& path);
 
+/// Whether a file may hold much else beside its numbers (pictures in a bag), or packs them: its size says little.
+bool is_container(const std::string& path);
+
+/// read_log of a file that is already in memory, of the kinds that no library from elsewhere reads.
+Log parse_log(std::string_view bytes, std::string_view name);
+
 /// read_log of text that is already in memory: whichever of the text layouts it has.
 Log parse_log_text(std::string_view text, std::string_view name);
 

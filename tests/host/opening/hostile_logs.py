@@ -25,7 +25,7 @@ except ImportError:
 PROGRAM = sys.argv[1]
 TRIES = int(sys.argv[2]) if len(sys.argv) > 2 else 30
 END = 64  # bytes at the end of a file that a reader does not need
-LONGEST_S, MOST_BYTES = 60.0, 1 << 30  # a damaged file may take 10 s of a processor, which a busy machine shares
+LONGEST_S, MOST_BYTES = 60.0, 1 << 30  # a damaged file may take 5 s of a processor, which a busy machine shares
 
 
 def valid_files(folder):

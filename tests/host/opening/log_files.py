@@ -91,7 +91,7 @@ def packed(data, packing):
     return subprocess.run(tool, input=data, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True).stdout
 
 
-def mcap(path, topics, packing='', chunked=True, schema=JOINT_STATE, per_chunk=400, ended=True):
+def mcap(path, topics, packing='', chunked=True, schema=JOINT_STATE, per_chunk=400, ended=True, checked=True):
     """topics: {name: [(time, message)]}"""
     heads = record(3, struct.pack('<H', 1) + text(schema) + text('ros2msg') + text(DEFINITION))
     for number, name in enumerate(topics):
@@ -106,7 +106,7 @@ def mcap(path, topics, packing='', chunked=True, schema=JOINT_STATE, per_chunk=4
         plain = (heads if k == 0 else b'') + b''.join(records[k:k + per_chunk])
         inner = packed(plain, packing)
         out += record(6, struct.pack('<QQQI', rows[k][0], rows[min(k + per_chunk, len(rows)) - 1][0], len(plain),
-                                     zlib.crc32(plain)) + text(packing) + struct.pack('<Q', len(inner)) + inner)
+                                     zlib.crc32(plain) if checked else 0) + text(packing) + struct.pack('<Q', len(inner)) + inner)
         out += record(7, struct.pack('<HI', 1, 0))
     if ended:
         out += record(15, struct.pack('<I', 0)) + record(2, struct.pack('<QQI', 0, 0, 0)) + b'\x89MCAP0\r\n'
