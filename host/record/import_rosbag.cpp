@@ -76,6 +76,12 @@ class RosbagReader {
   ~RosbagReader() { sqlite_.close(file_); }
 
   Log read() {
+    std::int64_t size = 1;
+    for (const char* const factor : {"PRAGMA page_size", "PRAGMA page_count"})
+      each_row(factor, [&](sqlite3_stmt* row) { size *= sqlite_.integer(row, 0); });
+    if (std::filesystem::file_size(path_) <
+        static_cast<std::uintmax_t>(size))  // the library reads zeros beyond the end
+      throw Failure(ExitCode::bad_input, fmt::format("{}: cut off; copy the bag again", path_));
     std::map<std::int64_t, BagTopic> topics;
     each_row("SELECT id, name, type, serialization_format FROM topics", [&](sqlite3_stmt* row) {
       topics[sqlite_.integer(row, 0)] = {text(row, 1), text(row, 2), text(row, 3)};
