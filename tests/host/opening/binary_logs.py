@@ -150,6 +150,9 @@ class BinaryLogs(unittest.TestCase):
         whole[whole.find(b'joint1') + 200] ^= 1  # within the chunk: its checksum no longer holds
         pathlib.Path(self.path('b.mcap')).write_bytes(whole)
         self.assertIn('damaged', self.refusal(self.path('b.mcap')))
+        made.bag(self.path('c.db3'), {'/joint_states': made.messages(rows=50)})
+        os.truncate(self.path('c.db3'), os.path.getsize(self.path('c.db3')) - 100)  # SQLite reads zeros there
+        self.assertIn('cut off', self.refusal(self.path('c.db3')))
         made.bag(self.path('a.db3'), {'/joint_states': made.messages(rows=50)})
         pathlib.Path(self.path('a.db3-wal')).write_bytes(b'rows')
         self.assertIn('wal_checkpoint', self.refusal(self.path('a.db3')))
