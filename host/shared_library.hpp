@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 
 #include <string>
-#include <type_traits>
 
 namespace host {
 
@@ -19,13 +18,12 @@ class SharedLibrary {
   bool is_loaded() const { return handle_ != nullptr; }
   const std::string& why_not() const { return why_not_; }
 
-  /// Sets `function` to the library's function of this name, with the type from the library's header; false if there is
-  /// none.
-  template <typename Function>
-  bool find(Function*& function, const char* name) const {
-    static_assert(std::is_function_v<Function>);
-    function = reinterpret_cast<Function*>(dlsym(handle_, name));
-    return function != nullptr;
+  /// Sets `symbol` to the library's function or variable of this name, with the type from the library's header; false
+  /// if there is none.
+  template <typename Symbol>
+  bool find(Symbol*& symbol, const char* name) const {
+    symbol = reinterpret_cast<Symbol*>(dlsym(handle_, name));
+    return symbol != nullptr;
   }
 
  private:

@@ -62,7 +62,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_AXISTOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_AXISTOOL_PACKAGE_DEPENDS "libhidapi-hidraw0")  # loaded at run time, as these are
-set(CPACK_DEBIAN_AXISTOOL_PACKAGE_RECOMMENDS "libmatio11")
+set(CPACK_DEBIAN_AXISTOOL_PACKAGE_RECOMMENDS "${AXIS_READER_PACKAGES}")  # one a kind of log
 set(CPACK_DEBIAN_AXISTOOL_PACKAGE_SUGGESTS "dfu-util, openocd")
 set(CPACK_DEBIAN_AXISTOOL_DESCRIPTION "identify feed drives and find the physical effect a model lacks
 axistool identifies the drives of machine tools from measurements (inertia,
@@ -78,7 +78,7 @@ if(TARGET axis_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   math(EXPR NEXT_PYTHON "${Python3_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${NEXT_PYTHON}), python3-numpy, libhidapi-hidraw0")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "axistool, libmatio11")  # the udev rule and the shipped drive come with the program
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "axistool, ${AXIS_READER_PACKAGES}")  # the udev rule and the shipped drive come with the program
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "identify feed drives from Python
 The analysis of axistool as functions of Python with typed results: records
 as NumPy arrays, models, identify, compare, diagnose, add, improve, design,

@@ -1,4 +1,4 @@
-// axistool import: a record out of a .mat file or any table.
+// axistool import: a record out of a log of any kind that is read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,8 @@ constexpr const char* kFooter =
     "x2_mm, x2_m (the table, by a scale); x_ref_mm, x_ref_m, w_ref_rad_s, v_ref_m_s, temp_C. Other columns are kept\n"
     "and ignored.\n"
     "A mapping may scale and shift (t_s=t_ms*0.001, x_mm=counts*0.00122-5, x_m=-pos) and name a column by its number\n"
-    "(x_mm=#3 or x_mm=3*0.5), one column of a matrix (x_m=log(2)), a field (x_m=run.pos), separate time stamps\n"
+    "(x_mm=#3 or x_mm=3*0.5), one column of a matrix (x_m=log(2)), a field (x_m=run.pos), a data set with its\n"
+    "groups (x_m=\"run/pos\"), a joint's quantity (x_m=joint1.position), separate time stamps\n"
     "(x_m=pos@t_pos, with --resample) or the row number (t_s=row*0.001). Quote names with spaces: u_V=\"Command "
     "(V)\".\n"
     "Examples:\n"
@@ -98,10 +99,12 @@ void run(const Options& options) {
 }  // namespace
 
 void add_import(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("import", "Make a record from a MATLAB file or any table");
+  CLI::App* command =
+      app.add_subcommand("import", "Make a record from a MATLAB or HDF5 file, a ROS 2 bag or any table");
   const auto options = std::make_shared<Options>();
   add_input(*command, "file", options->file,
-            "the log: .mat (v4, v5, v7.3) or a table with commas, semicolons, tabs or spaces")
+            "the log: .mat (v4, v5, v7.3), .h5, .npy, .npz, joint states in a ROS 2 bag (.mcap, .db3), or a table with "
+            "commas, semicolons, tabs or spaces")
       ->required();
   command->add_option("--map", options->map, "column=variable[*factor][+shift], … (see below)");
   command

@@ -155,8 +155,8 @@ void add_open(CLI::App& app) {
       "open", "Read any controller's logs: name the channels, write records, find the missing effect");
   add_input(
       *command, "LOG", arguments->logs,
-      "logs: TwinCAT Scope, SINUMERIK trace, halsampler, halscope, ODrive, moteus, VESC, camonitor, drive monitors, "
-      ".mat, .npy, .npz, any table")
+      "logs: TwinCAT Scope, SINUMERIK trace, halsampler, halscope, ODrive, moteus, VESC, Betaflight Blackbox (CSV), "
+      "camonitor, drive monitors, joint states in ROS 2 bags (.mcap, .db3), .h5, .mat, .npy, .npz, any table")
       ->required();
   CLI::Option* sheet =
       add_input(*command, "--sheet", arguments->sheet, "data sheet of the drive (axistool sheet makes one)");
@@ -180,12 +180,15 @@ void add_open(CLI::App& app) {
       "a\n"
       "terminal; elsewhere it needs --yes. With --sheet or --kt it continues: identify, diagnose, one page; a log "
       "named\n"
-      "valid…, test… or check… is for validation. With --kt alone 1 mm stands for 1 rad.\n"
+      "valid…, test… or check… is for validation. With --kt alone 1 mm stands for 1 rad. Every axis of a log, every "
+      "joint\n"
+      "of a bag, makes a record; a bag does not tell whether a joint turns or slides: --sheet does, or the answer.\n"
       "Examples:\n"
       "  axistool open scope.csv                                  (only look)\n"
       "  axistool open steps.csv jog.csv --kt 0.6 -o x            (records, mapping)\n"
       "  axistool open next.csv --map x/mapping.toml -o x         (the next log of that machine)\n"
       "  axistool open pid.txt --hal loop.hal -o x\n"
+      "  axistool open robot_0.mcap --map x_mm=slide.position*1000,v_mm_s=slide.velocity*1000,i_A=slide.effort\n"
       "Exit code 1: no record could be made, or a question is open.");
   command->callback([arguments] { run(*arguments); });
 }

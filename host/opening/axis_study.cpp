@@ -87,7 +87,9 @@ void AxisStudy::take(const NamedChannel& channel, Decision decision) {
   Mapping mapping{decision.column, column.name, column.time == axis_->stamps ? "" : column.time, decision.factor,
                   decision.offset};
   if (mapping.source.empty()) mapping.source = fmt::format("#{}", channel.column + 1);
-  if (decision.sure < kSureEnough)
+  const bool is_open = may_slide_ && channel.name.sliding_unit;  // one question for all of a joint
+  if (is_open) out.sure = std::min(out.sure, kAssumed);
+  if (decision.sure < kSureEnough && !is_open)
     ask(fmt::format("{}{}: {} ({})? Else say --map {}=…", axis_->name.empty() ? "" : axis_->name + ": ",
                     quoted(channel), mapping_text(mapping), decision.why, decision.column));
   axis_->mappings.push_back(std::move(mapping));
@@ -469,6 +471,7 @@ void AxisStudy::run(std::vector<NamedChannel> channels, OpenedAxis& axis, Unders
   settled_.assign(log_.columns.size(), false);
   axis_ = &axis;
   found_ = &found;
+  settle_joint();
   speed_ = pick(Quantity::speed, false, false);
   settle_position();
   settle_table_position();
@@ -476,6 +479,7 @@ void AxisStudy::run(std::vector<NamedChannel> channels, OpenedAxis& axis, Unders
   settle_references();
   settle_effort();
   settle_temperature();
+  ask_of_joint();
   leave_rest();
   if (effort_ == nullptr && axis_->missing.empty())
     lack("the torque or force: no current, torque, force or command voltage was logged");

@@ -41,6 +41,8 @@ class AxisStudy {
   void ask(std::string text) { found_->asks.push_back(std::move(text)); }
   void lack(std::string text) { axis_->missing.push_back(std::move(text)); }
 
+  void settle_joint();
+  void ask_of_joint();
   void settle_position();
   void settle_table_position();
   void settle_speed();
@@ -65,6 +67,7 @@ class AxisStudy {
   std::vector<bool> settled_;
   OpenedAxis* axis_ = nullptr;
   Understanding* found_ = nullptr;
+  bool may_slide_ = false;  ///< of a joint: taken as turning, with a question
   const NamedChannel *position_ = nullptr, *speed_ = nullptr, *effort_ = nullptr;
   std::optional<Decision> position_taken_;
 };

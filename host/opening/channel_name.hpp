@@ -34,6 +34,9 @@ struct ChannelName {
   std::string axis;                 ///< "X1", "2"; empty: not in the name
   std::string unit_text;            ///< as the log gives it
   std::optional<UnitMeaning> unit;  ///< empty: none, or unknown
+  /// Of a joint that turns or slides, which the log leaves open: the unit if it slides, where `unit` is the one if it
+  /// turns.
+  std::optional<UnitMeaning> sliding_unit{};
 };
 
 /// By words of English, German, French, Spanish, Italian, Russian, Chinese and Japanese, and controllers' own names.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "host/opening/name_words.hpp"
+#include "host/record/joint_states.hpp"
 
 namespace host {
 
@@ -68,6 +69,22 @@ constexpr ToolColumn kVesc[] = {
     {"current_motor_setup", Quantity::other, false, ""},
     {"gnss_posTime", Quantity::other, false, ""},
 };
+
+/// Betaflight's Blackbox: terms of the PID and the battery, which are no axis' current or torque (blackbox_decode.c of
+/// github.com/betaflight/blackbox-tools, csv-export-worker.js of blackbox-log-viewer).
+void apply_betaflight(const Log& log, std::vector<ChannelName>& names) {
+  static constexpr std::string_view kOthers[] = {"axisP[",         "axisI[",           "axisD[",
+                                                 "axisF[",         "axisS[",           "vbatLatest",
+                                                 "amperageLatest", "energyCumulative", "currentVirtual"};
+  for (std::size_t k = 0; k < log.columns.size(); ++k) {
+    const std::string& name = log.columns[k].name;
+    if (std::ranges::any_of(kOthers, [&](std::string_view start) { return name.starts_with(start); }))
+      names[k].quantity = Quantity::other;
+    if (name != "time") continue;
+    names[k].unit_text = "us";
+    names[k].unit = unit_named("us");
+  }
+}
 
 bool has(const Log& log, std::string_view part) {
   return std::ranges::any_of(log.columns,
@@ -137,6 +154,29 @@ void apply_hal(const Log& log, std::vector<ChannelName>& names) {
   }
 }
 
+/// Joint states: the unit stands for the quantity, and what is in front of the last point is the joint.
+void apply_joint_states(const Log& log, std::vector<ChannelName>& names) {
+  struct JointColumn {
+    std::string_view unit;
+    Quantity quantity;
+    UnitMeaning turning, sliding;
+  };
+  static constexpr JointColumn kColumns[] = {
+      {kJointPositionUnit, Quantity::position, {Dimension::angle}, {Dimension::length, 1e3}},
+      {kJointSpeedUnit, Quantity::speed, {Dimension::angular_speed}, {Dimension::linear_speed, 1e3}},
+      {kJointEffortUnit, Quantity::torque, {Dimension::torque}, {Dimension::force}}};
+  for (std::size_t k = 0; k < log.columns.size(); ++k)
+    for (const JointColumn& column : kColumns) {
+      if (log.columns[k].unit != column.unit) continue;
+      names[k] = {};
+      names[k].quantity = column.quantity;
+      names[k].unit = column.turning;
+      names[k].sliding_unit = column.sliding;
+      names[k].unit_text = column.unit;
+      names[k].axis = log.columns[k].name.substr(0, log.columns[k].name.rfind('.'));
+    }
+}
+
 }  // namespace
 
 void apply_known_tools(Log& log, std::vector<ChannelName>& names) {
@@ -151,8 +191,12 @@ void apply_known_tools(Log& log, std::vector<ChannelName>& names) {
   if (moteus) apply(log, kMoteus, names);
   const bool vesc = has_named(log, "ms_today");
   if (vesc) apply(log, kVesc, names);
+  if (log.layout == "ros2-joint-states") apply_joint_states(log, names);
   if (log.layout == "halsampler" || log.layout == "halscope") apply_hal(log, names);
-  if (log.layout == "table") log.layout = odrive ? "odrive" : moteus ? "moteus" : vesc ? "vesc" : log.layout;
+  const bool betaflight = has_named(log, "loopIteration") && has(log, "axisP[");
+  if (betaflight) apply_betaflight(log, names);
+  if (log.layout == "table")
+    log.layout = odrive ? "odrive" : moteus ? "moteus" : vesc ? "vesc" : betaflight ? "betaflight" : log.layout;
 }
 
 }  // namespace host

@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// Completes what names say where the log is one of ODrive's, moteus', VESC Tool's or LinuxCNC's; and names the layout
-/// after the tool.
+/// Completes what names say where the log is one of ODrive's, moteus', VESC Tool's, Betaflight's or LinuxCNC's, or
+/// joint states of ROS; and names the layout after the tool.
 void apply_known_tools(Log& log, std::vector<ChannelName>& names);
 
 }  // namespace host

@@ -37,6 +37,10 @@ constexpr Recipe kRecipes[] = {
      "loop, or by the oscilloscope, at 1 kHz"},
     {"moteus", "moteus: log position, velocity and q_current (mode kInt16 or finer) at 500 Hz or more"},
     {"vesc", "VESC Tool: sampled data at a rate of 1 kHz instead of the real-time log"},
+    {"ros2-joint-states",
+     "ROS 2: publish position, velocity and effort of the joint at 200 Hz or more (joint_state_broadcaster, "
+     "update_rate "
+     "of the controller manager); ros2 bag record /joint_states"},
     {"camonitor",
      "EPICS: archive the drive's current or torque beside the position, both at 200 Hz or more (a waveform record)"},
 };

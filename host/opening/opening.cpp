@@ -28,13 +28,23 @@ constexpr std::size_t kMostExtra = 16;
 
 /// 64 MiB: numbers of two characters take a gigabyte by the time they are understood.
 constexpr std::uintmax_t kLargest = std::uintmax_t{64} << 20U;
+constexpr std::size_t kMostOpened = kLargest / 2;
 
 void refuse_huge(const std::string& path) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  if (!unknown && size > kLargest)
+  if (!unknown && size > kLargest && !is_container(path))
     throw Failure(ExitCode::bad_input, fmt::format("{}: {} MiB exceeds the limit of {} MiB; cut the log", path,
                                                    size >> 20U, kLargest >> 20U));
+}
+
+void refuse_huge(const Log& log) {
+  std::size_t numbers = 0;
+  for (const LogColumn& column : log.columns) numbers += column.values.size();
+  if (numbers > kMostOpened)
+    throw Failure(ExitCode::bad_input, fmt::format("{}: {} numbers exceed the limit of {}; cut the log, or keep fewer "
+                                                   "channels of it",
+                                                   log.path, numbers, kMostOpened));
 }
 
 bool same_channels(const Log& a, const Log& b) {
@@ -73,7 +83,7 @@ class RecordMaker {
   RecordMaker(const Log& log, OpenedFile& file, std::string drive) : log_(log), file_(file), drive_(std::move(drive)) {}
 
   void make(const OpenedAxis& axis) {
-    const std::vector<std::size_t>& starts = file_.understood.time.run_starts;
+    const std::vector<std::size_t>& starts = time_of(axis, file_.understood).run_starts;
     std::size_t begin = 0, runs = 0, short_runs = 0;
     for (std::size_t k = 0; k <= starts.size(); ++k) {
       const std::size_t end = k < starts.size() ? starts[k] : longest();
@@ -99,7 +109,8 @@ class RecordMaker {
   }
 
   void make_run(const OpenedAxis& axis, const Log& log, std::size_t run, bool several) {
-    const TimeBase time = several ? time_of(log) : file_.understood.time;
+    const TimeBase& all = time_of(axis, file_.understood);
+    const TimeBase time = several ? time_of_run(log, all) : all;
     if (time.source.empty()) return;
     ImportOptions options;
     options.drive = drive_;
@@ -123,15 +134,15 @@ class RecordMaker {
     }
   }
 
-  TimeBase time_of(const Log& log) const {
+  static TimeBase time_of_run(const Log& log, const TimeBase& all) {
     for (const LogColumn& column : log.columns)
-      if (column.name == file_.understood.time.source) {
+      if (column.name == all.source) {
         const ChannelName name = understand_name(column);
         TimeBase time = time_base_of(log, &column, &name, {});
-        if (!name.unit) time.factor = file_.understood.time.factor;
+        if (!name.unit) time.factor = all.factor;
         return time;
       }
-    return file_.understood.time;
+    return all;
   }
 
   /// Stamps of their own that are the log's own all the same.
@@ -178,6 +189,7 @@ void override_by(const std::vector<Mapping>& mappings, const Log& log, Understan
       understood.time.source = mapping.source;
       understood.time.factor = mapping.factor;
       understood.time.why = "as given";
+      for (OpenedAxis& axis : understood.axes) axis.own_time.reset();
       understood.time.sure = 1.0;
       if (mapping.source == kRowSource) understood.time.period_s = mapping.factor;
       if (mapping.source == kRowSource) understood.time.resample_s.reset();
@@ -214,7 +226,8 @@ void override_by(const std::vector<Mapping>& mappings, const Log& log, Understan
     if (effort)
       std::erase_if(understood.missing,
                     [](const std::string& text) { return text.find("the effort:") != std::string::npos; });
-    axis.makes_record = effort && has({"x_mm", "x_m", "w_rad_s", "v_mm_s", "v_m_s"}) && !understood.time.source.empty();
+    axis.makes_record =
+        effort && has({"x_mm", "x_m", "w_rad_s", "v_mm_s", "v_m_s"}) && !time_of(axis, understood).source.empty();
   }
 }
 
@@ -269,6 +282,7 @@ Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& o
   for (const std::string& path : paths) {
     refuse_huge(path);
     logs.push_back(read_log(path));
+    refuse_huge(logs.back());
     if (!options.hal_path.empty()) name_by_hal(logs.back(), options.hal_path);
     decode_signs(logs.back());
   }
@@ -326,7 +340,7 @@ std::string format_mapping(const Opening& opening) {
   for (const OpenedFile& file : opening.files)
     for (const OpenedAxis& axis : file.understood.axes) {
       if (!axis.makes_record || !seen.insert(axis.name).second) continue;
-      const TimeBase& time = file.understood.time;
+      const TimeBase& time = time_of(axis, file.understood);
       MappedAxis mapped;
       mapped.name = axis.name;
       mapped.map = mapping_text({"t_s", time.source, {}, time.factor, 0.0});

@@ -118,6 +118,7 @@ std::vector<double> known(const std::vector<double>& values) {
 struct Guess {
   double factor = 0.0, sure = 0.0;
   std::string why;
+  std::string_view unit{};
 };
 
 Guess unit_of_stamps(double step, const std::optional<StatedPeriod>& stated) {
@@ -131,12 +132,12 @@ Guess unit_of_stamps(double step, const std::optional<StatedPeriod>& stated) {
       return {kUnits[k], 0.97, fmt::format("its steps are the {} that the file states in {}", stated->line, kNames[k])};
     if (!is_plausible(period_s)) continue;
     if (++fitting == 1)
-      guess = {kUnits[k], 0.92,
-               fmt::format("steps of {:.4g}: only {} give a plausible sampling rate", step, kNames[k])};
+      guess = {kUnits[k], 0.92, fmt::format("steps of {:.4g}: only {} give a plausible sampling rate", step, kNames[k]),
+               kNames[k]};
   }
   if (fitting > 1) {
     guess.sure = 0.6;
-    guess.why = fmt::format("steps of {:.4g} without a unit, taken as seconds", step);
+    guess.why = fmt::format("steps of {:.4g} without a unit, taken as {}", step, guess.unit);
   }
   return guess;
 }

@@ -19,7 +19,9 @@ namespace {
 /// More columns than any controller's log has; beyond it nothing is searched.
 constexpr std::size_t kMostColumns = 2'000;
 
-bool is_matrix(const Log& log) { return log.layout == "mat" || log.layout == "npy" || log.layout == "npz"; }
+bool is_matrix(const Log& log) {
+  return log.layout == "mat" || log.layout == "npy" || log.layout == "npz" || log.layout == "hdf5";
+}
 
 /// Gaps filled by the value before (for comparing channels only; a record's are not filled so).
 std::vector<double> without_gaps(std::vector<double> values) {
@@ -73,7 +75,7 @@ class Understander {
       found_.channels[k].name = log_.columns[k].name.empty() ? fmt::format("#{}", k + 1) : log_.columns[k].name;
       names_.push_back(understand_name(log_.columns[k]));
       const std::string& name = log_.columns[k].name;
-      if (is_matrix(log_) && name.ends_with(')') && name.find('(') != std::string::npos)
+      if (is_matrix(log_) && name.ends_with(')') && name.find('(') != std::string::npos && log_.columns[k].unit.empty())
         names_.back() = {};  // a matrix' name
       if (const KnownColumn* known = find_known_column(name)) {
         names_.back().axis.clear();
@@ -175,14 +177,30 @@ class Understander {
     axes_.erase(rest);
   }
 
+  /// An axis whose channels all have the same stamps, and not the log's, keeps its own rate.
+  void take_own_stamps(const std::vector<NamedChannel>& channels, OpenedAxis& axis) {
+    const std::string& stamps = log_.columns[channels.front().column].time;
+    const bool own = !stamps.empty() && stamps != stamps_ && !hints_.period_s &&
+                     std::ranges::all_of(channels, [&](const NamedChannel& channel) {
+                       return log_.columns[channel.column].time == stamps;
+                     });
+    if (!own || axes_.size() < 2) return;
+    const auto at = static_cast<std::size_t>(&raw_.find(stamps) - raw_.columns.data());
+    TimeBase time = time_base_of(log_, &raw_.columns[at], &names_[at], {});
+    if (time.source.empty()) return;
+    OpenedChannel& clock = found_.channels[at];
+    clock = {clock.name, axis.name, "t_s", time.factor, 0.0, time.why, time.sure};
+    axis.stamps = stamps;
+    axis.own_time = std::move(time);
+  }
+
   void study(const std::string& name, std::vector<NamedChannel> channels) {
     OpenedAxis axis;
     axis.name = name;
     axis.stamps = stamps_;
-    AxisStudy(group_, log_, hints_, found_.time.period_s).run(std::move(channels), axis, found_);
-    for (const Mapping& mapping : axis.mappings)
-      axis.has_other_stamps = axis.has_other_stamps || !mapping.time_source.empty();
-    axis.makes_record = axis.makes_record && !found_.time.source.empty();
+    take_own_stamps(channels, axis);
+    AxisStudy(group_, log_, hints_, time_of(axis, found_).period_s).run(std::move(channels), axis, found_);
+    axis.makes_record = axis.makes_record && !time_of(axis, found_).source.empty();
     found_.axes.push_back(std::move(axis));
   }
 

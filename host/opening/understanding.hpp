@@ -38,7 +38,7 @@ struct OpenedAxis {
   std::vector<Mapping> mappings;  ///< without t_s
   std::vector<Unwrapping> unwrap;
   std::string stamps;                ///< column of the stamps of its channels; empty: the log's
-  bool has_other_stamps = false;     ///< some channels have stamps of their own
+  std::optional<TimeBase> own_time;  ///< where they are not the log's
   std::vector<std::string> missing;  ///< why it makes no record, or a poorer one
   bool makes_record = false;
 };
@@ -53,6 +53,10 @@ struct Understanding {
   std::vector<std::string> missing;       ///< of the whole log and of its axes
   std::optional<double> lead_mm_per_rad;  ///< that position and speed show together
 };
+
+inline const TimeBase& time_of(const OpenedAxis& axis, const Understanding& understood) {
+  return axis.own_time ? *axis.own_time : understood.time;
+}
 
 /// Converts numbers of sign and magnitude to their values, and notes it in the log's header.
 void decode_signs(Log& log);

@@ -23,7 +23,7 @@ void raise(const host::Failure& failure) {
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }
 
-/// A table, .mat or .npy as it lies in the file: all columns that hold numbers.
+/// A log as it lies in the file: all columns that hold numbers.
 host::RecordColumns read_columns(const std::string& path) {
   host::Log log = host::read_log(path);
   host::RecordColumns result;

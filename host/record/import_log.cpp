@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "host/exit_codes.hpp"
 #include "host/nearest_name.hpp"
@@ -32,9 +33,33 @@ std::string without_colon(std::string_view name) {
   return plain;
 }
 
-bool is_matlab_file(std::string_view start, const std::string& path) {
-  return start.starts_with("MATLAB ") || start.starts_with("\x89HDF") ||
-         std::filesystem::path(path).extension() == ".mat";
+constexpr std::string_view kSqliteMagic = "SQLite format 3", kHdf5Magic = "\x89HDF";
+
+/// The first bytes of a file; none of a pipe, which gives its bytes only once.
+std::string start_of(const std::string& path) {
+  std::string start(16, '\0');
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return {};
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  return start;
+}
+
+/// Files that no library of Debian reads, or that hold a log in a wrapping.
+void refuse_unread(std::string_view start, const std::string& path) {
+  struct Unread {
+    std::string_view magic, what;
+  };
+  static constexpr Unread kUnread[] = {
+      {"PAR1",
+       "a Parquet file, which is not read; convert it to CSV: python3 -c \"import pandas; "
+       "pandas.read_parquet('log.parquet').to_csv('log.csv', index=False)\""},
+      {"#ROSBAG V", "a bag of ROS 1, which is not read; convert it: rosbags-convert --src log.bag --dst log"},
+      {"\x28\xB5\x2F\xFD", "packed by zstd; unpack it: unzstd FILE"},
+      {"\x1F\x8B", "packed by gzip; unpack it: gunzip FILE"}};
+  for (const Unread& unread : kUnread)
+    if (start.starts_with(unread.magic)) throw Failure(ExitCode::bad_input, fmt::format("{}: {}", path, unread.what));
 }
 
 }  // namespace
@@ -61,12 +86,26 @@ std::string Log::inventory() const {
   return text.empty() ? "nothing" : text;
 }
 
+bool is_container(const std::string& path) {
+  const std::string start = start_of(path);
+  return start.starts_with(kSqliteMagic) || start.starts_with(kHdf5Magic) || start.starts_with(kMcapMagic);
+}
+
 Log read_log(const std::string& path) {
-  const std::string text = read_file(path, kLogSize);
-  if (is_matlab_file(std::string_view(text).substr(0, 16), path)) return read_mat(path);
-  if (text.starts_with("\x93NUMPY")) return parse_npy(text, path);
-  if (text.starts_with("PK\x03\x04")) return parse_npz(text, path);
-  return parse_log_text(text, path);
+  const std::string start = start_of(path), extension = std::filesystem::path(path).extension();
+  if (start.starts_with("MATLAB ") || (!start.empty() && extension == ".mat")) return read_mat(path);
+  if (start.starts_with(kHdf5Magic) || (!start.empty() && (extension == ".h5" || extension == ".hdf5")))
+    return read_hdf5(path);
+  if (start.starts_with(kSqliteMagic)) return read_rosbag(path);
+  refuse_unread(start, path);
+  return parse_log(read_file(path, kLogSize), path);
+}
+
+Log parse_log(std::string_view bytes, std::string_view name) {
+  if (bytes.starts_with(kMcapMagic)) return parse_mcap(bytes, name);
+  if (bytes.starts_with("\x93NUMPY")) return parse_npy(bytes, name);
+  if (bytes.starts_with("PK\x03\x04")) return parse_npz(bytes, name);
+  return parse_log_text(bytes, name);
 }
 
 Log parse_log_text(std::string_view text, std::string_view name) {

@@ -38,13 +38,19 @@ struct Log {
   std::string inventory() const;
 };
 
-/// Reads a MATLAB file (v4, v5, v7.3: by its content), a NumPy array (.npy) or a table: fields separated by comma,
-/// semicolon, tab or blanks, numbers with decimal point or comma (found out), with or without headings, further lines
-/// of headings or units, remarks (# or %) or a preamble in front; UTF-8, UTF-16 or Windows-1252. Dates and times of day
-/// become seconds. Exports of TwinCAT Scope and of National Instruments' loggers (a header for each channel, time
-/// columns of their own), EPICS camonitor (a line for each value) and SINUMERIK traces (XML) are known by their
-/// content. Throws Failure(bad_input).
+/// Reads a MATLAB file (v4, v5, v7.3: by its content), an HDF5 file, joint states of a ROS 2 bag (SQLite or MCAP), a
+/// NumPy array (.npy, .npz) or a table: fields separated by comma, semicolon, tab or blanks, numbers with decimal point
+/// or comma (found out), with or without headings, further lines of headings or units, remarks (# or %) or a preamble
+/// in front; UTF-8, UTF-16 or Windows-1252. Dates and times of day become seconds. Exports of TwinCAT Scope and of
+/// National Instruments' loggers (a header for each channel, time columns of their own), EPICS camonitor (a line for
+/// each value) and SINUMERIK traces (XML) are known by their content. Throws Failure(bad_input).
 Log read_log(const std::string& path);
+
+/// Whether a file may hold much else beside its numbers (pictures in a bag), or packs them: its size says little.
+bool is_container(const std::string& path);
+
+/// read_log of a file that is already in memory, of the kinds that no library from elsewhere reads.
+Log parse_log(std::string_view bytes, std::string_view name);
 
 /// read_log of text that is already in memory: whichever of the text layouts it has.
 Log parse_log_text(std::string_view text, std::string_view name);
@@ -68,7 +74,13 @@ Log parse_npy(std::string_view bytes, std::string_view path);
 /// read_log of an archive of NumPy arrays as numpy.savez writes it (not compressed).
 Log parse_npz(std::string_view bytes, std::string_view path);
 
-/// read_log of a MATLAB file.
+/// read_log of an MCAP file.
+Log parse_mcap(std::string_view bytes, std::string_view path);
+inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
+
+/// read_log of files that libraries from elsewhere read: in a process of its own (confined_reader.hpp).
 Log read_mat(const std::string& path);
+Log read_hdf5(const std::string& path);
+Log read_rosbag(const std::string& path);
 
 }  // namespace host

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "host/exit_codes.hpp"
 #include "host/input_limits.hpp"
+#include "host/record/confined_reader.hpp"
 #include "host/record/import_log.hpp"
 #include "host/record/mat_library.hpp"
 
@@ -62,39 +66,44 @@ std::string size_of(const matvar_t& variable) {
   return text;
 }
 
+/// Elements of an array in the library's memory: `count` from `first` on, every `stride`-th.
+struct Stretch {
+  std::size_t first, count, stride;
+};
+
 template <typename T>
-std::vector<double> as_doubles(const void* data, std::size_t count) {
-  const T* first = static_cast<const T*>(data);
-  std::vector<double> values(count);
-  std::transform(first, first + count, values.begin(), [](T value) { return static_cast<double>(value); });
+std::vector<double> as_doubles(const void* data, const Stretch& stretch) {
+  const T* at = static_cast<const T*>(data) + stretch.first;
+  std::vector<double> values(stretch.count);
+  for (std::size_t k = 0; k < stretch.count; ++k) values[k] = static_cast<double>(at[k * stretch.stride]);
   return values;
 }
 
-/// All elements of an array, column by column; empty where it holds no real numbers. Every element becomes a double
-/// before anything is computed with it, so integers of the log neither wrap nor saturate.
-std::vector<double> numbers_of(const matvar_t& variable, std::size_t count) {
+/// Empty where the array holds no real numbers. Every element becomes a double before anything is computed with it, so
+/// integers of the log neither wrap nor saturate.
+std::vector<double> numbers_of(const matvar_t& variable, const Stretch& stretch) {
   if (variable.isComplex != 0 || variable.data == nullptr) return {};
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
-      return as_doubles<double>(variable.data, count);
+      return as_doubles<double>(variable.data, stretch);
     case MAT_C_SINGLE:
-      return as_doubles<float>(variable.data, count);
+      return as_doubles<float>(variable.data, stretch);
     case MAT_C_INT8:
-      return as_doubles<std::int8_t>(variable.data, count);
+      return as_doubles<std::int8_t>(variable.data, stretch);
     case MAT_C_UINT8:
-      return as_doubles<std::uint8_t>(variable.data, count);
+      return as_doubles<std::uint8_t>(variable.data, stretch);
     case MAT_C_INT16:
-      return as_doubles<std::int16_t>(variable.data, count);
+      return as_doubles<std::int16_t>(variable.data, stretch);
     case MAT_C_UINT16:
-      return as_doubles<std::uint16_t>(variable.data, count);
+      return as_doubles<std::uint16_t>(variable.data, stretch);
     case MAT_C_INT32:
-      return as_doubles<std::int32_t>(variable.data, count);
+      return as_doubles<std::int32_t>(variable.data, stretch);
     case MAT_C_UINT32:
-      return as_doubles<std::uint32_t>(variable.data, count);
+      return as_doubles<std::uint32_t>(variable.data, stretch);
     case MAT_C_INT64:
-      return as_doubles<std::int64_t>(variable.data, count);
+      return as_doubles<std::int64_t>(variable.data, stretch);
     case MAT_C_UINT64:
-      return as_doubles<std::uint64_t>(variable.data, count);
+      return as_doubles<std::uint64_t>(variable.data, stretch);
     default:
       return {};
   }
@@ -109,28 +118,24 @@ std::size_t element_count(const matvar_t& variable) {
 void append_array(const matvar_t& variable, const std::string& name, const std::string& kind, Log& log) {
   const std::size_t count = element_count(variable);
   const std::size_t bytes = variable.data_size > 0 ? variable.nbytes / static_cast<std::size_t>(variable.data_size) : 0;
-  const std::vector<double> values =
-      variable.rank == 2 && bytes >= count ? numbers_of(variable, count) : std::vector<double>{};
-  if (values.empty()) {
+  const bool is_readable = variable.rank == 2 && bytes >= count && count > 0;
+  if (!is_readable || numbers_of(variable, {0, 1, 1}).empty()) {
     log.columns.push_back({name, kind, {}, fmt::format("'{}' ({}) holds no real numbers; name another", name, kind)});
     return;
   }
   const std::size_t rows = variable.dims[0], columns = variable.dims[1];
   if (rows == 1 || columns == 1) {
-    log.columns.push_back({name, kind, values, {}});
+    log.columns.push_back({name, kind, numbers_of(variable, {0, count, 1}), {}});
     return;
   }
   const bool samples_run_down = rows >= columns;
-  const std::size_t channels = samples_run_down ? columns : rows, samples = samples_run_down ? rows : columns;
-  for (std::size_t c = 0; c < channels; ++c) {
-    LogColumn column{fmt::format("{}({})", name, c + 1),
-                     fmt::format("{} of {}", samples_run_down ? "column" : "row", kind),
-                     std::vector<double>(samples),
-                     {}};
-    for (std::size_t k = 0; k < samples; ++k)
-      column.values[k] = samples_run_down ? values[c * rows + k] : values[k * rows + c];
-    log.columns.push_back(std::move(column));
-  }
+  const std::size_t channels = samples_run_down ? columns : rows;
+  for (std::size_t c = 0; c < channels; ++c)
+    log.columns.push_back(
+        {fmt::format("{}({})", name, c + 1),
+         fmt::format("{} of {}", samples_run_down ? "column" : "row", kind),
+         numbers_of(variable, samples_run_down ? Stretch{c * rows, rows, 1} : Stretch{c, columns, rows}),
+         {}});
 }
 
 constexpr int kDeepestStruct = 8;
@@ -162,11 +167,32 @@ void append_variable(matvar_t& variable, const std::string& name, int depth, Log
       append_variable(*field, fmt::format("{}.{}", name, names[k]), depth + 1, log);
 }
 
-}  // namespace
+/// Whether a file of level 5 (MAT-File Format, chapter 1: an element's tag tells its size) ends within a variable: the
+/// library would fill the rest of it with anything.
+bool ends_within_variable(const std::string& path) {
+  constexpr std::size_t kHead = 128, kMark = 126, kTag = 8;
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, kHead> head{};
+  const bool is_big = file.read(head.data(), kHead) && std::string_view(head.data() + kMark, 2) == "MI";
+  if (!is_big && std::string_view(head.data() + kMark, 2) != "IM") return false;  // of another level
+  if (head[is_big ? 124 : 125] != 1) return false;
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(path));
+  for (std::size_t at = kHead; at < size;) {
+    std::array<unsigned char, kTag> tag{};
+    file.seekg(static_cast<std::streamoff>(at));
+    if (!file.read(reinterpret_cast<char*>(tag.data()), kTag)) return true;
+    if (is_big) std::reverse(tag.begin() + 4, tag.end());
+    at += kTag + tag[4] + (std::size_t{tag[5]} << 8U) + (std::size_t{tag[6]} << 16U) + (std::size_t{tag[7]} << 24U);
+    if (at > size) return true;
+  }
+  return false;
+}
 
-Log read_mat(const std::string& path) {
+Log read_by_matio(const std::string& path) {
   const MatLibrary& matio = mat_library();
-  matio.log_to("axistool", [](int, char*) {});  // failures are told by the exceptions below, not by the library
+  if (ends_within_variable(path))
+    throw Failure(ExitCode::bad_input, fmt::format("{}: cut off within a variable; save it again", path));
+  matio.log_to("axistool", [](int, char*) {});  // failures are told by the exceptions, not by the library
   const std::unique_ptr<mat_t, CloseMat> file(matio.open(path.c_str(), MAT_ACC_RDONLY));
   if (!file)
     throw Failure(ExitCode::bad_input,
@@ -188,6 +214,13 @@ Log read_mat(const std::string& path) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("{}: the file holds no variables, or is cut off; save it again", path));
   return log;
+}
+
+}  // namespace
+
+Log read_mat(const std::string& path) {
+  mat_library();
+  return read_confined(path, kMatio.file, read_by_matio);
 }
 
 }  // namespace host

@@ -28,11 +28,16 @@ class ZipReader {
   }
 
  private:
-  std::size_t number(std::size_t at, std::size_t size) const {
+  std::string_view part(std::size_t at, std::size_t size) const {
     if (at > bytes_.size() || bytes_.size() - at < size) refuse_archive(path_, "the archive is cut off; save it again");
+    return bytes_.substr(at, size);
+  }
+
+  std::size_t number(std::size_t at, std::size_t size) const {
+    const std::string_view raw = part(at, size);
     std::size_t value = 0;
-    for (std::size_t k = 0; k < size; ++k)
-      value += static_cast<std::size_t>(static_cast<unsigned char>(bytes_[at + k])) << (8 * k);
+    for (std::size_t k = 0; k < raw.size(); ++k)
+      value += static_cast<std::size_t>(static_cast<unsigned char>(raw[k])) << (8 * k);
     return value;
   }
 
@@ -48,8 +53,7 @@ class ZipReader {
     constexpr std::size_t kEntry = 46, kLocal = 30;
     const std::size_t method = number(at_ + 10, 2), packed = number(at_ + 20, 4), length = number(at_ + 28, 2);
     const std::size_t extra = number(at_ + 30, 2), comment = number(at_ + 32, 2), local = number(at_ + 42, 4);
-    number(at_ + kEntry, length);
-    std::string_view name = bytes_.substr(at_ + kEntry, length);
+    std::string_view name = part(at_ + kEntry, length);
     at_ += kEntry + length + extra + comment;
     if (!name.ends_with(".npy")) return;
     name.remove_suffix(4);
@@ -57,11 +61,10 @@ class ZipReader {
       refuse_archive(
           path_, fmt::format("'{}' is compressed; save the arrays with numpy.savez instead of savez_compressed", name));
     const std::size_t begin = local + kLocal + number(local + 26, 2) + number(local + 28, 2);
-    if (begin > bytes_.size() || bytes_.size() - begin < packed)
-      refuse_archive(path_, "the archive is cut off; save it again");
+    const std::string_view array = part(begin, packed);
     taken_ += packed;
     if (taken_ > bytes_.size()) refuse_archive(path_, "the members of the archive overlap; save it again");
-    add_array(bytes_.substr(begin, packed), name, log);
+    add_array(array, name, log);
   }
 
   /// Members that hold no rows of numbers (texts, single values) are left out.

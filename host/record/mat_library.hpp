@@ -1,10 +1,9 @@
-// matio, loaded when the first MATLAB file is read: it brings some forty further libraries with it, which no other
-// command of axistool should wait for.
+// matio, which reads MATLAB files.
 #pragma once
 
 #include <matio.h>
 
-#include <string>
+#include "host/record/reader_library.hpp"
 
 namespace host {
 
@@ -21,11 +20,10 @@ struct MatLibrary {
   decltype(&Mat_VarGetStructFieldByIndex) field = nullptr;
 };
 
-/// That of which the headers were used to build this program; stays loaded until the program ends. Throws Failure
-/// (bad_input) when it is not installed.
+/// kMatio. Throws as ReaderLibrary does.
 const MatLibrary& mat_library();
 
-/// The library named `file`. Throws Failure (bad_input) when it is not installed, or is not matio.
-MatLibrary load_mat_library(const std::string& file);
+/// The library of this name.
+MatLibrary load_mat_library(const LibraryName& name);
 
 }  // namespace host

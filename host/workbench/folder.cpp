@@ -32,7 +32,8 @@ std::string head_of(const fs::path& path) {
 }
 
 bool is_log(const std::string& extension) {
-  constexpr std::array kRead{".csv", ".txt", ".tsv", ".log", ".dat", ".mat", ".npy", ".npz"};
+  constexpr std::array kRead{".csv", ".txt", ".tsv", ".log",  ".dat", ".mat",
+                             ".npy", ".npz", ".h5",  ".hdf5", ".db3", ".mcap"};
   return std::ranges::find(kRead, extension) != kRead.end();
 }
 
@@ -120,7 +121,8 @@ Upload::Upload(const Folder& folder, const std::string& name) : folder_(folder),
     throw Failure(
         ExitCode::usage,
         fmt::format(
-            "\"{}\": expected a model (.toml), a record or a log (.csv, .txt, .tsv, .log, .dat, .mat, .npy, .npz)",
+            "\"{}\": expected a model (.toml), a record or a log (.csv, .txt, .tsv, .log, .dat, .mat, .npy, .npz, "
+            ".h5, .hdf5, .db3, .mcap)",
             name));
   static std::atomic<unsigned> count = 0;
   partial_ = folder.own_file(fmt::format("upload-{}.partial", ++count));

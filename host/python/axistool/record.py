@@ -128,7 +128,7 @@ class Record:
         drive: str = "",
         unwrap: Mapping[str, float] | None = None,
     ) -> Record:
-        """Of a .mat or .npy file or any table, as `axistool import` makes it.
+        """Of a .mat, .h5 or .npy file, a ROS 2 bag or any table, as `axistool import` makes it.
 
         map: "t_s=t_ms*0.001,u_V=cmd,x_mm=#3". resample_s: period, s, to resample at. unwrap: the range at which a column
         wraps, in its unit, {"x_mm": 6.2831853} for an angle within a turn. Raises BadInput for a bad file or mapping.

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 void expect_refusal(const std::string& file, const std::string& reason) {
   try {
-    host::load_mat_library(file);
+    host::load_mat_library({file, "libmatio"});
     ADD_FAILURE() << file << " was taken for matio";
   } catch (const host::Failure& failure) {
     EXPECT_EQ(failure.code, host::ExitCode::bad_input);
