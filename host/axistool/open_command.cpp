@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <numbers>
 
+#include "host/atomic_file.hpp"
 #include "host/axistool/commands.hpp"
 #include "host/axistool/gate_arguments.hpp"
 #include "host/axistool/insight_arguments.hpp"
@@ -19,6 +21,7 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/identification_json.hpp"
 #include "host/model/model_file.hpp"
+#include "host/model/sheet_text.hpp"
 #include "host/opening/next_run.hpp"
 #include "host/opening/opening.hpp"
 
@@ -52,6 +55,9 @@ void print(const host::OpenedFile& file) {
     fmt::print("  {:<28} {:<12} {:<12} {:4.0f}%  {}\n", channel.name, channel.taken_as.empty() ? "-" : channel.taken_as,
                channel.taken_as.empty() ? "" : fmt::format("{:.6g}", channel.factor), 100.0 * channel.sure,
                channel.why);
+  for (const host::OpenedAxis& axis : file.understood.axes)
+    if (const std::string words = host::constants_words(axis.constants); axis.makes_record && !words.empty())
+      fmt::print("  {}the log shows: {}\n", axis.name.empty() ? "" : axis.name + ": ", words);
   for (const std::string& text : file.understood.missing) fmt::print("  missing: {}\n", text);
   if (const std::string next = host::next_run(file.understood); !next.empty()) fmt::print("  next: {}\n", next);
 }
@@ -126,6 +132,35 @@ nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& op
   return all;
 }
 
+/// A data sheet of each axis, filled in as far as the log and --kt tell, and what still belongs there.
+std::vector<std::string> write_sheets(const OpenArguments& arguments, const host::Opening& opening) {
+  std::vector<std::string> gaps;
+  for (const host::OpenedRecord* opened : opening.records()) {
+    const std::string path = (std::filesystem::path(arguments.folder) /
+                              (opened->axis.empty() ? "sheet.toml" : "sheet-" + opened->axis + ".toml"))
+                                 .string();
+    if (std::ranges::any_of(gaps, [&](const std::string& line) { return line.starts_with(path); })) continue;
+    const host::Record& record = opened->record;
+    host::SheetValues values;
+    values.name = !record.drive.empty() ? record.drive : !opened->axis.empty() ? opened->axis : "axis";
+    values.kind = record.kind;
+    values.by_current = !record.i_A.empty();
+    if (arguments.torque_constant > 0.0) values.motor_constant = arguments.torque_constant;
+    values.sample_period_s = record.sample_period_s;
+    for (const host::OpenedFile& file : opening.files) {
+      if (file.understood.lead_mm_per_rad)
+        values.lead_mm_per_turn = *file.understood.lead_mm_per_rad * 2.0 * std::numbers::pi;
+      for (const host::OpenedAxis& axis : file.understood.axes)
+        if (axis.name == opened->axis && axis.constants.encoder_step_mm && !values.encoder_step_mm)
+          values.encoder_step_mm = axis.constants.encoder_step_mm;
+    }
+    host::write_file_atomically(path, host::sheet_text(values));
+    const std::string missing = host::sheet_gaps(values);
+    gaps.push_back(path + (missing.empty() ? "" : fmt::format(" (a data sheet; fill in {})", missing)));
+  }
+  return gaps;
+}
+
 void run(const OpenArguments& arguments) {
   const host::Opening opening = host::open_logs(arguments.logs, options_of(arguments));
   if (arguments.json != "-")
@@ -134,10 +169,13 @@ void run(const OpenArguments& arguments) {
   std::vector<std::string> written;
   if (accepted && !arguments.folder.empty() && !opening.records().empty())
     written = host::write_opening(opening, arguments.folder);
+  std::vector<std::string> sheets;
+  if (!written.empty() && arguments.sheet.empty()) sheets = write_sheets(arguments, opening);
   if (arguments.json != "-") {
     for (const std::string& ask : opening.asks()) fmt::print("not sure: {}\n", ask);
     if (!accepted) fmt::print("No record was written: --yes accepts uncertain channels, --map corrects them.\n");
     for (const std::string& path : written) fmt::print("written: {}\n", path);
+    for (const std::string& sheet : sheets) fmt::print("written: {}\n", sheet);
   }
   nlohmann::json document = host::to_json(opening, written);
   if (!accepted || opening.records().empty())
@@ -171,7 +209,8 @@ void add_open(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--drive", arguments->drive, "name of the drive, for the records' headers");
   command->add_flag("--yes", arguments->yes, "accept uncertain channels");
-  add_output(*command, "-o,--output", arguments->folder, "folder for the records and the accepted mapping.toml",
+  add_output(*command, "-o,--output", arguments->folder,
+             "folder for the records, the accepted mapping.toml and a data sheet (sheet.toml)",
              FileRole::output_folder);
   add_accept_option(*command, arguments->accepted);
   add_json_option(*command, arguments->json);

@@ -448,6 +448,34 @@ void AxisStudy::settle_temperature() {
   }
 }
 
+void AxisStudy::find_constants() {
+  const auto taken = [this](const NamedChannel* channel) {
+    std::vector<double> scaled;
+    if (channel == nullptr || found_->channels[channel->column].taken_as.empty()) return scaled;
+    scaled = values(*channel);
+    for (double& value : scaled)
+      value = value * found_->channels[channel->column].factor + found_->channels[channel->column].offset;
+    return scaled;
+  };
+  LoggedMotion logged{taken(position_), taken(speed_), false, {}, {}};
+  if (speed_ != nullptr && found_->channels[speed_->column].taken_as == "v_mm_s") {
+    logged.is_linear = true;
+    for (double& speed : logged.speed) speed *= 1e-3;
+  }
+  if (effort_ != nullptr && found_->channels[effort_->column].taken_as == "i_A" &&
+      effort_->name.quantity == Quantity::current)
+    logged.current = taken(effort_);
+  for (const bool wanted : {true, false})
+    if (const NamedChannel* channel = pick(Quantity::voltage, wanted, false);
+        channel != nullptr && logged.voltage.empty()) {
+      const auto& unit = channel->name.unit;
+      logged.voltage = values(*channel);
+      for (double& voltage : logged.voltage)
+        voltage *= unit && unit->dimension == Dimension::voltage ? unit->factor : 1.0;
+    }
+  axis_->constants = constants_of(logged);
+}
+
 void AxisStudy::leave_rest() {
   for (const NamedChannel& channel : channels_) {
     if (settled_[channel.column]) continue;
@@ -479,6 +507,7 @@ void AxisStudy::run(std::vector<NamedChannel> channels, OpenedAxis& axis, Unders
   settle_references();
   settle_effort();
   settle_temperature();
+  find_constants();
   ask_of_joint();
   leave_rest();
   if (effort_ == nullptr && axis_->missing.empty())

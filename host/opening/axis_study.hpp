@@ -49,6 +49,7 @@ class AxisStudy {
   void settle_references();
   void settle_effort();
   void settle_temperature();
+  void find_constants();
   void leave_rest();
   std::optional<Decision> position_by_unit(const NamedChannel& channel) const;
   std::optional<Decision> scale_by_reference(const NamedChannel& channel) const;

@@ -312,6 +312,29 @@ Opening open_logs(const std::vector<std::string>& paths, const OpeningOptions& o
   return opening;
 }
 
+namespace {
+
+/// Of each axis that makes a record, what its log tells of the data sheet.
+nlohmann::json constants_json(const Understanding& understood) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const OpenedAxis& axis : understood.axes) {
+    if (!axis.makes_record) continue;
+    nlohmann::json one = {{"axis", axis.name}};
+    const auto put = [&one](const char* key, const std::optional<double>& value) {
+      if (value) one[key] = *value;
+    };
+    put("encoder_step_mm", axis.constants.encoder_step_mm);
+    put("current_noise_A", axis.constants.current_noise_A);
+    put("amplifier_gain_A_per_V", axis.constants.amplifier_gain_A_per_V);
+    put("resistance_Ohm", axis.constants.resistance_Ohm);
+    put(axis.constants.is_linear ? "back_emf_V_s_per_m" : "back_emf_V_s_per_rad", axis.constants.back_emf_V_s);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace
+
 nlohmann::json to_json(const Opening& opening, const std::vector<std::string>& records) {
   nlohmann::json files = nlohmann::json::array();
   for (const OpenedFile& file : opening.files) {
@@ -329,6 +352,7 @@ nlohmann::json to_json(const Opening& opening, const std::vector<std::string>& r
                      {"rate_Hz", file.understood.rate_Hz},
                      {"channels", std::move(channels)},
                      {"missing", file.understood.missing},
+                     {"constants", constants_json(file.understood)},
                      {"next", next_run(file.understood)}});
   }
   return {{"format", "axis-opening/1"}, {"files", std::move(files)}, {"records", records}, {"asks", opening.asks()}};

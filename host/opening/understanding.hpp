@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/opening/channel_name.hpp"
+#include "host/opening/drive_constants.hpp"
 #include "host/opening/time_base.hpp"
 #include "host/record/import.hpp"
 #include "sim/drive_description.hpp"
@@ -40,6 +41,7 @@ struct OpenedAxis {
   std::string stamps;                ///< column of the stamps of its channels; empty: the log's
   std::optional<TimeBase> own_time;  ///< where they are not the log's
   std::vector<std::string> missing;  ///< why it makes no record, or a poorer one
+  DriveConstants constants;
   bool makes_record = false;
 };
 

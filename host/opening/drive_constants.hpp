@@ -1,0 +1,36 @@
+// What a log alone tells of a drive's data sheet: the encoder's step, the current's noise, the amplifier, the winding.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace host {
+
+/// Channels of one axis in the units of a record, one element a sample; empty where the log has none.
+struct LoggedMotion {
+  std::vector<double> position;  ///< mm
+  std::vector<double> speed;     ///< of the motor, rad/s, or m/s of a linear one
+  bool is_linear = false;
+  std::vector<double> current;  ///< A
+  std::vector<double> voltage;  ///< V, commanded or at the winding
+};
+
+struct DriveConstants {
+  std::optional<double> encoder_step_mm;  ///< all positions are multiples of it
+  std::optional<double> current_noise_A;  ///< standard deviation at rest
+  /// The current follows the voltage as an amplifier's command: A/V (Ka of the paper, p. 1499).
+  std::optional<double> amplifier_gain_A_per_V;
+  /// The voltage is that of a winding: resistance, and back-EMF in V s/rad or V s/m. In a DC motor the motor constant
+  /// in Nm/A or N/A is the same number.
+  std::optional<double> resistance_Ohm, back_emf_V_s;
+  bool is_linear = false;
+};
+
+/// What of it the channels show; a value that others would explain as well is left out.
+DriveConstants constants_of(const LoggedMotion& logged);
+
+/// In one line; empty where nothing was found.
+std::string constants_words(const DriveConstants& constants);
+
+}  // namespace host
