@@ -10,6 +10,9 @@
 
 namespace host {
 
+/// How sure a channel is: named with a unit, found by the motion's physics, or assumed.
+inline constexpr double kSureByUnit = 0.97, kSureByPhysics = 0.93, kAssumed = 0.6;
+
 /// A column of the log with the meaning of its name.
 struct NamedChannel {
   std::size_t column = 0;

@@ -25,6 +25,8 @@ struct DriveConstants {
   /// in Nm/A or N/A is the same number.
   std::optional<double> resistance_Ohm, back_emf_V_s;
   bool is_linear = false;
+
+  bool is_electrical() const { return amplifier_gain_A_per_V || back_emf_V_s; }
 };
 
 /// What of it the channels show; a value that others would explain as well is left out.
