@@ -10,9 +10,9 @@
 #include "host/evidence/channel_shift.hpp"
 #include "host/evidence/clipped_command.hpp"
 #include "host/evidence/position_jumps.hpp"
-#include "host/identify/encoder_step.hpp"
 #include "host/identify/rigid_estimate.hpp"
 #include "host/record/columns.hpp"
+#include "host/record/position_grid.hpp"
 #include "host/record/record_origin.hpp"
 #include "sim/drive.hpp"
 
@@ -219,32 +219,20 @@ std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet
 
 namespace {
 
-/// The step of which all positions are multiples; 0 without one. If the axis mostly moves by hundreds of steps, the
-/// step is the log's last digit.
-double position_grid(const Record& record) {
-  constexpr double kOff = 0.02;  // of a step: digits of the text
-  constexpr std::size_t kFewest = 50;
-  constexpr double kMostSteps = 200.0;
-  const double step = encoder_step(record, {});
-  std::vector<double> moved;
-  for (std::size_t k = 1; step > 0.0 && k < record.x.size(); ++k)
-    if (const double steps = std::abs(record.x[k] - record.x[k - 1]) / step; steps > 0.0) {
-      if (std::abs(steps - std::round(steps)) > kOff * std::max(1.0, std::sqrt(steps))) return 0.0;
-      moved.push_back(steps);
-    }
-  if (moved.size() < kFewest) return 0.0;
-  std::ranges::nth_element(moved, moved.begin() + static_cast<std::ptrdiff_t>(moved.size() / 2));
-  return moved[moved.size() / 2] > kMostSteps ? 0.0 : step;
-}
-
 /// What the data sheet lacks, or which drive it describes.
 void find_wrong_sheet(const Record& record, const sim::DriveDescription& model, FaultList& faults) {
   const char* unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   if (!model.effects.empty() && !record.drive.empty() && !model.name.empty() && record.drive != model.name)
     faults.add(LogFaultKind::other_drive, record.has_position() ? &Record::x : &Record::w, record.t_s.front(), 0.0,
                fmt::format("from drive '{}', but the model is of '{}'", record.drive, model.name), false);
-  if (model.data.encoder_resolution > 0.0 || !record.has_position()) return;
-  if (const double step = position_grid(record); step > 0.0)
+  const double told = model.data.encoder_resolution, step = position_grid(record.x);
+  if (told > 0.0 && step > kCoarser * told)
+    faults.add(LogFaultKind::no_encoder, &Record::x, record.t_s.front(), step,
+               fmt::format("all positions are multiples of {0:.6g} {1}, {2:.3g} steps of the data sheet's encoder; "
+                           "{0:.6g} {1} is taken: correct [drive.encoder] resolution_{1}, or log every count",
+                           step, unit, step / told),
+               false);
+  else if (!(told > 0.0) && step > 0.0)
     faults.add(LogFaultKind::no_encoder, &Record::x, record.t_s.front(), step,
                fmt::format("all positions are multiples of {0:.6g} {1}, but the data sheet has no encoder, so the "
                            "noise floor is too low: add [drive.encoder] resolution_{1} = {0:.6g}",

@@ -30,12 +30,13 @@ sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, 
 sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model,
                                             const std::vector<const Record*>& records) {
   sim::DriveDescription complete = model;
-  if (!(complete.data.encoder_resolution > 0.0)) {
-    double finest = HUGE_VAL;
-    for (const Record* record : records)
-      if (const double step = encoder_step(*record, model.data); step > 0.0) finest = std::min(finest, step);
-    complete.data.encoder_resolution = std::isfinite(finest) ? std::max(finest, kFinestStep) : kFinestStep;
-  }
+  double finest = HUGE_VAL;
+  for (const Record* record : records)
+    if (const double step = encoder_step(*record, model.data); step > 0.0) finest = std::min(finest, step);
+  if (std::isfinite(finest))
+    complete.data.encoder_resolution = std::max(finest, kFinestStep);
+  else if (!(complete.data.encoder_resolution > 0.0))
+    complete.data.encoder_resolution = kFinestStep;
   if (!complete.data.tach_noise_variance) {
     double variance = 0.0;
     for (const Record* record : records)

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "host/dense_solutions.hpp"
+#include "host/record/position_grid.hpp"
 
 namespace host {
 
@@ -18,25 +19,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFewest = 100;  // samples
-
-/// The step of which all changes of the position are multiples. A position that is no count moves by any amount.
-std::optional<double> grid_of(const std::vector<double>& position) {
-  constexpr double kOff = 0.02;  // of a step: digits of the text
-  std::vector<double> changes;
-  for (std::size_t k = 1; k < position.size(); ++k)
-    if (const double change = std::abs(position[k] - position[k - 1]); change > 0.0 && std::isfinite(change))
-      changes.push_back(change);
-  if (changes.size() < kFewest) return {};
-  const double step = *std::ranges::min_element(changes);
-  std::size_t least = 0;
-  for (const double change : changes) {
-    const double steps = change / step;
-    if (std::abs(steps - std::round(steps)) > kOff * std::max(1.0, std::sqrt(steps))) return {};
-    if (steps < 1.5) ++least;
-  }
-  // One smallest change may be chance; a step of the encoder comes again.
-  return least >= 3 ? std::optional(step) : std::nullopt;
-}
 
 /// From second differences (1 + 4 + 1 = 6) where the position has not changed for a while.
 std::optional<double> noise_at_rest(const std::vector<double>& position, const std::vector<double>& current) {
@@ -111,7 +93,7 @@ void find_electrical(const LoggedMotion& logged, DriveConstants& constants) {
 DriveConstants constants_of(const LoggedMotion& logged) {
   DriveConstants constants;
   constants.is_linear = logged.is_linear;
-  constants.encoder_step_mm = grid_of(logged.position);
+  if (const double step = position_grid(logged.position); step > 0.0) constants.encoder_step_mm = step;
   if (logged.current.size() == logged.position.size())
     constants.current_noise_A = noise_at_rest(logged.position, logged.current);
   if (!logged.current.empty() && logged.voltage.size() == logged.current.size()) find_electrical(logged, constants);
