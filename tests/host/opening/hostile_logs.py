@@ -154,7 +154,7 @@ def main():
             if kept:
                 with open(os.path.join(kept, f'{len(faults)}-{os.path.basename(path)}'), 'wb') as out:
                     out.write(whole)
-        return code, seconds, size
+        return code, seconds, size, 'fails on it' in said or 'longer than' in said
 
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as place:
         for name, path in valid_files(folder).items():
@@ -170,11 +170,11 @@ def main():
                 with open(broken, 'wb') as file:
                     file.write(data)
                 seen.append(judge(name, broken, word))
-            codes, times, sizes = zip(*seen)
-            print(f'{name:16} {len(whole):7} bytes: {codes.count(0):4} read, {codes.count(9):4} refused; at most '
-                  f'{max(times):.2f} s, {max(sizes) >> 20} MiB', flush=True)
+            codes, times, sizes, ends = zip(*seen)
+            print(f'{name:16} {len(whole):7} bytes: {codes.count(0):4} read, {codes.count(9):4} refused ({sum(ends)} for a '
+                  f'crash or hang of the library); at most {max(times):.2f} s, {max(sizes) >> 20} MiB', flush=True)
         for name, (path, word) in made_on_purpose(place).items():
-            code, seconds, size = judge(name, path, word or (None if name == "chunk.h5" else ""))
+            code, seconds, size, _ = judge(name, path, word or (None if name == "chunk.h5" else ""))
             print(f'{name:16} exit code {code}, {seconds:.2f} s, {size >> 20} MiB', flush=True)
     print('\n'.join(faults) or 'no signal, no gigabyte, no long wait, nothing written')
     return 1 if faults else 0
