@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Damaged and hostile binary logs: hostile_logs.py AXISTOOL [TRIES [SEED]]
 
-Whatever a file holds, the program reads it or refuses it with exit code 9: no signal, no gigabyte, no long wait, nothing
-written. Valid files of every kind by writers of their own (log_files.py), cut off at TRIES lengths, which must be
+Whatever a file holds, the program reads it or refuses it with exit code 9: no signal, no gigabyte, no long wait,
+nothing written. Valid files of every kind by writers of their own (log_files.py), cut off at TRIES lengths, which must be
 refused, and with TRIES random changes each; and files made on purpose."""
 
 import os
@@ -88,11 +88,16 @@ def made_on_purpose(folder):
     base.close()
     nothing = made.record(0x80, bytes(250 << 20))  # a record that readers pass over
     inner = made.packed(nothing, 'zstd')
-    chunk = made.record(6, struct.pack('<QQQI', 0, 0, len(nothing), 0) + made.text('zstd') + struct.pack('<Q', len(inner)) + inner)
+    chunk = made.record(6, struct.pack('<QQQI', 0, 0, len(nothing), 0) + made.text('zstd') +
+                        struct.pack('<Q', len(inner)) + inner)
     with open(path('bomb.mcap', 'unpacks to more'), 'wb') as file:
         file.write(b'\x89MCAP0\r\n' + made.record(3, bytes(14)) + chunk * 20)
     with open(path('claims.mcap', 'unpacks to more'), 'wb') as file:
-        file.write(b'\x89MCAP0\r\n' + made.record(6, struct.pack('<QQQI', 0, 0, 1 << 62, 0) + made.text('lz4') + bytes(8)))
+        claim = made.record(6, struct.pack('<QQQI', 0, 0, 1 << 62, 0) + made.text('lz4') + bytes(8))
+        file.write(b'\x89MCAP0\r\n' + claim)
+    names = [str(k) for k in range(900)]  # of other joints in each message
+    crowd = [(k, made.joint_state(k + 1, [f'{k}.{name}' for name in names], [], [], [])) for k in range(3)]
+    made.mcap(path('crowd.mcap', 'more than 1000 joints'), {'/joint_states': crowd})
     if h5py is None:
         return out
     with h5py.File(path('huge.h5', '50000000'), 'w') as file:
