@@ -84,13 +84,14 @@ class RecordMaker {
 
   void make(const OpenedAxis& axis) {
     const std::vector<std::size_t>& starts = time_of(axis, file_.understood).run_starts;
+    const bool several = !starts.empty();
     std::size_t begin = 0, runs = 0, short_runs = 0;
     for (std::size_t k = 0; k <= starts.size(); ++k) {
       const std::size_t end = k < starts.size() ? starts[k] : longest();
-      if (!starts.empty() && end - begin < kFewestRowsOfARun)
+      if (several && end - begin < kFewestRowsOfARun)
         ++short_runs;
       else
-        make_run(axis, starts.empty() ? log_ : rows_of(log_, begin, end), runs++, !starts.empty());
+        make_run(axis, several ? rows_of(log_, begin, end) : log_, runs++, several);
       begin = end;
     }
     if (short_runs > 0)

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <tuple>
 
 #include "host/exit_codes.hpp"
 #include "host/input_limits.hpp"
@@ -15,6 +17,9 @@
 namespace host {
 
 namespace {
+
+/// Of a bag, over all topics: a robot has some dozen.
+constexpr std::size_t kMostJoints = 1000;
 
 /// Common Data Representation (OMG DDS-XTypes 1.3, 7.4): numbers lie at multiples of their size behind the
 /// encapsulation header, which tells their byte order.
@@ -53,6 +58,7 @@ class CdrReader {
   /// Of a sequence whose members take at least `size` bytes each.
   std::size_t count(std::size_t size) {
     const std::size_t count = number<std::uint32_t>();
+    is_good_ = is_good_ && count <= kMostJoints;
     return has(count * size) ? count : 0;
   }
 
@@ -118,7 +124,13 @@ void JointStates::add(const std::string& topic, std::string_view message, std::i
     return k < values.size() ? values[k] : std::numeric_limits<double>::quiet_NaN();
   };
   for (std::size_t k = 0; k < read.names.size(); ++k) {
-    Joint& joint = joints[std::string(read.names[k])];
+    const auto [found, is_new] = joints.try_emplace(std::string(read.names[k]));
+    joints_ += is_new ? 1 : 0;
+    if (joints_ > kMostJoints)
+      throw Failure(ExitCode::bad_input, fmt::format("{}: more than {} joints, the most that a log may have; keep the "
+                                                     "topics of one robot with ros2 bag convert",
+                                                     path_, kMostJoints));
+    Joint& joint = found->second;
     joint.time_s.push_back(1e-9 * static_cast<double>(since_ns));
     joint.position.push_back(value(read.positions, k));
     joint.speed.push_back(value(read.speeds, k));
@@ -160,9 +172,11 @@ Log JointStates::log(const std::vector<BagTopic>& topics) const {
   if (clocks.size() == 1)  // the log's own
     for (LogColumn& column : log.columns) column.time.clear();
   if (!log.columns.empty()) return log;
+  constexpr std::size_t kListed = 30;
   std::string held;
-  for (const BagTopic& topic : topics)
+  for (const BagTopic& topic : std::span(topics).first(std::min(topics.size(), kListed)))
     held += fmt::format("{}{} ({}, {})", held.empty() ? "" : ", ", topic.name, topic.type, topic.encoding);
+  if (topics.size() > kListed) held += fmt::format(" and {} more", topics.size() - kListed);
   throw Failure(ExitCode::bad_input,
                 fmt::format("{}: a bag without messages of {} in CDR; it holds {}; record the joints with ros2 bag "
                             "record /joint_states",

@@ -44,7 +44,7 @@ class JointStates {
 
   std::string path_;
   std::map<std::string, std::map<std::string, Joint>> topics_;
-  std::size_t messages_ = 0, numbers_ = 0;
+  std::size_t messages_ = 0, numbers_ = 0, joints_ = 0;
   std::int64_t first_ns_ = 0;
 };
 

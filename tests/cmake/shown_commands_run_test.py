@@ -30,6 +30,7 @@ NOT_RUN = [
     (r"emps|EMPS|\.mat\b", "a data set that is not shipped"),
     (r"--trigger|--last", "waits for something to happen to the machine"),
     (r"--map x/mapping.toml|pid.txt", "a log of the reader's own"),
+    (r"\.mcap\b", "a bag of the reader's own; host/opening's tests run it"),
     (r"\bbench\b", "ten minutes"),
     (r"\bscoreboard\b", "minutes; make scoreboard"),
     (r"\bpitch screw", "a measured screw and an axis that is disabled; host/device's tests run it"),

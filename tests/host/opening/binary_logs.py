@@ -97,8 +97,8 @@ class BinaryLogs(unittest.TestCase):
         document, channels = self.open(path)
         self.assertEqual(len(document['asks']), 1)
         self.assertIn('does the joint turn', document['asks'][0])
-        for name, taken, unit in (('joint1.position', 'x_mm', 'rad or m'), ('joint1.velocity', 'w_rad_s', 'rad/s or m/s'),
-                                  ('joint1.effort', 'i_A', 'Nm or N')):
+        for name, taken, unit in (('joint1.position', 'x_mm', 'rad or m'),
+                                  ('joint1.velocity', 'w_rad_s', 'rad/s or m/s'), ('joint1.effort', 'i_A', 'Nm or N')):
             self.assertEqual(channels[name]['taken_as'], taken)
             self.assertLess(channels[name]['sure'], 0.9)
             self.assertIn(unit, channels[name]['why'])
@@ -113,13 +113,14 @@ class BinaryLogs(unittest.TestCase):
         made.mcap(path, {'/joint_states': made.messages(rows=120)})  # too few for the verdict, which would take long
         for kind, told in (('rotary', ['--lead', '10']), ('linear', [])):
             sheet = self.path(f'{kind}.toml')
-            run = self.run_tool('sheet', 'x', '-o', sheet, '--kind', kind, *told, '--kt', '0.5', '--step', '1e-4', '--period',
-                                '0.002')
+            run = self.run_tool('sheet', 'x', '-o', sheet, '--kind', kind, *told, '--kt', '0.5', '--step', '1e-4',
+                                '--period', '0.002')
             self.assertEqual(run.returncode, 0, run.stderr)
             document, channels = self.open(path, '--sheet', sheet)
             self.assertEqual(document['asks'], [])
             self.assertEqual(channels['joint1.velocity']['taken_as'], 'w_rad_s' if kind == 'rotary' else 'v_mm_s')
-            self.assertAlmostEqual(channels['joint1.position']['factor'], 10 / (2 * math.pi) if kind == 'rotary' else 1e3)
+            self.assertAlmostEqual(channels['joint1.position']['factor'],
+                                   10 / (2 * math.pi) if kind == 'rotary' else 1e3)
             self.assertAlmostEqual(channels['joint1.effort']['factor'], 2.0)
 
     def test_each_joint_of_each_topic_makes_a_record(self):
@@ -159,8 +160,8 @@ class BinaryLogs(unittest.TestCase):
 
     def test_files_that_are_not_read_say_how_to_convert_them(self):
         for name, start, remedy in (('a.parquet', b'PAR1' + bytes(40) + b'PAR1', 'read_parquet'),
-                                    ('a.bag', b'#ROSBAG V2.0\n', 'rosbags-convert'), ('a.csv.gz', b'\x1f\x8b\x08', 'gunzip'),
-                                    ('a.db3.zstd', b'\x28\xb5\x2f\xfd', 'unzstd')):
+                                    ('a.bag', b'#ROSBAG V2.0\n', 'rosbags-convert'),
+                                    ('a.csv.gz', b'\x1f\x8b\x08', 'gunzip'), ('a.db3.zstd', b'\x28\xb5\x2f\xfd', 'unzstd')):
             pathlib.Path(self.path(name)).write_bytes(start)
             self.assertIn(remedy, self.refusal(self.path(name)))
 
@@ -187,8 +188,8 @@ class BinaryLogs(unittest.TestCase):
             file['elsewhere'] = h5py.ExternalLink('b.h5', '/x')
         document, channels = self.open(path)
         self.assertEqual(document['files'][0]['rate_Hz'], 500)
-        self.assertEqual(set(channels), {'run/axis/position', 'run/axis/speed', 'drive.torque', 'drive.state', 'pairs(1)',
-                                         'pairs(2)', 'wide(1)', 'wide(2)', 'note'})
+        self.assertEqual(set(channels), {'run/axis/position', 'run/axis/speed', 'drive.torque', 'drive.state',
+                                         'pairs(1)', 'pairs(2)', 'wide(1)', 'wide(2)', 'note'})
         self.assertAlmostEqual(channels['run/axis/position']['factor'], math.pi / 180)
         self.assertEqual(channels['run/axis/speed']['taken_as'], 'w_rad_s')
         self.assertAlmostEqual(channels['drive.torque']['factor'], 1e-3)
@@ -215,10 +216,10 @@ class BinaryLogs(unittest.TestCase):
         self.assertEqual(run.stdout.count('lies in another file'), 2, run.stdout)
 
     def test_blackbox_has_its_time_and_no_torque(self):
-        for name, write, period_us in (('decoded', made.blackbox_decode, 500), ('decoded-fast', made.blackbox_decode, 125),
-                                       ('exported', made.blackbox_explorer, 500), ('exported-fast', made.blackbox_explorer, 125)):
-            with self.subTest(name):
-                path = self.path(name + '.csv')
+        for write, period_us in ((made.blackbox_decode, 500), (made.blackbox_decode, 125), (made.blackbox_explorer, 500),
+                                 (made.blackbox_explorer, 125)):
+            with self.subTest(write=write, period_us=period_us):
+                path = self.path('flight.csv')
                 write(path, period_us)
                 document, channels = self.open(path)
                 file = document['files'][0]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Damaged and hostile binary logs: hostile_logs.py AXISTOOL [TRIES [SEED]]
 
-Whatever a file holds, the program reads it or refuses it with exit code 9: no signal, no gigabyte, no long wait, nothing
-written. Valid files of every kind by writers of their own (log_files.py), cut off at TRIES lengths, which must be
+Whatever a file holds, the program reads it or refuses it with exit code 9: no signal, no gigabyte, no long wait,
+nothing written. Valid files of every kind by writers of their own (log_files.py), cut off at TRIES lengths, which must be
 refused, and with TRIES random changes each; and files made on purpose."""
 
 import os
@@ -44,8 +44,9 @@ def valid_files(folder):
     made.mcap(path('lz4.mcap'), topics, 'lz4', per_chunk=50)
     made.mcap(path('zstd.mcap'), topics, 'zstd', per_chunk=50)
     made.bag(path('bag.db3'), topics)
-    made.mat5(path('five.mat'), columns)
-    made.mat5(path('seven.mat'), columns, compressed=True)
+    one = {'x': columns['x']}  # a cut between variables leaves a whole file
+    made.mat5(path('five.mat'), one)
+    made.mat5(path('seven.mat'), one, compressed=True)
     if h5py is None:
         print('SKIPPED: HDF5, .npy and .npz need python3-h5py')
         return paths
@@ -88,11 +89,16 @@ def made_on_purpose(folder):
     base.close()
     nothing = made.record(0x80, bytes(250 << 20))  # a record that readers pass over
     inner = made.packed(nothing, 'zstd')
-    chunk = made.record(6, struct.pack('<QQQI', 0, 0, len(nothing), 0) + made.text('zstd') + struct.pack('<Q', len(inner)) + inner)
+    chunk = made.record(6, struct.pack('<QQQI', 0, 0, len(nothing), 0) + made.text('zstd') +
+                        struct.pack('<Q', len(inner)) + inner)
     with open(path('bomb.mcap', 'unpacks to more'), 'wb') as file:
         file.write(b'\x89MCAP0\r\n' + made.record(3, bytes(14)) + chunk * 20)
     with open(path('claims.mcap', 'unpacks to more'), 'wb') as file:
-        file.write(b'\x89MCAP0\r\n' + made.record(6, struct.pack('<QQQI', 0, 0, 1 << 62, 0) + made.text('lz4') + bytes(8)))
+        claim = made.record(6, struct.pack('<QQQI', 0, 0, 1 << 62, 0) + made.text('lz4') + bytes(8))
+        file.write(b'\x89MCAP0\r\n' + claim)
+    names = [str(k) for k in range(900)]  # of other joints in each message
+    crowd = [(k, made.joint_state(k + 1, [f'{k}.{name}' for name in names], [], [], [])) for k in range(3)]
+    made.mcap(path('crowd.mcap', 'more than 1000 joints'), {'/joint_states': crowd})
     if h5py is None:
         return out
     with h5py.File(path('huge.h5', '50000000'), 'w') as file:
@@ -154,7 +160,7 @@ def main():
             if kept:
                 with open(os.path.join(kept, f'{len(faults)}-{os.path.basename(path)}'), 'wb') as out:
                     out.write(whole)
-        return code, seconds, size
+        return code, seconds, size, 'fails on it' in said or 'longer than' in said
 
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as place:
         for name, path in valid_files(folder).items():
@@ -170,11 +176,11 @@ def main():
                 with open(broken, 'wb') as file:
                     file.write(data)
                 seen.append(judge(name, broken, word))
-            codes, times, sizes = zip(*seen)
-            print(f'{name:16} {len(whole):7} bytes: {codes.count(0):4} read, {codes.count(9):4} refused; at most '
-                  f'{max(times):.2f} s, {max(sizes) >> 20} MiB', flush=True)
+            codes, times, sizes, ends = zip(*seen)
+            print(f'{name:16} {len(whole):7} bytes: {codes.count(0):4} read, {codes.count(9):4} refused ({sum(ends)} for a '
+                  f'crash or hang of the library); at most {max(times):.2f} s, {max(sizes) >> 20} MiB', flush=True)
         for name, (path, word) in made_on_purpose(place).items():
-            code, seconds, size = judge(name, path, word or (None if name == "chunk.h5" else ""))
+            code, seconds, size, _ = judge(name, path, word or (None if name == "chunk.h5" else ""))
             print(f'{name:16} exit code {code}, {seconds:.2f} s, {size >> 20} MiB', flush=True)
     print('\n'.join(faults) or 'no signal, no gigabyte, no long wait, nothing written')
     return 1 if faults else 0
