@@ -6,7 +6,7 @@
 #include "firmware/boards/image/capture_memory.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/pil/value_axis.hpp"
-#include "firmware/boards/qemu-usb/memory_flash.hpp"
+#include "firmware/boards/emulated/memory_flash.hpp"
 #include "tests/firmware/fitted_axis.hpp"
 #include "tests/target/images/instruction_counter.hpp"
 #include "tests/target/images/rigid_drive.hpp"
