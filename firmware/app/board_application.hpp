@@ -66,6 +66,7 @@ class BoardApplication {
     const std::uint32_t now_us = board_.clock().now_us();
     if (excitation_.is_active()) excitation_.before_step(axes_);
     if (path_.is_moving()) path_.before_step();
+    if (probe_.is_watching()) probe_.watch(path_);
     axes_.step({.now_us = now_us,
                 .emergency_stop = board_.emergency_stop().is_pressed(),
                 .supply_low = board_.supply().is_low(),
@@ -201,7 +202,7 @@ class BoardApplication {
     const Scalar wanted = to_core_travel_velocity<Scalar>(velocity, active_.axis(axis));
     const bool needs_home = exceeds_unhomed_limit(velocity, active_.axis(axis));
     const typename Board::ControlShutOut guard;
-    if (is_led(axis)) return Status::wrong_state;
+    if (is_led(axis) || !guard_motion()) return Status::wrong_state;
     if (needs_home && !axes_[axis].is_homed()) return Status::bad_value;
     if (axes_[axis].state() == SupervisorState::enabled && !axes_[axis].has_room_towards(wanted))
       return Status::outside_travel;
@@ -214,7 +215,8 @@ class BoardApplication {
   Status move(std::size_t axis, std::int64_t counts, bool relative) {
     {
       const typename Board::ControlShutOut guard;
-      if (axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis) || is_led(axis)) return refusal(axis);
+      if (axes_[axis].state() != SupervisorState::enabled || axes_.is_in_motion(axis) || is_led(axis))
+        return refusal(axis);
       if (!relative && !axes_[axis].is_homed()) return Status::not_homed;
     }
     // At rest the reference stands still, and only this background can change that.
@@ -222,7 +224,7 @@ class BoardApplication {
                                             : axes_[axis].plan_move_to(CountPosition::at(counts));
     if (planned.refusal != Refusal::none) return status_of(planned.refusal);
     const typename Board::ControlShutOut guard;
-    if (!axes_[axis].start(planned.plan)) return refusal(axis);
+    if (!guard_motion() || !axes_[axis].start(planned.plan)) return refusal(axis);
     axes_.board().host_commands(true);
     return Status::ok;
   }
@@ -243,7 +245,7 @@ class BoardApplication {
     const typename Board::ControlShutOut guard;
     const SupervisorState state = axes_[axis].state();
     if (request.input != static_cast<std::uint8_t>(ExcitationInput::open_loop)) {
-      if (state != SupervisorState::enabled || is_in_motion(axis)) return refusal(axis);
+      if (state != SupervisorState::enabled || axes_.is_in_motion(axis)) return refusal(axis);
     } else {
       if (!store_is_usable() || state == SupervisorState::fault) return Status::device_fault;
       if (axes_[axis].is_or_will_be_on()) return Status::drive_enabled;
@@ -272,12 +274,13 @@ class BoardApplication {
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       if ((request.mask >> axis & 1u) == 0) continue;
       const typename Board::ControlShutOut guard;
-      if (is_excited(axis) || axes_[axis].state() != SupervisorState::enabled || is_in_motion(axis))
+      if (is_excited(axis) || axes_[axis].state() != SupervisorState::enabled || axes_.is_in_motion(axis))
         return refusal(axis);
     }
     return path_.open(request, client, probe_contact(active_), opened);
   }
   PathService<Axes, Board>& path() { return path_; }
+  ProbeService<Axes, Board>& probe() { return probe_; }
 
   /// The limit of travel on one side of an axis.
   RefusedValuePayload limit_of_travel(std::size_t axis, bool positive) const {
@@ -298,7 +301,7 @@ class BoardApplication {
     if (excitation_.is_active() || is_led(axis)) return Status::wrong_state;
     const typename Board::ControlShutOut guard;
     if (here) return axes_[axis].set_position(axes_[axis].parameters().homing.position) ? Status::ok : refusal(axis);
-    if (!axes_[axis].home()) return refusal(axis);
+    if (!guard_motion() || !axes_[axis].home()) return refusal(axis);
     axes_.board().host_commands(true);
     return Status::ok;
   }
@@ -323,10 +326,7 @@ class BoardApplication {
 
   bool is_in_motion() {
     const typename Board::ControlShutOut guard;
-    if (excitation_.is_active() || path_.is_moving()) return true;
-    for (std::size_t axis = 0; axis < kAxes; ++axis)
-      if (is_in_motion(axis)) return true;
-    return false;
+    return excitation_.is_active() || path_.is_moving() || axes_.is_in_motion();
   }
   // Whose motion it is. Everybody may look, stop and disable.
   bool may_command(ClientToken client) { return owner_.may_command(client, is_in_motion()); }
@@ -420,10 +420,8 @@ class BoardApplication {
   /// By an experiment or a path.
   bool is_led(std::size_t axis) const { return is_excited(axis) || path_.leads(axis); }
 
-  /// While the control interrupt is shut out. Between its ways homing stands for a moment.
-  bool is_in_motion(std::size_t axis) const {
-    return axes_[axis].is_or_will_be_on() && (!axes_[axis].is_at_rest() || axes_[axis].is_homing());
-  }
+  /// While the control interrupt is shut out, before a motion that may hit something; false if one has.
+  bool guard_motion() { return probe_.begin_motion(probe_contact(active_)); }
 
   void look_for_faults() {
     fault_log_.look(axes_, control_periods_, static_cast<std::uint32_t>(rate_Hz()),
@@ -487,7 +485,8 @@ class BoardApplication {
   struct Nothing {};
   [[no_unique_address]] std::conditional_t<kBoardKeepsCapture, Nothing, TriggeredMemory> own_memory_{};
   ExcitationService<Scalar> excitation_;
-  PathService<Axes, Board> path_{axes_, board_};
+  ProbeService<Axes, Board> probe_{axes_, board_};
+  PathService<Axes, Board> path_{axes_, probe_};
   MotionOwner owner_;
   ParameterValues active_{kAxes};
   ParameterValues staged_{kAxes};

@@ -5,18 +5,13 @@
 #include <span>
 
 #include "firmware/app/motion_owner.hpp"
-#include "firmware/app/parameters/parameter_values.hpp"
+#include "firmware/app/probe_service.hpp"
 #include "firmware/app/protocol/path_messages.hpp"
 #include "firmware/app/refusal_status.hpp"
 #include "firmware/core/axis_check.hpp"
 #include "firmware/core/path/path_follower.hpp"
-#include "firmware/core/path/probe_watch.hpp"
 
 namespace firmware {
-
-inline ProbeContact probe_contact(const ParameterValues& values) {
-  return static_cast<ProbeContact>(values.get<"probe.input">());
-}
 
 /// `Group`: an AxisGroup on a hal::Board.
 template <typename Group, typename Board>
@@ -27,7 +22,8 @@ class PathService {
   /// 2 s of pieces of 5 ms on average.
   static constexpr std::size_t kNodes = 400;
 
-  PathService(Group& axes, Board& board) : axes_(axes), board_(board) {}
+  using Probe = ProbeService<Group, Board>;
+  PathService(Group& axes, Probe& probe) : axes_(axes), probe_(probe) {}
 
   bool is_moving() const { return follower_.is_moving(); }
   bool is_open() const { return follower_.is_open(); }
@@ -44,9 +40,8 @@ class PathService {
     if (request.mask == 0 || request.mask >> kAxes != 0 || request.relative > 1 || !is_possible(request.units) ||
         request.probe > ProbeStop::release)
       return Status::malformed;
-    if constexpr (!kHasProbe) contact = ProbeContact::none;
-    if (request.probe != ProbeStop::none && contact == ProbeContact::none) return Status::no_probe;
-    std::int32_t samples = 0;
+    if (request.probe != ProbeStop::none && (!Probe::kIsThere || contact == ProbeContact::none))
+      return Status::no_probe;
     std::array<CountPosition, kAxes> start{};
     std::array<PathLimits, kAxes> limits_of_axes{};
     const ShutOut guard;
@@ -55,15 +50,14 @@ class PathService {
       if ((request.mask >> i & 1u) == 0) continue;
       if (request.relative == 0 && !axes_[i].is_homed()) return Status::not_homed;
       start[i] = axes_[i].leading();
-      samples = axes_[i].parameters().monitors.input_samples;
       const MotionLimits limits = motion_limits(axes_[i].parameters());
       using Traits = ScalarTraits<float>;
       limits_of_axes[i] = {Traits::from_increment(limits.velocity), Traits::from_increment(limits.acceleration),
                            Traits::from_increment(limits.jerk)};
     }
     follower_.open(request.mask, request.units, start, limits_of_axes);
-    watch_.configure(contact, request.probe, samples);
-    is_met_ = is_latched_ = false;
+    contact_ = contact;
+    probe_stop_ = request.probe;
     for (std::size_t i = 0; i < kAxes; ++i)
       opened.axis[i] = {static_cast<std::uint32_t>(start[i].counts), static_cast<std::int32_t>(start[i].counts >> 32),
                         static_cast<std::uint32_t>(start[i].fraction >> (kFractionBits - 32))};
@@ -98,8 +92,7 @@ class PathService {
       if (follower_.is_led(i) &&
           (axes_[i].state() != SupervisorState::enabled || !(axes_[i].leading() == follower_.start_position()[i])))
         return Status::wrong_state;
-    if constexpr (kHasProbe)
-      if (watch_.is_on() && !watch_.begin(board_.probe())) return Status::probe_already;
+    if (!probe_.begin(contact_, probe_stop_)) return Status::probe_already;
     if (!follower_.start()) return Status::wrong_state;
     axes_.board().host_commands(true);
     return Status::ok;
@@ -109,6 +102,7 @@ class PathService {
     const ShutOut guard;
     follower_.stop();
   }
+  void stop_at(PathEnd end) { follower_.stop(end); }  ///< in the control interrupt
 
   Status set_rate(const PathRateRequest& request) {
     if (request.permille > 1000 || request.held > 1) return Status::malformed;
@@ -161,47 +155,10 @@ class PathService {
   [[gnu::noinline]] void before_step() {
     if (axes_.board().is_host_lost()) follower_.stop(PathEnd::host_lost);
     follower_.before_step(axes_);
-    if constexpr (kHasProbe)
-      if (watch_.is_on() && !is_met_) watch_probe();
     axes_.board().excuse_silence(is_moving());
   }
 
-  /// `contact`: how the probe is wired now.
-  ProbeStatePayload probe_state(ProbeContact contact) {
-    ProbeStatePayload state;
-    if constexpr (kHasProbe) {
-      const ShutOut guard;
-      const bool touches = board_.probe().is_closed() == (contact == ProbeContact::closes);
-      if (contact != ProbeContact::none)
-        state.flags = static_cast<std::uint8_t>(kProbeWired | (touches ? kProbeTouches : 0) |
-                                                (is_met_ ? kProbeMet : 0) | (is_latched_ ? kProbeLatched : 0));
-      for (std::size_t i = 0; i < kAxes; ++i)
-        state.axis[i] = {static_cast<std::uint32_t>(met_at_[i]), static_cast<std::int32_t>(met_at_[i] >> 32)};
-    }
-    return state;
-  }
-
  private:
-  static constexpr bool kHasProbe = requires(Board & board) {
-    board.probe();
-    requires hal::LatchedEncoder<std::remove_reference_t<decltype(board.axis(0).encoder())>>;
-  };
-
-  /// The path stops on its way. Where it ends before the input has said so for long enough, the latch decides.
-  void watch_probe() {
-    auto& probe = board_.probe();
-    const bool ends_there = !is_moving() && watch_.is_probing() && probe.has_latched() && watch_.is_there(probe);
-    if (!watch_.has_come(probe) && !ends_there) return;
-    is_met_ = true;
-    is_latched_ = probe.has_latched();
-    for (std::size_t i = 0; i < kAxes; ++i) {
-      const hal::EncoderReading latched = axes_[i].hal().encoder().read_latch();
-      is_latched_ = is_latched_ && latched.valid;
-      met_at_[i] = axes_[i].table_counts_at(latched.counts);
-    }
-    follower_.stop(watch_.is_probing() ? PathEnd::probed : PathEnd::touched);
-  }
-
   /// What was loaded for enabled axes does not outlive their enables.
   void end_without_axes() {
     const ShutOut guard;
@@ -232,13 +189,11 @@ class PathService {
   }
 
   Group& axes_;
-  Board& board_;
+  Probe& probe_;
   Follower follower_;
-  ProbeWatch watch_;
-  bool is_met_ = false;                       ///< what the path watches for
-  bool is_latched_ = false;                   ///< the hardware latched where
-  std::array<std::int64_t, kAxes> met_at_{};  ///< counts
-  unsigned disabled_at_end_ = 0;              ///< axes
+  ProbeContact contact_ = ProbeContact::none;
+  ProbeStop probe_stop_ = ProbeStop::none;
+  unsigned disabled_at_end_ = 0;  ///< axes
   ClientToken client_ = 0;
 };
 

@@ -30,20 +30,25 @@ class HostStream {
     leaving_count_ = 0;
   }
 
+  /// In an interrupt: takes in what has arrived once all before it has been received.
+  void fetch() {
+    if (next_ != arrived_count_) return;
+    next_ = 0;
+    arrived_count_ = incoming_.read_some(arrived_);
+  }
   bool receive(std::byte& byte) {
-    if (next_ == arrived_count_) {
-      arrived_count_ = incoming_.read_some(arrived_);
-      next_ = 0;
-    }
     if (next_ == arrived_count_) return false;
-    byte = arrived_[next_++];
+    byte = arrived_[next_];
+    next_ = next_ + 1;
     return true;
   }
 
  private:
   HostFile incoming_, outgoing_;
-  std::array<std::byte, 256> leaving_{}, arrived_{};
-  std::size_t leaving_count_ = 0, arrived_count_ = 0, next_ = 0;
+  std::array<std::byte, 256> leaving_{};
+  std::array<std::byte, 1024> arrived_{};
+  std::size_t leaving_count_ = 0;
+  volatile std::size_t arrived_count_ = 0, next_ = 0;
 };
 
 static_assert(SerialPort<HostStream>);

@@ -76,6 +76,7 @@ void jog(const MotionArguments& arguments) {
     host::jog_for(board, axis, arguments.value, std::chrono::duration<double>(arguments.duration_s), interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "jog", {{"axis", arguments.axis}, {"from", before}, {"to", after}});
+  if (!arguments.dry_run) host::require_no_contact(board, values);
   if (!talks(arguments)) return;
   if (arguments.dry_run)
     fmt::print("would jog {} at {:g} {}/s for {:g} s\n", arguments.axis, arguments.value,
@@ -117,6 +118,7 @@ void move(const MotionArguments& arguments) {
     host::move_and_wait(board, axis, std::llround(way / resolution), arguments.relative, interrupted);
   const double after = position_of(board, axis, values);
   report(arguments, "move", {{"axis", arguments.axis}, {"from", before}, {"target", target}, {"to", after}});
+  if (!arguments.dry_run) host::require_no_contact(board, values);
   if (!talks(arguments)) return;
   fmt::print("{} {} {:.4f} {unit} from {:.4f} {unit}{}\n", arguments.axis,
              arguments.dry_run ? "would move to" : "is at", arguments.dry_run ? target : after, before,
@@ -167,6 +169,7 @@ void home(const MotionArguments& arguments) {
   const bool homed = (board.status().axis.at(axis).flags & firmware::kAxisHomed) != 0;
   const double at = position_of(board, axis, values);
   report(arguments, "home", {{"axis", arguments.axis}, {"homed", homed}, {"at", at}, {"mode", kHomingModes.at(mode)}});
+  if (!arguments.dry_run && !arguments.here) host::require_no_contact(board, values);
   if (!talks(arguments)) return;
   if (arguments.dry_run)
     fmt::print("would {}\n", arguments.here ? "use the present place as home" : "look for home");

@@ -139,13 +139,19 @@ void require_reachable(const firmware::ParameterValues& values, std::uint8_t axi
                   velocity, name, limit, limit, name));
 }
 
+void require_no_contact(BoardClient& board, const firmware::ParameterValues& values) {
+  if (values.get<"probe.input">() == 0 || (board.probe_state().flags & firmware::kProbeMet) == 0) return;
+  throw Failure(ExitCode::answer_is_no, "the touch probe made contact, so all axes stopped; they may move away");
+}
+
 void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,
              const std::function<bool()>& stop) {
   board.jog(axis, velocity);
+  bool has_moved = false;
   ask_until(board, duration, [&](const auto& status) {
-    require_no_fault(status, axis);
-    require_own_motion(status);
-    return stop();
+    const bool is_at_rest = rests(status, axis);
+    has_moved = has_moved || !is_at_rest;
+    return stop() || (has_moved && is_at_rest);
   });
   stop_and_wait(board, axis);
 }

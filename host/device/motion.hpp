@@ -26,8 +26,11 @@ void disable_and_wait(BoardClient& board, std::uint8_t mask);
 /// board would go slower than it was told.
 void require_reachable(const firmware::ParameterValues& values, std::uint8_t axis, double velocity);
 
-/// Jogs for a time or until `stop` says so, then slows down to rest. Throws Failure(device_fault) when the axis faults;
-/// whatever ends it, the axis is told to stop.
+/// Throws Failure(answer_is_no) where the last jog, move or homing ended because the touch probe met something.
+void require_no_contact(BoardClient& board, const firmware::ParameterValues& values);
+
+/// Jogs for a time, until the board ends it or until `stop` says so, then slows down to rest. Throws
+/// Failure(device_fault) when the axis faults; whatever ends it, the axis is told to stop.
 void jog_for(BoardClient& board, std::uint8_t axis, double velocity, std::chrono::duration<double> duration,
              const std::function<bool()>& stop);
 

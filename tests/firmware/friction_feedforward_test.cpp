@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/core/arithmetic/fixed_point.hpp"
 #include "tests/firmware/paper_axes.hpp"
 
 namespace {
@@ -75,18 +76,28 @@ TEST_P(FrictionFeedforward, IsEquation19InBothDirections) {
   }
 }
 
-TEST(FrictionPieces, StayWithinTheirStatedErrorWhereTheOmegasDiffer) {
+/// `error`: of the level.
+template <typename Scalar>
+void expect_stated_error(double error) {
+  using Traits = firmware::ScalarTraits<Scalar>;
   for (const double ratio : {0.1, 0.3, 0.9, 3.0, 10.0}) {
     const double omega1 = 2.0, omega2 = omega1 * ratio, level = 1.0;
-    firmware::FrictionPieces<double> pieces;
-    pieces.configure({level, level, 0.0, omega1, omega2});
+    const auto scalar = [](double value) { return Scalar(static_cast<float>(value)); };
+    firmware::FrictionPieces<Scalar> pieces;
+    pieces.configure({scalar(level), scalar(level), Scalar(0), scalar(omega1), scalar(omega2)});
     const double step = 0.05 * std::min(omega1, omega2), fastest = 20.0 * std::max(omega1, omega2);
     for (int i = 0; i * step < fastest; ++i) {
       const double speed = i * step;
       const double exact = level * std::exp(-speed / omega1) + level * (1.0 - std::exp(-speed / omega2));
-      ASSERT_NEAR(pieces(speed), exact, 1.7e-4 * level) << "at " << speed << ", omegas " << omega1 << " and " << omega2;
+      ASSERT_NEAR(static_cast<double>(Traits::to_float(pieces(scalar(speed)))), exact, error * level)
+          << "at " << speed << ", omegas " << omega1 << " and " << omega2;
     }
   }
+}
+
+TEST(FrictionPieces, StayWithinTheirStatedErrorWhereTheOmegasDiffer) {
+  expect_stated_error<float>(1.7e-4);
+  expect_stated_error<firmware::FixedPoint>(1.7e-4);
 }
 
 /// A speed just below a border may be rounded into the piece beyond it.

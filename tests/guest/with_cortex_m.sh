@@ -18,7 +18,7 @@ mkfifo "$folder/link.in" "$folder/link.out"
 exec 8<>"$folder/link.in" 9<>"$folder/link.out" # so that none waits for another to open them
 cat <"$folder/link.out" >"$folder/to_board" 8>&- 9>&- &
 copier=$!
-(cd "$folder" && exec qemu-system-arm -M netduinoplus2 -kernel "$image" -display none -monitor none -serial none \
+(cd "$folder" && exec qemu-system-arm -M mps2-an386 -device loader,file="$image",cpu-num=0 -display none -monitor none -serial none \
   -icount shift=2,sleep=on -semihosting-config enable=on,target=native </dev/null >/dev/null 2>&1) &
 board=$!
 disown -a

@@ -8,7 +8,8 @@ jobs=$(nproc)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-flags="-std=c++20 -O0 -w -DAXIS_REGISTERS_ANSWERED -DAXIS_TEST_DATA=\"$root/tests/data\""
+flags="-std=c++20 -O0 -w -DAXIS_REGISTERS_ANSWERED -DAXIS_TEST_DATA=\"$root/tests/data\" \
+  -DAXIS_BOARD=\"firmware/boards/axis-f405/board.hpp\""
 printf '#include <gtest/gtest.h>\n' >"$work/common.hpp"
 # shellcheck disable=SC2086
 "$cxx" $flags -x c++-header "$work/common.hpp" -o "$work/common.hpp.gch"
@@ -37,8 +38,13 @@ awk -v root="$root" -v work="$work" -v which="$which" '
     close(folder "/" source)
     print root "/tests/" trimmed(part[1]) >(folder "/test")
     print driver ": " trimmed(part[3]) " -> " trimmed(part[4]) >(folder "/what")
-    board = "firmware/boards/axis-f405/board.cpp"
-    printf "%s", source == board ? folder "/" board : part[1] ~ /axis_f405/ ? root "/" board : "" >(folder "/too")
+    too = part[1] ~ /axis_f405/ ? "axis-f405/board.cpp" : part[1] ~ /program_test/ ? \
+      "axis-f405/board.cpp program/main.cpp program/control.cpp image/survival_record.cpp" : ""
+    for (i = split(too, others, " "); i > 0; --i) {
+      other = "firmware/boards/" others[i]
+      print (source == other ? folder : root) "/" other >(folder "/too")
+    }
+    if (too == "") printf "" >(folder "/too")
     close(folder "/test"); close(folder "/what"); close(folder "/too")
   }
   END { exit bad }' "$root/tests/hal/mutants.txt"

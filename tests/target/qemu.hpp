@@ -45,4 +45,8 @@ class Qemu {
   std::size_t consumed_ = 0;
 };
 
+/// The program on the emulated board; `folder` is where that looks for its USB cable. Its clocks go with the
+/// instructions: a host that is busy must not starve it before its watchdog.
+Qemu start_program(const std::filesystem::path& folder = std::filesystem::temp_directory_path());
+
 }  // namespace target_test

@@ -9,10 +9,14 @@ namespace {
 /// Instructions of a control period at the highest rate, 20 kHz of 168 MHz.
 constexpr int kShortestPeriod = 8400;
 
-TEST(ShutOut, IsATenthOfAPeriodAtMostWhileAxesMove) {
-  const std::string why = target_test::obstacle("shut-out-m4");
+/// Float and fixed point.
+class ShutOut : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Scalars, ShutOut, testing::Values("shut-out-m4", "shut-out-fixed-m4"));
+
+TEST_P(ShutOut, IsATenthOfAPeriodAtMostWhileAxesMove) {
+  const std::string why = target_test::obstacle(GetParam());
   if (!why.empty()) GTEST_SKIP() << why;
-  auto costs = target_test::count_instructions("shut-out-m4");
+  auto costs = target_test::count_instructions(GetParam());
   EXPECT_GT(costs["parameter_change"].worst, 0);
   EXPECT_LE(costs["parameter_change"].worst, 100) << "limits of the board, and nothing of an axis";
   EXPECT_GT(costs["other_requests"].worst, 0);
@@ -21,10 +25,10 @@ TEST(ShutOut, IsATenthOfAPeriodAtMostWhileAxesMove) {
 
 /// Of a set that changes all there is: 2 ms in all, at an instruction a clock, and 20 us with the control interrupt
 /// out.
-TEST(ShutOut, IsShortWhileASetIsTakenOver) {
-  const std::string why = target_test::obstacle("shut-out-m4");
+TEST_P(ShutOut, IsShortWhileASetIsTakenOver) {
+  const std::string why = target_test::obstacle(GetParam());
   if (!why.empty()) GTEST_SKIP() << why;
-  auto costs = target_test::count_instructions("shut-out-m4");
+  auto costs = target_test::count_instructions(GetParam());
   EXPECT_LE(costs["commit_at_standstill"].worst, 336'000);
   EXPECT_GT(costs["commit_at_standstill"].mean, 10'000) << "nothing was taken over";
   EXPECT_LE(costs["commit_at_standstill_shut_out"].worst, 3'360);

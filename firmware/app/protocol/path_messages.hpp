@@ -62,7 +62,7 @@ static_assert(sizeof(PathStatePayload) == 20);
 
 inline constexpr unsigned kProbeWired = 1;    ///< probe.input says so, and the board has the input
 inline constexpr unsigned kProbeTouches = 2;  ///< now
-inline constexpr unsigned kProbeMet = 4;      ///< the last path was opened for it, or hit something, and it came
+inline constexpr unsigned kProbeMet = 4;      ///< the last motion looked for it, or hit something, and it came
 inline constexpr unsigned kProbeLatched = 8;  ///< and where it came is exact
 
 struct ProbeStatePayload {

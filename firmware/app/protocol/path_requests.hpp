@@ -23,7 +23,7 @@ class PathRequests {
         return status;
       });
     if (request.type == MessageType::probe_state) {
-      reply.put(app_.path().probe_state(probe_contact(app_.active())));
+      reply.put(app_.probe().state(probe_contact(app_.active())));
       return Status::ok;
     }
     Status status = Status::ok;

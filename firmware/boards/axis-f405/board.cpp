@@ -53,6 +53,12 @@ void connect_pins() {
 
 }  // namespace
 
+#ifndef AXIS_REGISTERS_ANSWERED
+static_assert(AXIS_CONTROL_INTERRUPT == kDma2Stream0Interrupt && AXIS_ADC_INTERRUPT == kAdcInterrupt &&
+                  AXIS_USB_INTERRUPT == kOtgFsInterrupt,
+              "the vector table has these elsewhere than the chip");
+#endif
+
 bool Board::start() {
   Rcc& clock = rcc();
   const bool clocks_reset = reset_clocks(clock);

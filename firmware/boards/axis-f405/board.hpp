@@ -75,6 +75,7 @@ static_assert(hal::AxisHal<BoardAxisHal>);
 class Board {
  public:
   static constexpr std::size_t kAxes = hal::kAxisCount;
+  static constexpr bool kIsSimulated = false;
   using AxisType = BoardAxisHal;
   using ControlShutOut = hal::cortex_m::ControlShutOut;
 

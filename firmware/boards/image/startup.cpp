@@ -22,6 +22,9 @@ void adc_interrupt();
 #ifdef AXIS_NMI_HANDLER
 void AXIS_NMI_HANDLER();
 #endif
+#ifdef AXIS_TICK_HANDLER
+void AXIS_TICK_HANDLER();
+#endif
 }
 // NOLINTEND
 
@@ -74,6 +77,9 @@ constexpr VectorTable make_vectors() {
   table.interrupts[AXIS_CONTROL_INTERRUPT] = control_interrupt;
 #else
   table.exceptions[hal::cortex_m::kSysTickException - 1] = control_interrupt;
+#endif
+#ifdef AXIS_TICK_HANDLER
+  table.exceptions[hal::cortex_m::kSysTickException - 1] = AXIS_TICK_HANDLER;
 #endif
 #ifdef AXIS_NMI_HANDLER
   table.exceptions[1] = AXIS_NMI_HANDLER;

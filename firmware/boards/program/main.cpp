@@ -72,7 +72,7 @@ extern "C" [[noreturn]] void run_board() {
   application.start();
   if (const auto ended = entry_of(last_run)) application.log_end_of_last_run(*ended);
   const firmware::BootFacts boot{static_cast<std::uint8_t>(last_run.cause), static_cast<std::uint16_t>(last_run.resets),
-                                 false, board.lacks_brown_out_reset()};
+                                 Board::kIsSimulated, board.lacks_brown_out_reset()};
   firmware::ProtocolServer<Application> server(application, this_image(), boot);
   if (!board.start_usb()) out << "periphery: the USB controller does not answer\n";
   board.start_control();

@@ -33,16 +33,47 @@ struct FrictionPoint {
   Scalar level_V{}, slope_V_s_per_rad{};
 };
 
-/// At a speed >= 0. Two exponentials: for the background.
+/// Eq. (19) from a speed >= 0 on, in equal steps. An exponential decays by the same factor in each: a multiplication,
+/// where the function itself takes a division too, for which a processor without FPU has no time. Roundings add up:
+/// where the omegas are within a factor of fifty, 34 points are within 6e-7 of the level in float, within 1.1e-5 in
+/// fixed point.
 template <typename Scalar>
-constexpr FrictionPoint<Scalar> friction_curve(const FrictionDirection<Scalar>& side, Scalar speed) {
-  const auto decay = [speed](Scalar omega) { return omega > Scalar(0) ? exp_negative(speed / omega) : Scalar(0); };
-  const auto rate = [](Scalar left, Scalar omega) { return omega > Scalar(0) ? left / omega : Scalar(0); };
-  const Scalar first = decay(side.omega1_rad_s), second = decay(side.omega2_rad_s);
-  return {side.static_V * first + side.coulomb_V * (Scalar(1) - second) + side.viscous_V_s_per_rad * speed,
-          side.coulomb_V * rate(second, side.omega2_rad_s) - side.static_V * rate(first, side.omega1_rad_s) +
-              side.viscous_V_s_per_rad};
-}
+class FrictionSteps {
+ public:
+  constexpr FrictionSteps(const FrictionDirection<Scalar>& side, Scalar begin, Scalar width)
+      : side_(side),
+        speed_(begin),
+        width_(width),
+        first_(side.static_V, side.omega1_rad_s, begin, width),
+        second_(side.coulomb_V, side.omega2_rad_s, begin, width) {}
+
+  constexpr FrictionPoint<Scalar> next() {
+    const FrictionPoint<Scalar> point = {
+        side_.static_V * first_.share + side_.coulomb_V * (Scalar(1) - second_.share) +
+            side_.viscous_V_s_per_rad * speed_,
+        second_.rate * second_.share - first_.rate * first_.share + side_.viscous_V_s_per_rad};
+    speed_ = speed_ + width_;
+    first_.share = first_.share * first_.factor;
+    second_.share = second_.share * second_.factor;
+    return point;
+  }
+
+ private:
+  struct Decay {
+    constexpr Decay(Scalar level, Scalar omega, Scalar begin, Scalar width) {
+      if (!(omega > Scalar(0))) return;
+      share = exp_negative(begin / omega);
+      factor = exp_negative(width / omega);
+      rate = level / omega;
+    }
+    Scalar share{}, factor{};  ///< of the level, now; of itself, in a step
+    Scalar rate{};             ///< of the level, a rad/s
+  };
+
+  const FrictionDirection<Scalar>& side_;
+  Scalar speed_, width_;
+  Decay first_, second_;
+};
 
 /// The curve as cubic pieces with its values and slopes at their ends: narrow pieces up to eight times the smaller
 /// omega, where exp(-8) = 3e-4 of its exponential is left, wide ones up to sixteen times the larger, a straight line
@@ -81,9 +112,10 @@ class FrictionPieces {
     const Scalar width = (end - begin) / ScalarTraits<Scalar>::from_integer(number);
     if (!(width > Scalar(0))) return;
     per_speed = Scalar(1) / width;
-    FrictionPoint<Scalar> from = friction_curve(side_, begin);
+    FrictionSteps<Scalar> steps(side_, begin, width);
+    FrictionPoint<Scalar> from = steps.next();
     for (std::int32_t i = 0; i <= number; ++i) {
-      const auto to = friction_curve(side_, begin + width * ScalarTraits<Scalar>::from_integer(i + 1));
+      const FrictionPoint<Scalar> to = steps.next();
       const Scalar f0 = from.level_V, rise = to.level_V - f0;
       const Scalar s0 = from.slope_V_s_per_rad * width, s1 = to.slope_V_s_per_rad * width;
       piece_[static_cast<std::size_t>(first) + static_cast<std::size_t>(i)] = {

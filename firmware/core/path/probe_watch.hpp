@@ -30,6 +30,7 @@ class ProbeWatch {
     found_.configure(samples);
     missing_.configure(samples);
   }
+  constexpr ProbeContact contact() const { return contact_; }
   constexpr bool is_on() const { return contact_ != ProbeContact::none; }
   constexpr bool is_probing() const { return stop_ != ProbeStop::none; }
 

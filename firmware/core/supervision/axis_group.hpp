@@ -57,6 +57,17 @@ class AxisGroup {
     return kAxes;
   }
 
+  /// Between its ways homing stands for a moment.
+  constexpr bool is_in_motion(std::size_t index) const {
+    const BoardAxis& axis = axes_[index];
+    return axis.is_or_will_be_on() && (!axis.is_at_rest() || axis.is_homing());
+  }
+  constexpr bool is_in_motion() const {
+    for (std::size_t i = 0; i < kAxes; ++i)
+      if (is_in_motion(i)) return true;
+    return false;
+  }
+
   /// As of SupervisedAxis, of any axis.
   constexpr bool must_cut_power() const {
     for (const BoardAxis& axis : axes_)

@@ -23,14 +23,17 @@ constexpr double kWay_mm = 30.0;
 template <typename Scalar>
 class Probing : public testing::Test {
  protected:
-  void fit(ProbeContact contact) {
+  void fit(ProbeContact contact, double homing_mode = 0) {
     firmware::ParameterValues values = firmware_test::paper_values();
     firmware_test::fit_axis(values, "y", firmware_test::kPaperY);
     firmware_test::set(values, "probe.input", static_cast<double>(contact));
+    firmware_test::set(values, "x.homing.mode", homing_mode);
+    firmware_test::set(values, "x.homing.velocity", 20.0);
+    firmware_test::set(values, "x.homing.travel", 60.0);
     ASSERT_EQ(bench.download(values).status, Status::ok);
     run(200);
     ASSERT_EQ(bench.ask(MessageType::enable, firmware::AxesRequest{3}).status, Status::ok);
-    for (std::uint8_t axis = 0; axis < 2; ++axis)
+    for (std::uint8_t axis = homing_mode != 0 ? 1 : 0; axis < 2; ++axis)
       ASSERT_EQ(bench.ask(MessageType::home, firmware::HomeRequest{axis, 1}).status, Status::ok);
     run(10);
     bench.application.control_period();  // and no motion after it
@@ -108,6 +111,24 @@ class Probing : public testing::Test {
     EXPECT_NE(probe().flags & firmware::kProbeLatched, 0);
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.counts_high)) << 32 |
                                      at.counts_low);
+  }
+
+  Status jog(double velocity, std::uint8_t axis = 0) {
+    return bench.ask(MessageType::jog, firmware::JogRequest{axis, {}, static_cast<float>(velocity)}).status;
+  }
+  bool is_at_rest(std::size_t axis = 0) { return (bench.status().axis[axis].flags & firmware::kAxisAtRest) != 0; }
+  double travel_mm() { return bench.board.plant(0).truth().x; }
+  /// x stands in closed loop, no farther behind the surface than its ramp from there takes (as of a path, above).
+  void expect_stopped_behind(double surface_mm, double speed) {
+    run(600);
+    EXPECT_TRUE(is_at_rest());
+    EXPECT_EQ(bench.status().axis[0].state, static_cast<std::uint8_t>(firmware::SupervisorState::enabled));
+    EXPECT_EQ(bench.application.axes()[0].fault(), firmware::AxisFault::none);
+    EXPECT_GT(travel_mm(), surface_mm);
+    EXPECT_LT(travel_mm(), surface_mm + speed * (0.13 + 0.004));
+    EXPECT_EQ(probe().flags,
+              firmware::kProbeWired | firmware::kProbeTouches | firmware::kProbeMet | firmware::kProbeLatched);
+    EXPECT_EQ(met_at(0), counts_of(surface_mm));
   }
 
   firmware_test::BoardOnABench<Scalar> bench;
@@ -245,6 +266,84 @@ TYPED_TEST(Probing, AContactOnAnyOtherPathStopsIt) {
   this->run(100);
   EXPECT_LT(this->counts(0), this->counts_of(20.0 + kWay_mm - 5.0));
   EXPECT_EQ(this->bench.application.axes()[0].fault(), firmware::AxisFault::none);
+}
+
+TYPED_TEST(Probing, AContactStopsAJog) {
+  this->bench.board.put_surfaces({{0, 25.0, true}});
+  this->fit(ProbeContact::closes);
+  ASSERT_EQ(this->jog(50.0), Status::ok);
+  this->run(100);
+  EXPECT_EQ(this->jog(60.0), Status::ok) << "faster on the way";
+  EXPECT_EQ(this->jog(5.0, 1), Status::ok);
+  while (this->travel_mm() < 25.0) this->run(1);
+  EXPECT_EQ(this->jog(60.0), Status::ok) << "it may be a spark";
+  this->run(10);
+  ASSERT_FALSE(this->is_at_rest());
+  EXPECT_EQ(this->jog(60.0), Status::wrong_state) << "it slows down";
+  EXPECT_EQ(this->jog(5.0, 1), Status::wrong_state) << "and so does the machine";
+  this->expect_stopped_behind(25.0, 60.0);
+  EXPECT_TRUE(this->is_at_rest(1));
+}
+
+/// Away from what it touches, and against it again.
+TYPED_TEST(Probing, AJogLeavesWhatTheProbeTouches) {
+  this->bench.board.put_surfaces({{0, 10.0, true}});
+  this->fit(ProbeContact::closes);
+  for (int time = 0; time < 2; ++time) {
+    ASSERT_EQ(this->jog(40.0), Status::ok);
+    this->expect_stopped_behind(10.0, 40.0);
+    ASSERT_EQ(this->jog(-40.0), Status::ok);
+    this->run(400);
+    EXPECT_LT(this->travel_mm(), 5.0);
+    EXPECT_FALSE(this->is_at_rest());
+    EXPECT_FALSE(this->has_met());
+    ASSERT_EQ(this->bench.ask(MessageType::stop).status, Status::ok);
+    this->run(600);
+  }
+}
+
+TYPED_TEST(Probing, AContactStopsAMove) {
+  this->bench.board.put_surfaces({{0, 25.0, true}});
+  this->fit(ProbeContact::closes);
+  const std::int64_t target = this->counts(0) + static_cast<std::int64_t>(80.0 / firmware_test::kEncoderResolution_mm);
+  ASSERT_EQ(this->bench.ask(MessageType::move, firmware::MoveRequest::to(0, target)).status, Status::ok);
+  this->expect_stopped_behind(25.0, 250.0);
+  EXPECT_LT(this->travel_mm(), 70.0);
+}
+
+TYPED_TEST(Probing, AContactStopsHomingAndThereIsNoHome) {
+  this->bench.board.put_surfaces({{0, 3.0, true}});  // the home switch acts from 5 mm on
+  this->fit(ProbeContact::closes, 1);
+  ASSERT_EQ(this->bench.ask(MessageType::home, firmware::HomeRequest{0, 0}).status, Status::ok);
+  this->expect_stopped_behind(3.0, 20.0);
+  EXPECT_EQ(this->bench.status().axis[0].flags & (firmware::kAxisHomed | firmware::kAxisHoming), 0);
+}
+
+/// The path's watch is not the jog's end.
+TYPED_TEST(Probing, AJogIsWatchedOnOnceAProbingPathOfAnotherAxisHasEnded) {
+  this->bench.board.put_surfaces({{0, 40.0, true}});
+  this->fit(ProbeContact::closes);
+  ASSERT_EQ(this->jog(20.0), Status::ok);
+  firmware::OpenPathRequest request{2, 0, kProbeUnits};
+  request.probe = ProbeStop::contact;
+  ASSERT_EQ(this->bench.ask(MessageType::open_path, request).status, Status::ok);
+  const std::array<std::uint32_t, 4> node{200u << firmware::kPathTimeBits | firmware::kLastNode, 65536, 0, 0};
+  ASSERT_EQ(this->bench.ask(MessageType::path_nodes, node).status, Status::ok);
+  ASSERT_EQ(this->bench.ask(MessageType::start_path).status, Status::ok);
+  this->run(300);
+  EXPECT_EQ(this->end(), PathEnd::completed);
+  ASSERT_EQ(this->phase(), PathPhase::done);
+  while (this->travel_mm() < 40.0) this->run(1);
+  this->expect_stopped_behind(40.0, 20.0);
+}
+
+TYPED_TEST(Probing, WithoutAProbeNothingStopsAJog) {
+  this->bench.board.put_surfaces({{0, 10.0, true}});
+  this->fit(ProbeContact::none);
+  ASSERT_EQ(this->jog(40.0), Status::ok);
+  this->run(800);
+  EXPECT_FALSE(this->is_at_rest());
+  EXPECT_GT(this->travel_mm(), 20.0);
 }
 
 /// A probe whose edge reaches no timer stops the path all the same, and no position is claimed.

@@ -227,8 +227,7 @@ TEST_F(AxisBoard, SavingParametersDoesNotEndInAReset) {
   {
     const Board::ControlShutOut guard;
     board.begin_stall();
-    hal::stm32f4::ParameterFlash flash(hal::stm32f4::flash_interface(), chip.flash.sector(8));
-    EXPECT_EQ(flash.erase(1), hal::FlashResult::ok);
+    EXPECT_EQ(board.parameter_flash().erase(1), hal::FlashResult::ok);
     board.end_stall();
   }
   run_ms(60.0);

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "firmware/boards/qemu-usb/report_cable.hpp"
+#include "firmware/boards/emulated/report_cable.hpp"
 #include "hal/usbip/usbip_controller.hpp"
 #include "hal/usbip/vhci_port.hpp"
 

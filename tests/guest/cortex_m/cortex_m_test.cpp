@@ -85,7 +85,7 @@ TEST_P(CortexM, KeepsParametersOverAReset) {
     BoardClient board = client();
     const host::BoardState before = board.status();
     const firmware::IdentityPayload identity = board.identify();
-    EXPECT_STREQ(identity.board.data(), "qemu-usb");
+    EXPECT_STREQ(identity.board.data(), "emulated");
     EXPECT_EQ(identity.schema_hash, firmware::kSchemaHash);
     EXPECT_FALSE(board.read_values() == wanted);
     board.write_values(wanted);
@@ -105,7 +105,7 @@ TEST_P(CortexM, ServesTheCommands) {
   EXPECT_THAT(run("list").output, HasSubstr("usb:CORTEX"));
   const ProgramRun info = run("info --json -", "2>/dev/null");
   ASSERT_EQ(info.exit_code, 0) << info.output;
-  EXPECT_EQ(nlohmann::json::parse(info.output)["board"], "qemu-usb");
+  EXPECT_EQ(nlohmann::json::parse(info.output)["board"], "emulated");
   const ProgramRun set = run("set-params " + params);
   ASSERT_EQ(set.exit_code, 0) << set.output;
   ASSERT_EQ(run("save").exit_code, 0);

@@ -6,7 +6,7 @@ namespace {
 
 enum : std::uint32_t { kAhb1Reset = 0x10, kAhb2Reset = 0x14, kApb1Reset = 0x20, kApb2Reset = 0x24 };
 enum : std::uint32_t { kAhb1Enable = 0x30, kAhb2Enable = 0x34, kApb1Enable = 0x40, kApb2Enable = 0x44 };
-constexpr unsigned kAdcInterrupt = 18, kDma2Stream0Interrupt = 56;
+constexpr unsigned kAdcInterrupt = 18, kDma2Stream0Interrupt = 56, kUsbInterrupt = 67;
 constexpr int kSpi1 = 5, kTimer2 = 1, kTimer4 = 2, kTimer5 = 2;  // alternate functions: datasheet, table 9
 
 }  // namespace
@@ -70,6 +70,8 @@ void Chip::wire_ports() {
   };
   adc.is_wired = [this](unsigned channel) { return channel >= 10 && port_c.is_analogue(channel - 10); };
 }
+
+void Chip::usb_event() { interrupt(kUsbInterrupt); }
 
 void Chip::probe(bool closed, double lasts_ns) {
   port_b.put(6, closed ? Outside::low : Outside::open);

@@ -28,6 +28,9 @@ class Chip {
   /// Lets time pass, in steps short enough that interrupts come when they should.
   void pass_ms(double time_ms);
 
+  /// The USB controller has something to report.
+  void usb_event();
+
   /// The probe's contact at PB6 closes to ground or opens, for this long.
   void probe(bool closed, double lasts_ns = 1e9);
 
@@ -48,6 +51,7 @@ class Chip {
   SerialPart serial{bus, [this] { return clock.apb2_Hz(); }, 115200.0};
   IndependentWatchdogPart independent_watchdog{bus};
   WindowWatchdogPart window_watchdog{[this] { return clock.apb1_Hz(); }, clock.enabled(0x40, 11)};
+  MemoryAt identifier{0x1FFF7000, 0x1000};  ///< where the unique identifier lies (39.1)
   PlainRegisters usb{0x1000}, interrupts{0x1000}, system{0x100};
   CyclePart cycles{[this] { return clock.ahb_Hz(); }, [this] { return bits(system.read(0xFC), 24) != 0; }};
 

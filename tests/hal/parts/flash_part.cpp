@@ -16,7 +16,8 @@ constexpr std::uint32_t kDataCacheOn = 1u << 10, kDataCacheReset = 1u << 12;  //
 
 }  // namespace
 
-FlashPart::FlashPart(Bus& bus) : bus_(bus), cells_(begin_of(kSectors), std::byte{0xFF}) {
+FlashPart::FlashPart(Bus& bus) : bus_(bus), memory_(0x08000000 + kBoundaries[1] * kKilobyte, begin_of(kSectors)) {
+  std::fill(cells_.begin(), cells_.end(), std::byte{0xFF});
   bus.attach(reinterpret_cast<std::uintptr_t>(cells_.data()), static_cast<std::uint32_t>(cells_.size()), cells_part_);
 }
 

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "tests/hal/parts/bus.hpp"
+#include "tests/hal/parts/memory_at.hpp"
 
 namespace parts {
 
 class FlashPart : public Part {
  public:
-  /// All sectors but the first, in which the program under test would lie.
+  /// All sectors but the first, in which the boot code lies; at their place in the address space (table 5).
   explicit FlashPart(Bus& bus);
 
   std::uint32_t read(std::uint32_t offset) override;
@@ -50,7 +50,8 @@ class FlashPart : public Part {
   static std::uint32_t begin_of(unsigned sector);
 
   Bus& bus_;
-  std::vector<std::byte> cells_;
+  MemoryAt memory_;
+  std::span<std::byte> cells_ = memory_.bytes();
   Cells cells_part_{*this};
   std::uint32_t access_ = 0, status_ = 0, control_ = 0;
   bool locked_ = true, half_unlocked_ = false, jammed_ = false, cache_is_stale_ = false;

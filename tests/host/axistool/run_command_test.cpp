@@ -267,6 +267,21 @@ TEST_F(ProbingCommand, RefusesWhatCannotBeProbed) {
   refused("F600\nG38.2 X40\n", "in contact before the move towards it");
 }
 
+TEST_F(ProbingCommand, JogMoveAndHomingIntoAWallAreStoppedAndNamed) {
+  fit_probe();
+  ASSERT_EQ(run("set-params x.homing.mode=1 x.homing.velocity=20 x.homing.travel=80").exit_code, 0);
+  ASSERT_EQ(run("enable x --yes").exit_code, 0);
+  for (const std::string into : {"jog x 40 --for 60", "move x 60 --relative", "home x"}) {
+    const ProgramRun done = run(into + " --json " + file("motion.json"));
+    EXPECT_EQ(done.exit_code, 1) << into;
+    EXPECT_THAT(done.output, HasSubstr("the touch probe made contact")) << into;
+    std::ifstream in(file("motion.json"));
+    EXPECT_NE(nlohmann::json::parse(in)["command"], nullptr);
+    const ProgramRun away = run("jog x -30 --for 0.8");
+    EXPECT_EQ(away.exit_code, 0) << into << away.output;
+  }
+}
+
 TEST_F(ProbingCommand, ARapidIntoAWallIsStoppedAndNamed) {
   fit_probe();
   const ProgramRun done = run("run " + written("rapid.ngc", "G0 X60\nG0 X0\n") + " --yes --json " + file("run.json"));

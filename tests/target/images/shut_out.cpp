@@ -3,10 +3,11 @@
 #include <cstdint>
 
 #include "firmware/app/board_application.hpp"
+#include "firmware/boards/image/board_scalar.hpp"
 #include "firmware/boards/image/capture_memory.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
 #include "firmware/boards/pil/value_axis.hpp"
-#include "firmware/boards/qemu-usb/memory_flash.hpp"
+#include "firmware/boards/emulated/memory_flash.hpp"
 #include "tests/firmware/fitted_axis.hpp"
 #include "tests/target/images/instruction_counter.hpp"
 #include "tests/target/images/rigid_drive.hpp"
@@ -92,7 +93,7 @@ class CountedBoard {
 static_assert(hal::Board<CountedBoard>);
 
 CountedBoard board;
-firmware::BoardApplication<float, CountedBoard> application(board);
+firmware::BoardApplication<firmware::boards::BoardScalar, CountedBoard> application(board);
 std::array drives{RigidDrive{firmware_test::kPaperX}, RigidDrive{firmware_test::kPaperY}};
 
 void run(int periods) {

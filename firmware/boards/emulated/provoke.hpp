@@ -33,7 +33,7 @@ inline void provoke_division_by_zero() {
 
 /// Asks for an interrupt that nothing here serves.
 inline void provoke_unexpected_interrupt() {
-  constexpr std::uint32_t kUnused = 50;
+  constexpr std::uint32_t kUnused = 24;
   *reinterpret_cast<volatile std::uint32_t*>(0xE000E100u + 4 * (kUnused / 32)) = 1u << (kUnused % 32);
   *reinterpret_cast<volatile std::uint32_t*>(0xE000E200u + 4 * (kUnused / 32)) = 1u << (kUnused % 32);
 }
@@ -43,7 +43,7 @@ inline void provoke_unexpected_interrupt() {
 [[noreturn]] inline void start_again_like_a_boot_rom() {
   using namespace hal::cortex_m;
   constexpr std::uint32_t kVectors = 128, kPlace = 0x2001F000;  // where no image has data
-  constexpr std::uint32_t kPending = 30;
+  constexpr std::uint32_t kPending = 25;
   auto* table = reinterpret_cast<std::uint32_t*>(kPlace);
   std::uint16_t* endless = reinterpret_cast<std::uint16_t*>(kPlace + 4 * kVectors);
   *endless = 0xE7FE;  // b .

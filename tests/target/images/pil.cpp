@@ -1,16 +1,13 @@
-// The board as QEMU's netduinoplus2 has it: the chip's core, FPU, MPU, interrupts, SysTick and USART1, and no
-// periphery. `arg=` of -semihosting-config chooses what the image does; without it, it serves the serial port.
+// Processor in the loop on QEMU's netduinoplus2, which has the chip's core, FPU, interrupts, SysTick and USART1: the
+// axes take readings from files or from the serial port, as `arg=` of -semihosting-config says, and give back their
+// words.
 #include <atomic>
 #include <cstring>
 
-#include "firmware/app/liveness.hpp"
 #include "firmware/boards/image/board_scalar.hpp"
-#include "firmware/boards/image/boot_report.hpp"
 #include "firmware/boards/image/fault_handler.hpp"
-#include "firmware/boards/image/stack_use.hpp"
 #include "firmware/boards/pil/frame.hpp"
 #include "firmware/boards/pil/pil_station.hpp"
-#include "firmware/boards/qemu-f405/provoke.hpp"
 #include "hal/qemu/semihosting.hpp"
 #include "hal/serial_queue.hpp"
 #include "hal/stm32f4/usart_port.hpp"
@@ -23,13 +20,9 @@ using hal::qemu::HostFile;
 using Station = PilStation<BoardScalar>;
 
 [[gnu::section(".ccm")]] constinit Station station;
-constinit Liveness liveness;
 hal::stm32f4::UsartPort usart(hal::stm32f4::usart1());
 hal::SerialQueue<hal::stm32f4::UsartPort, 2048> serial(usart);
 
-/// Where the control interrupt's readings come from and its words go to.
-enum class Loop : std::uint8_t { none, standing, files };
-std::atomic<Loop> loop = Loop::none;  // its store also publishes what the control interrupt needs
 HostFile requests;
 HostFile replies;
 std::atomic<bool> run_ended = false;
@@ -39,33 +32,13 @@ std::span<std::byte> bytes_of(T& object) {
   return std::as_writable_bytes(std::span(&object, 1));
 }
 
-void remember(const PilReply& reply) {
-  LastState& last = survival_record().running;
-  last.control_periods = liveness.control_periods();
-  last.supervisor_rounds = liveness.supervisor_rounds();
-  for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
-    const auto& telemetry = station.axis(i).telemetry();
-    last.axis[i].encoder_counts = telemetry.encoder_counts;
-    last.axis[i].dac_code = reply.axis[i].dac_code;
-    last.axis[i].enabled = telemetry.enabled ? 1 : 0;
-    last.axis[i].fault = static_cast<std::uint32_t>(station.axis(i).fault());
-  }
-}
-
-PilReply control_period(const PilRequest& request) {
-  const PilReply reply = station.step(request);
-  liveness.control_ran();
-  remember(reply);
-  return reply;
-}
-
 void file_period() {
   PilRequest request;
   if (!requests.read(bytes_of(request)) || request.number == kPilEnd) {
     run_ended = true;
     return;
   }
-  const PilReply reply = control_period(request);
+  const PilReply reply = station.step(request);
   if (!replies.write(std::as_bytes(std::span(&reply, 1)))) run_ended = true;
 }
 
@@ -95,9 +68,8 @@ void run_over_files() {
   if (!requests.read(bytes_of(parameters))) hal::qemu::exit_emulator(1);
   const PilConfigured configured = station.configure(parameters);
   if (!replies.write(std::as_bytes(std::span(&configured, 1)))) hal::qemu::exit_emulator(1);
-  loop = Loop::files;
   start_control_interrupt(kClock_Hz / kControlRate_Hz);
-  while (!run_ended) liveness.supervisor_ran();
+  while (!run_ended) continue;
   hal::qemu::exit_emulator(0);
 }
 
@@ -128,72 +100,26 @@ void run_over_serial() {
       PilRequest request;
       std::memcpy(&request, payload.data(), sizeof request);
       if (request.number == kPilEnd) hal::qemu::exit_emulator(receiver.rejected() == 0 ? 0 : 2);
-      const PilReply reply = control_period(request);
+      const PilReply reply = station.step(request);
       send_frame(std::as_bytes(std::span(&reply, 1)), send);
-    }
-  }
-}
-
-/// Control interrupts with axes that stand still; letters on the serial port provoke faults.
-[[noreturn]] void serve() {
-  TextWriter out(serial);
-  loop = Loop::standing;
-  start_control_interrupt(kClock_Hz / kControlRate_Hz);
-  out << "ready\n";
-  for (;;) {
-    liveness.supervisor_ran();
-    serial.poll();
-    std::byte letter{};
-    if (!serial.receive(letter)) continue;
-    switch (static_cast<char>(letter)) {
-      case 'b':
-        provoke_bus_fault();
-        break;
-      case 'n':
-        provoke_null_read();
-        break;
-      case 'd':
-        provoke_division_by_zero();
-        break;
-      case 's':
-        provoke_stack_overflow();
-        break;
-      case 'i':
-        provoke_unexpected_interrupt();
-        break;
-      case 'j':
-        start_again_like_a_boot_rom();
-      case 'r':
-        reset_processor();
-      case 'u':
-        out << "stack: used " << stack_used_bytes() << " of " << stack_size_bytes() << " bytes, control periods "
-            << liveness.control_periods() << "\n";
-        break;
-      case 'q':
-        hal::qemu::exit_emulator(0);
-      default:
-        out << "b n d s i provoke faults, j starts again, r resets, u tells stack use, q ends\n";
     }
   }
 }
 
 }  // namespace
 
-/// There is no converter and no enable line here; what the last words were is in the record.
+/// There is no converter and no enable line here.
 void make_outputs_safe() noexcept {}
 
 }  // namespace firmware::boards
 
 extern "C" void control_interrupt() {
   using namespace firmware::boards;
-  if (run_ended) return;
-  if (loop == Loop::files) file_period();
-  if (loop == Loop::standing) control_period(PilRequest{});
+  if (!run_ended) file_period();
 }
 
 extern "C" [[noreturn]] void run_board() {
   using namespace firmware::boards;
-  const LastRun last_run = take_over_survival_record(ResetCause::unknown);
   arm_fault_detection();
   constexpr std::uint32_t kResetClock_Hz = 16'000'000;  // the RC oscillator; QEMU sends at once anyway
   usart.start(kResetClock_Hz, 115200);
@@ -201,6 +127,5 @@ extern "C" [[noreturn]] void run_board() {
   hal::qemu::command_line(wanted);
   if (std::strcmp(wanted.data(), "pil-files") == 0) run_over_files();
   if (std::strcmp(wanted.data(), "pil-serial") == 0) run_over_serial();
-  report_boot(serial, last_run, verify_this_image());
-  serve();
+  hal::qemu::exit_emulator(1);
 }
