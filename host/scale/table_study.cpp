@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -74,7 +75,7 @@ class Search {
     return with_prior(evidence_.fit(columns, deviations, {.colour = near.colour, .sizes = near.sizes}), terms);
   }
 
-  /// For intervals: with what changes of the sizes do.
+  /// With what changes of the sizes do.
   EvidenceFit fit_slopes(const EvidenceFit& near, const std::vector<TableTerm>& terms) const {
     const auto [columns, deviations] = known(terms, true);
     return evidence_.fit(columns, deviations, {.colour = near.colour, .sizes = near.sizes, .hold_sizes = true});
@@ -203,6 +204,11 @@ class Search {
     terms = std::move(other);
     fit = std::move(again);
     return logistic(gain);
+  }
+
+  /// Of all factors, for the intervals of their sizes.
+  MatrixXd covariance_of(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
+    return factor_covariance(fit_slopes(fit, terms), base_.cols(), terms, rows_, usual_);
   }
 
   bool wrong_way(const std::vector<TableTerm>& terms, const EvidenceFit& fit) const {
@@ -356,31 +362,54 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     }
   }
   fit = search.fit_from(fit, chosen);
-  // Whether each is still needed beside the others; once more when one has gone.
+  // Whether each is still needed beside the others, and matters; once more when one has gone. What is certain and too
+  // small to be named is set aside: beside it another may seem as small, which takes its part as well.
   std::vector<std::vector<TableTerm>> others_of(chosen.size());
   std::vector<EvidenceFit> less_of(chosen.size());
-  for (std::size_t k = 0; k < chosen.size();) {
-    others_of[k] = chosen;
-    others_of[k].erase(others_of[k].begin() + static_cast<std::ptrdiff_t>(k));
-    if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.colour);
-    less_of[k] = search.fit(others_of[k]);
-    const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
-    const double needed = logistic(fit.log_evidence - less_of[k].log_evidence + prior);
-    if (needed >= kClaimed && !search.wrong_way(chosen, fit)) {
-      odds[k] = std::min(odds[k], needed);
-      ++k;
-      continue;
-    }
-    study.absent_odds.emplace_back(chosen[k].kind, needed);
+  const auto left_without = [&](std::size_t k) {
+    return rms(left_on(study.rows, others_of[k], less_of[k].factors, base));
+  };
+  const auto remove = [&](std::size_t k) {
     groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
     odds.erase(odds.begin() + static_cast<std::ptrdiff_t>(k));
     chosen = others_of[k];
     fit = less_of[k];
-    k = 0;
+  };
+  const double before_um = rms(left_on(study.rows, {}, fit.factors, base));
+  std::vector<TableEffect> small;
+  for (bool settled = false; !settled;) {
+    settled = true;
+    for (std::size_t k = 0; settled && k < chosen.size(); ++k) {
+      others_of[k] = chosen;
+      others_of[k].erase(others_of[k].begin() + static_cast<std::ptrdiff_t>(k));
+      if (chosen[k].is_driven()) search.settle_drive_anew(others_of[k], fit.colour);
+      less_of[k] = search.fit(others_of[k]);
+      const double prior = std::log((1.0 - kNothingMore) / std::size(kTableKinds) / kNothingMore);
+      const double needed = logistic(fit.log_evidence - less_of[k].log_evidence + prior);
+      settled = needed >= kClaimed && !search.wrong_way(chosen, fit);
+      odds[k] = std::min(odds[k], needed);
+      if (settled) continue;
+      study.absent_odds.emplace_back(chosen[k].kind, needed);
+      remove(k);
+    }
+    if (!settled || chosen.empty()) continue;
+    const double left_um = rms(left_on(study.rows, chosen, fit.factors, base));
+    std::size_t least = 0;
+    for (std::size_t k = 1; k < chosen.size(); ++k)
+      if (left_without(k) < left_without(least)) least = k;
+    if (is_worth_naming(left_without(least), left_um, before_um)) continue;
+    settled = false;
+    small.push_back(table_effect(chosen[least], fit, search.covariance_of(chosen, fit),
+                                 search.first_column(chosen, least), study.rows, model));
+    small.back().group = {chosen[least].kind};
+    small.back().probability = odds[least];
+    small.back().before = left_without(least);
+    small.back().after = left_um;
+    remove(least);
   }
   study.delay_s = -1e-3 * fit.factors(base - 1);
   search.note_motor(chosen, fit);
-  const MatrixXd covariance = factor_covariance(search.fit_slopes(fit, chosen), base, chosen, study.rows, usual);
+  const MatrixXd covariance = search.covariance_of(chosen, fit);
   study.left = left_on(study.rows, chosen, fit.factors, base);
   study.left_um = rms(study.left);
   study.before_um = rms(left_on(study.rows, {}, fit.factors, base));
@@ -390,11 +419,12 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     for (const std::string& kind : groups[k])
       if (kind == chosen[k].kind || count_of(chosen, kind) == 0) effect.group.push_back(kind);
     effect.probability = odds[k];
-    effect.before = rms(left_on(study.rows, others_of[k], less_of[k].factors, base));
+    effect.before = left_without(k);
     effect.after = study.left_um;
-    effect.worth_naming = is_worth_naming(effect.before, effect.after, study.before_um);
+    effect.worth_naming = true;
     study.effects.push_back(std::move(effect));
   }
+  std::ranges::move(small, std::back_inserter(study.effects));
   return study;
 }
 
