@@ -97,11 +97,10 @@ nlohmann::json judge(const OpenArguments& arguments, const host::Opening& openin
                              {"identification", host::identification_json(found->identification)},
                              {"verdict", host::to_json(found->diagnosis)["verdict"]},
                              {"log", host::log_faults_json(found->measured.log())}};
-  const std::string name = axis.empty() ? "" : fmt::format("-{}", axis);
   if (!arguments.folder.empty()) {
     const std::filesystem::path folder(arguments.folder);
-    document["model"] = (folder / fmt::format("model{}.toml", name)).string();
-    document["page"] = (folder / fmt::format("page{}.html", name)).string();
+    document["model"] = (folder / host::name_for_axis("model", axis, ".toml")).string();
+    document["page"] = (folder / host::name_for_axis("page", axis, ".html")).string();
     host::write_model(found->diagnosis.best, document["model"].get<std::string>());
     host::write_diagnosis_report(found->diagnosis, sheet.name, document["page"].get<std::string>());
   }
@@ -136,9 +135,8 @@ nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& op
 std::vector<std::string> write_sheets(const OpenArguments& arguments, const host::Opening& opening) {
   std::vector<std::string> gaps;
   for (const host::OpenedRecord* opened : opening.records()) {
-    const std::string path = (std::filesystem::path(arguments.folder) /
-                              (opened->axis.empty() ? "sheet.toml" : "sheet-" + opened->axis + ".toml"))
-                                 .string();
+    const std::string path =
+        (std::filesystem::path(arguments.folder) / host::name_for_axis("sheet", opened->axis, ".toml")).string();
     if (std::ranges::any_of(gaps, [&](const std::string& line) { return line.starts_with(path); })) continue;
     const host::Record& record = opened->record;
     host::SheetValues values;

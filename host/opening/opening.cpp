@@ -55,11 +55,8 @@ bool same_channels(const Log& a, const Log& b) {
 /// "run 3" of "log.csv", axis x: "log-x-run3".
 std::string record_name(const std::string& path, const std::string& axis, std::size_t run, bool several) {
   std::string name = std::filesystem::path(path).stem().string();
-  if (!axis.empty()) name += "-" + axis;
-  if (several) name += fmt::format("-run{}", run + 1);
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) <= ' ' || c == '/' || c == '\\') c = '_';
-  return name + ".csv";
+  if (several) return name_for_axis(name, axis, fmt::format("-run{}.csv", run + 1));
+  return name_for_axis(name, axis, ".csv");
 }
 
 Log rows_of(const Log& log, std::size_t begin, std::size_t end) {
@@ -254,6 +251,13 @@ void open_by_mapping(const Log& log, const std::vector<MappedAxis>& axes, Opened
 }
 
 }  // namespace
+
+std::string name_for_axis(std::string_view stem, std::string_view axis, std::string_view ending) {
+  std::string name = fmt::format("{}{}{}{}", stem, axis.empty() ? "" : "-", axis, ending);
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) <= ' ' || c == '/' || c == '\\') c = '_';
+  return name;
+}
 
 std::vector<std::string> Opening::asks() const {
   std::vector<std::string> all;

@@ -19,6 +19,9 @@ struct OpeningOptions {
 /// `map`: an accepted mapping's file, or what --map takes: `x_mm=pos*0.001,…`. Throws Failure(usage).
 void take_map(OpeningOptions& options, const std::string& map);
 
+/// The name of a file of one axis, "model-x.toml"; no sign of the axis' name leads into another folder.
+std::string name_for_axis(std::string_view stem, std::string_view axis, std::string_view ending);
+
 struct OpenedRecord {
   std::string name;  ///< of its file, "log-x.csv"
   std::string axis;

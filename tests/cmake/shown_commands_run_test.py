@@ -124,6 +124,9 @@ class Bench:
             shutil.copy(COGGING / "validate.csv", self.folder / f"{name}.csv")
         steps = CASE / "train-steps.csv" if page == "axistool help identify" else COGGING / "train-sweep.csv"
         shutil.copy(steps, self.folder / "steps.csv")
+        if page == "axistool help open":  # a motor constant tells a log of the current
+            for log, name in (("sweep", "steps"), ("jog", "jog")):
+                shutil.copy(PROJECT / f"host/examples/log/{log}.csv", self.folder / f"{name}.csv")
         for name in ("x-params.toml", "machine-7.toml"):
             if (self.folder / "machine.toml").exists():
                 shutil.copy(self.folder / "machine.toml", self.folder / name)

@@ -1,7 +1,6 @@
 // A resonance that limits the bandwidth, measured on the machine, and a notch designed from the measurement.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 
 #include "host/hil/scenario_run.hpp"
@@ -11,7 +10,7 @@
 #include "host/response/loop_design.hpp"
 #include "host/response/response_measurement.hpp"
 #include "host/simulated_board/simulated_link.hpp"
-#include "tests/host/hil/largest_contour_error.hpp"
+#include "host/statistics.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 
 namespace {
@@ -69,10 +68,11 @@ TEST(Notch, LetsTheBandwidthRiseByAThirdAtTheSameMarginAndTheCircleGainsByIt) {
     plain.axes[i].tuning = {without.design.used.bandwidth_Hz, without.filters};
     notched.axes[i].tuning = {with.design.used.bandwidth_Hz, with.filters};
   }
-  const double before = largest_contour_error_um(host::run_scenario(plain)),
-               after = largest_contour_error_um(host::run_scenario(notched));
-  std::printf("contour error of the circle: %.1f um before, %.1f um after\n", before, after);
-  EXPECT_LT(after, 0.8 * before);
+  // The largest error is one sample at a reversal, and changes by a tenth with a rounding of the friction curve.
+  const double before = host::root_mean_square(host::run_scenario(plain).contour_um),
+               after = host::root_mean_square(host::run_scenario(notched).contour_um);
+  std::printf("contour error of the circle: %.2f um RMS before, %.2f um after\n", before, after);
+  EXPECT_LT(after, 3.0 / 4.0 * before);
 }
 
 }  // namespace
