@@ -131,13 +131,14 @@ nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& op
   return all;
 }
 
-/// A data sheet of each axis, filled in as far as the log and --kt tell, and what still belongs there.
+/// A data sheet of each axis, filled in as far as the log and --kt tell, and what still belongs there. One that is
+/// there already may have been filled in by hand: it stays.
 std::vector<std::string> write_sheets(const OpenArguments& arguments, const host::Opening& opening) {
   std::vector<std::string> gaps;
   for (const host::OpenedRecord* opened : opening.records()) {
     const std::string path =
         (std::filesystem::path(arguments.folder) / host::name_for_axis("sheet", opened->axis, ".toml")).string();
-    if (std::ranges::any_of(gaps, [&](const std::string& line) { return line.starts_with(path); })) continue;
+    if (std::filesystem::exists(path)) continue;
     const host::Record& record = opened->record;
     host::SheetValues values;
     values.name = !record.drive.empty() ? record.drive : !opened->axis.empty() ? opened->axis : "axis";

@@ -8,6 +8,7 @@
 #include "host/known_by_current.hpp"
 #include "host/model/data_sheet_fields.hpp"
 #include "host/model/model_file.hpp"
+#include "host/toml_text.hpp"
 
 namespace host {
 
@@ -38,11 +39,11 @@ std::string sheet_text(const SheetValues& values) {
       "# Data sheet of a drive (axis-model/1). Fill in each comment without a value: remove the # and write the\n"
       "# number. Fields that logs of the {} do not need are marked.\n"
       "format = \"axis-model/1\"\n"
-      "name = \"{}\"\n"
+      "name = {}\n"
       "\n"
       "[drive]\n"
       "{:<44}# a {} motor\n",
-      values.by_current ? "current" : "command voltage", values.name,
+      values.by_current ? "current" : "command voltage", toml_string(values.name),
       rotary ? "kind = \"rotary\"" : "kind = \"linear\"", rotary ? "turning" : "linear");
   if (rotary) {
     text += field("torque_constant_Nm_per_A", values.motor_constant);

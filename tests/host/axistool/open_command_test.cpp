@@ -25,6 +25,10 @@ TEST(OpenCommand, LeavesADataSheetThatTheLogHasFilledIn) {
   EXPECT_NE(sheet.output.find("# torque_constant_Nm_per_A ="), std::string::npos) << sheet.output;
   EXPECT_NE(sheet.output.find("resolution_mm = 0.00125"), std::string::npos) << sheet.output;
   EXPECT_NE(sheet.output.find("sample_period_s = 0.001"), std::string::npos) << sheet.output;
+  // What was filled in by hand is not written over by the next log.
+  folder.write("x/sheet.toml", "filled in");
+  ASSERT_EQ(run_axistool(fmt::format("open {} --yes -o {}", log, out)).exit_code, 0);
+  EXPECT_EQ(run_program(fmt::format("cat {}/sheet.toml", out)).output, "filled in");
 }
 
 }  // namespace
