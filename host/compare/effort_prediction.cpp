@@ -29,8 +29,8 @@ EffortRecord prepare_effort(const Record& record, const sim::DriveDescription& b
   EffortRecord prepared{&record, base.data, prepare_motion(record, base.data, {}), {}, 0.0};
   const Motion& motion = prepared.motion;
   const double bandwidth_Hz = motion.decimation > 1 ? guard_cutoff_Hz(motion) : motion.cutoff_Hz;
-  prepared.floor =
-      std::max(sim::Drive(base).inertia * std::sqrt(acceleration_noise(record, base.data, bandwidth_Hz)), 1e-12);
+  prepared.floor = std::max(
+      sim::Drive(base).inertia * std::sqrt(AccelerationNoise(record, base.data).variance_below(bandwidth_Hz)), 1e-12);
   prepared.counts.assign(record.size(), false);
   const auto reach = static_cast<std::size_t>(std::ceil(motion.sample_rate_Hz / bandwidth_Hz));
   for (std::size_t k = reach; k + reach < motion.speed.size(); ++k)

@@ -47,18 +47,13 @@ bool is_steady(const std::vector<double>& speed, double slow, double inertia, co
   return inertial <= kIdleShare * kIdleShare * efforts;
 }
 
-/// Standard deviation of the acceleration from the channel's noise below a cut-off.
-double acceleration_deviation(const Record& record, const sim::DataSheet& data, bool by_speed, double cutoff_Hz) {
-  return std::sqrt(acceleration_noise(record, data, cutoff_Hz, by_speed));
-}
-
 /// As high as the sampling allows, lowered until the sensor's noise is a hundredth of the torque or force.
-double cutoff_of(const Record& record, const sim::DataSheet& data, bool by_speed, double inertia, double effort) {
+double cutoff_of(const Record& record, const AccelerationNoise& sensor, double inertia, double effort) {
   constexpr double kHighest_Hz = 120.0, kRateShare = 0.125, kNoiseShare = 0.01, kStep = 0.85, kLowest_Hz = 10.0;
   const double rate_Hz = 1.0 / record.sample_period_s;
   double cutoff_Hz = std::min(kHighest_Hz, kRateShare * rate_Hz);
   while (cutoff_Hz * kStep >= std::min(kLowest_Hz, rate_Hz / 50.0) &&
-         inertia * acceleration_deviation(record, data, by_speed, cutoff_Hz) > kNoiseShare * effort)
+         inertia * std::sqrt(sensor.variance_below(cutoff_Hz)) > kNoiseShare * effort)
     cutoff_Hz *= kStep;
   return cutoff_Hz;
 }
@@ -82,9 +77,9 @@ struct Builder {
     const Record& record = *prepared.record;
     const double rate_Hz = 1.0 / record.sample_period_s;
     const double size = root_mean_square(motor_effort(record, model.data));
-    EffortSignals signals{
-        &record, record.sample_period_s, cutoff_of(record, model.data, by_speed, inertia, size), {}, {}, {},
-        {},      columns[0].size()};
+    const AccelerationNoise sensor(record, model.data, by_speed);
+    EffortSignals signals{&record, record.sample_period_s, cutoff_of(record, sensor, inertia, size), {}, {}, {},
+                          {},      columns[0].size()};
     const auto low_pass = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, rate_Hz);
     const std::vector<double> speed = smooth_speed(record, model.data, signals.cutoff_Hz, by_speed);
     const std::vector<double> travel =
@@ -121,7 +116,7 @@ struct Builder {
     }
     ++blocks;
     if (!judges && !is_steady(speed, slow, inertia, signals.acceleration, effort)) rows.steady = false;
-    noise += std::pow(inertia * acceleration_deviation(record, model.data, by_speed, signals.cutoff_Hz), 2) *
+    noise += std::pow(inertia * std::sqrt(sensor.variance_below(signals.cutoff_Hz)), 2) *
              static_cast<double>(signals.kept.size());
     const double cutoff_Hz = signals.cutoff_Hz;
     rows.lowest_cutoff_Hz = rows.signals.empty() ? cutoff_Hz : std::min(rows.lowest_cutoff_Hz, cutoff_Hz);

@@ -9,8 +9,7 @@
 namespace host {
 
 /// Adds what the training records show to a data sheet: the encoder's step, where it is missing or finer than that of
-/// all records, and the tachometer's noise. Without them the
-/// noise floor of a window at standstill would be zero.
+/// all records, and the tachometer's noise. Without them the noise floor of a window at standstill would be zero.
 sim::DriveDescription with_measured_sensors(const sim::DriveDescription& model, const Measurements& measured);
 
 /// The same from the given records.

@@ -171,14 +171,21 @@ std::vector<double> smooth_speed(const Record& record, const sim::DataSheet& dat
   return speed;
 }
 
-double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool by_speed) {
+AccelerationNoise::AccelerationNoise(const Record& record, const sim::DataSheet& data, bool by_speed) {
   const double rate_Hz = 1.0 / record.sample_period_s;
   const double circle = 2.0 * std::numbers::pi;
   if (record.has_position() && !by_speed) {
     const double step = encoder_step(record, data) / data.lead;
-    return step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4) * std::pow(cutoff_Hz, 5) / 5.0;
+    density_ = step * step / 12.0 * (2.0 / rate_Hz) * std::pow(circle, 4);
+    power_ = 5.0;
+  } else {
+    density_ = data.tach_noise_variance.value_or(0.0) * (2.0 / rate_Hz) * circle * circle;
+    power_ = 3.0;
   }
-  return data.tach_noise_variance.value_or(0.0) * (2.0 / rate_Hz) * circle * circle * std::pow(cutoff_Hz, 3) / 3.0;
+}
+
+double AccelerationNoise::variance_below(double cutoff_Hz) const {
+  return density_ * std::pow(cutoff_Hz, power_) / power_;
 }
 
 double guard_cutoff_Hz(const Motion& motion) { return decimation_cutoff_Hz(motion.decimation, motion.sample_rate_Hz); }
@@ -189,12 +196,15 @@ double choose_cutoff(const std::vector<Record>& records, const sim::DataSheet& d
   const double rate_Hz = 1.0 / std::ranges::max_element(records, {}, &Record::sample_period_s)->sample_period_s;
   const double lowest = std::min(kLowestCutoff_Hz, rate_Hz / 50.0);
   double cutoff = std::min(kHighestCutoff_Hz, rate_Hz / 10.0);
+  std::vector<AccelerationNoise> noises;
+  for (const Record& record : records) noises.emplace_back(record, data, by_speed);
   while (cutoff * kStep >= lowest) {
     double noise = 0.0, signal = 0.0;
-    for (const Record& record : records) {
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      const Record& record = records[r];
       const std::vector<double> speed = smooth_speed(record, data, cutoff, by_speed);
       signal += sum_of_squares(central_difference(speed, record.sample_period_s));
-      noise += acceleration_noise(record, data, cutoff, by_speed) * static_cast<double>(record.size());
+      noise += noises[r].variance_below(cutoff) * static_cast<double>(record.size());
     }
     if (noise <= kNoiseShare * kNoiseShare * signal) break;
     cutoff *= kStep;

@@ -48,9 +48,18 @@ struct Motion {
 /// Throws Failure(bad_input) when the drive's constants are missing.
 std::vector<double> motor_effort(const Record& record, const sim::DataSheet& data);
 
-/// Variance that a record's sensor leaves on the acceleration below a cut-off, (rad/s^2)^2 or (m/s^2)^2: encoder steps,
-/// or tachometer noise where there is no encoder or the speed channel was asked for.
-double acceleration_noise(const Record& record, const sim::DataSheet& data, double cutoff_Hz, bool by_speed = false);
+/// What a record's sensor leaves on the acceleration: encoder steps, or tachometer noise where there is no encoder or
+/// the speed channel was asked for.
+class AccelerationNoise {
+ public:
+  AccelerationNoise(const Record& record, const sim::DataSheet& data, bool by_speed = false);
+
+  /// (rad/s^2)^2 or (m/s^2)^2.
+  double variance_below(double cutoff_Hz) const;
+
+ private:
+  double density_ = 0.0, power_ = 1.0;
+};
 
 /// Where the guard filter in front of a motion's decimation cuts off, Hz.
 double guard_cutoff_Hz(const Motion& motion);
