@@ -134,7 +134,7 @@ nlohmann::json judge_all(const OpenArguments& arguments, const host::Opening& op
 /// A data sheet of each axis, filled in as far as the log and --kt tell, and what still belongs there. One that is
 /// there already may have been filled in by hand: it stays.
 std::vector<std::string> write_sheets(const OpenArguments& arguments, const host::Opening& opening) {
-  std::vector<std::string> gaps;
+  std::vector<std::string> written;
   for (const host::OpenedRecord* opened : opening.records()) {
     const std::string path =
         (std::filesystem::path(arguments.folder) / host::name_for_axis("sheet", opened->axis, ".toml")).string();
@@ -146,18 +146,17 @@ std::vector<std::string> write_sheets(const OpenArguments& arguments, const host
     values.by_current = !record.i_A.empty();
     if (arguments.torque_constant > 0.0) values.motor_constant = arguments.torque_constant;
     values.sample_period_s = record.sample_period_s;
-    for (const host::OpenedFile& file : opening.files) {
-      if (file.understood.lead_mm_per_rad)
-        values.lead_mm_per_turn = *file.understood.lead_mm_per_rad * 2.0 * std::numbers::pi;
+    if (const auto lead = opening.files.front().understood.lead_mm_per_rad)
+      values.lead_mm_per_turn = *lead * 2.0 * std::numbers::pi;
+    for (const host::OpenedFile& file : opening.files)
       for (const host::OpenedAxis& axis : file.understood.axes)
-        if (axis.name == opened->axis && axis.constants.encoder_step_mm && !values.encoder_step_mm)
+        if (axis.name == opened->axis && !values.encoder_step_mm)
           values.encoder_step_mm = axis.constants.encoder_step_mm;
-    }
     host::write_file_atomically(path, host::sheet_text(values));
     const std::string missing = host::sheet_gaps(values);
-    gaps.push_back(path + (missing.empty() ? "" : fmt::format(" (a data sheet; fill in {})", missing)));
+    written.push_back(path + (missing.empty() ? "" : fmt::format(" (a data sheet; fill in {})", missing)));
   }
-  return gaps;
+  return written;
 }
 
 void run(const OpenArguments& arguments) {

@@ -96,17 +96,14 @@ void AxisStudy::find_constants() {
     for (double& speed : logged.speed) speed *= 1e-3;
   }
   if (effort_ != nullptr && effort_->name.quantity == Quantity::current) logged.current = taken(effort_);
-  axis_->constants = constants_of(logged);
-  // Of several voltages, a supply's among them, the one that the current follows.
   for (const NamedChannel& channel : channels_) {
     const auto& unit = channel.name.unit;
     if (settled_[channel.column] || channel.name.quantity != Quantity::voltage || rank(channel) < 0.0) continue;
-    logged.voltage = values(channel);
-    for (double& voltage : logged.voltage)
+    logged.voltages.push_back(values(channel));
+    for (double& voltage : logged.voltages.back())
       voltage *= unit && unit->dimension == Dimension::voltage ? unit->factor : 1.0;
-    axis_->constants = constants_of(logged);
-    if (axis_->constants.is_electrical()) return;
   }
+  axis_->constants = constants_of(logged);
 }
 
 }  // namespace host

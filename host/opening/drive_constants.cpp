@@ -59,20 +59,20 @@ constexpr double kHolds = 0.01;
 /// A second cause is there where it takes at least three quarters of what the first leaves: half of the error.
 constexpr double kNeeded = 0.25;
 
-void find_electrical(const LoggedMotion& logged, DriveConstants& constants) {
+/// Whether the current follows this voltage.
+bool find_electrical(const LoggedMotion& logged, const std::vector<double>& volts, DriveConstants& constants) {
   const bool has_speed = logged.speed.size() == logged.current.size();
   std::vector<std::size_t> whole;
   for (std::size_t k = 0; k < logged.current.size(); ++k)
-    if (std::isfinite(logged.current[k]) && std::isfinite(logged.voltage[k]) &&
-        (!has_speed || std::isfinite(logged.speed[k])))
+    if (std::isfinite(logged.current[k]) && std::isfinite(volts[k]) && (!has_speed || std::isfinite(logged.speed[k])))
       whole.push_back(k);
-  if (whole.size() < kFewest) return;
+  if (whole.size() < kFewest) return false;
   const auto taken = [&](const std::vector<double>& values) {
     VectorXd some(static_cast<Index>(whole.size()));
     for (std::size_t k = 0; k < whole.size(); ++k) some(static_cast<Index>(k)) = values[whole[k]];
     return some;
   };
-  const VectorXd current = taken(logged.current), voltage = taken(logged.voltage);
+  const VectorXd current = taken(logged.current), voltage = taken(volts);
   const Regression alone = regress(voltage, {&current});
   if (has_speed) {
     const VectorXd speed = taken(logged.speed);
@@ -81,11 +81,12 @@ void find_electrical(const LoggedMotion& logged, DriveConstants& constants) {
         winding.factors(1) > 0.0) {
       constants.resistance_Ohm = winding.factors(0);
       constants.back_emf_V_s = winding.factors(1);
-      return;
+      return true;
     }
   }
-  if (alone.left < kHolds && alone.factors(0) > 0.0)
-    constants.amplifier_gain_A_per_V = regress(current, {&voltage}).factors(0);
+  if (!(alone.left < kHolds) || !(alone.factors(0) > 0.0)) return false;
+  constants.amplifier_gain_A_per_V = regress(current, {&voltage}).factors(0);
+  return true;
 }
 
 }  // namespace
@@ -96,7 +97,9 @@ DriveConstants constants_of(const LoggedMotion& logged) {
   if (const double step = position_grid(logged.position); step > 0.0) constants.encoder_step_mm = step;
   if (logged.current.size() == logged.position.size())
     constants.current_noise_A = noise_at_rest(logged.position, logged.current);
-  if (!logged.current.empty() && logged.voltage.size() == logged.current.size()) find_electrical(logged, constants);
+  for (const std::vector<double>& volts : logged.voltages)
+    if (!logged.current.empty() && volts.size() == logged.current.size() && find_electrical(logged, volts, constants))
+      break;
   return constants;
 }
 

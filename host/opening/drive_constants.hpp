@@ -12,8 +12,8 @@ struct LoggedMotion {
   std::vector<double> position;  ///< mm
   std::vector<double> speed;     ///< of the motor, rad/s, or m/s of a linear one
   bool is_linear = false;
-  std::vector<double> current;  ///< A
-  std::vector<double> voltage;  ///< V, commanded or at the winding
+  std::vector<double> current;                ///< A
+  std::vector<std::vector<double>> voltages;  ///< V, commanded, at the winding, or of a supply
 };
 
 struct DriveConstants {
@@ -25,11 +25,10 @@ struct DriveConstants {
   /// in Nm/A or N/A is the same number.
   std::optional<double> resistance_Ohm, back_emf_V_s;
   bool is_linear = false;
-
-  bool is_electrical() const { return amplifier_gain_A_per_V || back_emf_V_s; }
 };
 
-/// What of it the channels show; a value that others would explain as well is left out.
+/// What of it the channels show; a value that others would explain as well is left out. Of several
+/// voltages, the first that the current follows.
 DriveConstants constants_of(const LoggedMotion& logged);
 
 /// In one line; empty where nothing was found.

@@ -218,7 +218,7 @@ class Hdf5Reader {
     std::vector<std::string> units;
   };
 
-  /// `memory`: the type in which the numbers are read; below 0: they are none.
+  /// `memory`: the type in which the numbers are read; negative where the array holds no numbers.
   void add_array(hid_t set, const Label& label, hid_t memory, std::size_t rows, std::size_t columns) {
     if (memory < 0) return leave(label.name, label.kind, "holds no numbers; name another");
     std::vector<double> values(rows * columns);

@@ -144,7 +144,7 @@ void Board::obey(char letter) {
   }
 }
 
-void make_outputs_safe() noexcept {}  // there are none here
+void make_outputs_safe() noexcept {}  // this board has no outputs
 
 }  // namespace firmware::boards
 

@@ -17,6 +17,7 @@ host::LoggedMotion motor_on(Supply supply, unsigned noise = 3) {
   std::mt19937 seed(noise);
   std::normal_distribution<double> normal;
   host::LoggedMotion logged;
+  logged.voltages.resize(1);
   double angle = 0.0, speed = 0.0;
   for (int k = 0; k < 6000; ++k) {
     const double t = kPeriod_s * k;
@@ -33,7 +34,7 @@ host::LoggedMotion motor_on(Supply supply, unsigned noise = 3) {
     logged.speed.push_back(speed + 0.05 * normal(seed));
     logged.current.push_back(current + kNoise_A * normal(seed));
     const double shown = supply == Supply::bus ? 24.0 : supply == Supply::current ? 0.1 * wanted : wanted;
-    logged.voltage.push_back(shown + 0.005 * normal(seed));
+    logged.voltages.front().push_back(shown + 0.005 * normal(seed));
   }
   return logged;
 }

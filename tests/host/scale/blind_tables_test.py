@@ -29,7 +29,7 @@ def axistool(*arguments: object) -> dict:
 
 
 def names_in(table: dict) -> "set[str]":
-    """The causes as the machine calls them; what is certain and too small to matter is none."""
+    """The causes as the machine calls them; what is too small to be named does not count."""
     found = set()
     for effect in table["found"]:
         if not effect["worth_naming"]:
