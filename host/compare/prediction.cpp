@@ -20,8 +20,8 @@ class Restarts {
         motion_(prepared.motion()),
         stride_(stride),
         memory_(static_cast<std::size_t>(std::ceil(drive.memory_s() / prepared.period_s))),
-        errs_(!drive.encoder_error.empty()),
-        shapes_(drive.shapes_effort()) {
+        errs_(!drive.has_second_mass() && !drive.encoder_error.empty()),
+        shapes_(!drive.has_second_mass() && drive.shapes_effort()) {
     if (errs_) reading_.resize(motion_.x.size());
     if (shapes_) command_V_.resize(motion_.x.size());
   }
@@ -44,8 +44,14 @@ class Restarts {
   }
 
  private:
+  /// Two masses are observed by a simulation of their own, which takes the command as the drive does and wants the
+  /// travel that is true; one mass follows the readings, and what the drive makes of them is shifted in afterwards.
+  double followed_travel(std::size_t row) const {
+    return drive_.has_second_mass() ? drive_.travel_at_reading(motion_.x[row]) : motion_.x[row];
+  }
+
   void begin_at(std::size_t row, std::size_t index) {
-    state_ = drive_.at(motion_.x[row], motion_.w[row]);
+    state_ = drive_.at(followed_travel(row), motion_.w[row]);
     row_ = row;
     next_kept_ = index;
     begun_ = true;
@@ -67,7 +73,7 @@ class Restarts {
         const double x = motion_.x[row_];
         reading_[row_] = drive_.travel_at_reading(x) - x;
       }
-      const double effort = drive_.follow(state_, prepared_.u_V[row_], motion_.x[row_ + 1], motion_.w[row_ + 1],
+      const double effort = drive_.follow(state_, prepared_.u_V[row_], followed_travel(row_ + 1), motion_.w[row_ + 1],
                                           prepared_.record->t_s[row_], prepared_.period_s);
       if (shapes_) command_V_[row_] = effort / drive_.effort_per_volt - prepared_.u_V[row_];
       ++row_;
@@ -92,7 +98,7 @@ class Restarts {
     const ShiftWeights::Shift shift = weights.shift(reached(reading_), reached(command_V_));
     restart.x += shift.x;
     restart.w += shift.w;
-    if (!drive_.has_second_mass()) restart.load_x = restart.x;
+    restart.load_x = restart.x;
     return restart;
   }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/diagnose/certainty.hpp"
+#include "host/diagnose/claim.hpp"
 #include "host/diagnose/data_sheet_conflict.hpp"
 #include "host/diagnose/effort_diagnosis.hpp"
 #include "host/diagnose/judgement.hpp"
@@ -96,6 +97,15 @@ bool goes_beyond(const Diagnosis& by_motion, const EffortScreen& screen) {
                                [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
   };
   return std::ranges::none_of(verdict.effects, seen);
+}
+
+/// Whether the motion names effects that take most of the squared error on both sets, where the force balance names
+/// none: while the axis slides, an effect at reversals or of the encoder leaves the balance little to see.
+bool explains_what_the_balance_does_not(const Diagnosis& by_motion, const Diagnosis& by_effort) {
+  constexpr double kMost = 0.5;
+  return by_effort.verdict.status == Status::unexplained && by_motion.verdict.status == Status::missing &&
+         !by_motion.rough && explained_share(by_motion.before_train, by_motion.after_train) > kMost &&
+         explained_share(by_motion.before_validate, by_motion.after_validate) > kMost;
 }
 
 /// Whether the motion can explain the rest after the regression's effects: more than noise remains, but the machine is
@@ -203,7 +213,8 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
       // What does not show in the effort while the axis slides, a current limit, say, shows in the motion.
       over_long_windows = search(with_base_fitted(split), model);
       const bool is_better = tells ? completes(*over_long_windows) && names_more(*over_long_windows, *diagnosis)
-                                   : goes_beyond(*over_long_windows, *screen);
+                                   : goes_beyond(*over_long_windows, *screen) ||
+                                         explains_what_the_balance_does_not(*over_long_windows, *diagnosis);
       if (is_better) return *std::move(over_long_windows);
       if (!tells || diagnosis->verdict.status != Status::missing) return *std::move(diagnosis);
       PreparedSets on_top = split;
