@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "host/compare/comparison.hpp"
 #include "tests/host/evidence/hand_made_record.hpp"
 
 namespace {
@@ -28,6 +32,34 @@ TEST(Prediction, OfAWindowIsTheSameInAnyCompany) {
         ASSERT_EQ(together.w[window.begin + 1 + k], w[k]) << "window " << index;
       }
     }
+  }
+}
+
+/// What the encoder adds and what the converter adds are known to the model: the error must not change by either, with
+/// one mass or with two.
+TEST(Prediction, IsAsGoodBehindAKnownErrorOfEncoderOrConverter) {
+  constexpr double kWave_mm = 0.03, kPeriod_mm = 4.0, kOffset_V = 0.4;
+  constexpr double kNear = 0.1;  // noise floors
+  const host::Record record = HandMade::record();
+  const double step = HandMade::model().data.encoder_resolution;
+  host::Record wavy = record, shifted = record;
+  for (double& x : wavy.x)
+    x = step * std::round((x + kWave_mm * std::cos(2.0 * std::numbers::pi * x / kPeriod_mm)) / step);
+  for (double& u_V : shifted.u_V) u_V -= kOffset_V;
+  const auto error = [](const host::Record& of, const sim::DriveDescription& model) {
+    return host::error_of(sim::Drive(model), host::compare_on({&of}, model)).combined;
+  };
+  sim::DriveDescription two_masses = HandMade::model();
+  two_masses.effects.push_back(
+      {"compliance", {{"resonance", 60.0}, {"damping_ratio", 0.1}, {"load_fraction", 0.3}}, {}, {}});
+  for (const sim::DriveDescription& model : {HandMade::model(), two_masses}) {
+    sim::DriveDescription waves = model, offset = model;
+    waves.effects.push_back(
+        {"encoder_cyclic_error", {{"cosine", kWave_mm}, {"sine", 0.0}, {"period", kPeriod_mm}}, {}, {}});
+    offset.effects.push_back({"dac_offset", {{"offset", kOffset_V}}, {}, {}});
+    const double before = error(record, model);
+    EXPECT_NEAR(error(wavy, waves), before, kNear) << model.effects.back().kind;
+    EXPECT_NEAR(error(shifted, offset), before, kNear) << model.effects.back().kind;
   }
 }
 
