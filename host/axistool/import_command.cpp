@@ -7,8 +7,8 @@
 
 #include "host/axistool/commands.hpp"
 #include "host/axistool/json_output.hpp"
+#include "host/import/import_record.hpp"
 #include "host/record/columns.hpp"
-#include "host/record/import.hpp"
 #include "host/record/read_record.hpp"
 
 namespace axistool {

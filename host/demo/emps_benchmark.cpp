@@ -7,8 +7,8 @@
 #include "host/exit_codes.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/import/import_record.hpp"
 #include "host/record/channel_checks.hpp"
-#include "host/record/import.hpp"
 #include "host/report/text_format.hpp"
 
 namespace host {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "host/import/log_file.hpp"
 #include "host/opening/units.hpp"
-#include "host/record/import_log.hpp"
 
 namespace host {
 

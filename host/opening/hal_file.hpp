@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "host/record/import_log.hpp"
+#include "host/import/log_file.hpp"
 
 namespace host {
 

@@ -1,8 +1,8 @@
 // Joints of robots, of which the log leaves open whether they turn or slide.
 #include <fmt/format.h>
 
+#include "host/import/joint_states.hpp"
 #include "host/opening/axis_study.hpp"
-#include "host/record/joint_states.hpp"
 
 namespace host {
 

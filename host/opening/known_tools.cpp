@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "host/import/joint_states.hpp"
 #include "host/opening/name_words.hpp"
-#include "host/record/joint_states.hpp"
 
 namespace host {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "host/import/log_file.hpp"
 #include "host/opening/channel_name.hpp"
-#include "host/record/import_log.hpp"
 
 namespace host {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/import/import_record.hpp"
 #include "host/number.hpp"
 #include "host/opening/name_words.hpp"
-#include "host/record/import.hpp"
 #include "host/record/time_axis.hpp"
 
 namespace host {

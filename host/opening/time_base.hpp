@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/import/log_file.hpp"
 #include "host/opening/channel_name.hpp"
-#include "host/record/import_log.hpp"
 
 namespace host {
 

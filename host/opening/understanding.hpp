@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "host/import/import_record.hpp"
 #include "host/opening/channel_name.hpp"
 #include "host/opening/drive_constants.hpp"
 #include "host/opening/time_base.hpp"
-#include "host/record/import.hpp"
 #include "sim/drive_description.hpp"
 
 namespace host {

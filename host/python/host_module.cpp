@@ -5,10 +5,10 @@
 #include <pybind11/stl.h>
 
 #include "host/exit_codes.hpp"
+#include "host/import/import_record.hpp"
 #include "host/python/bindings.hpp"
 #include "host/python/listening.hpp"
 #include "host/python/sources.hpp"
-#include "host/record/import.hpp"
 
 namespace axistool_python {
 

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "host/exit_codes.hpp"
+#include "host/import/joint_states.hpp"
 #include "host/opening/mapping_file.hpp"
 #include "host/opening/understanding.hpp"
-#include "host/record/joint_states.hpp"
 
 namespace {
 

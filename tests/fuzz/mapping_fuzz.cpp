@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "host/exit_codes.hpp"
-#include "host/record/import_mapping.hpp"
+#include "host/import/mapping.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

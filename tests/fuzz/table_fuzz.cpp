@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "host/exit_codes.hpp"
-#include "host/record/import.hpp"
+#include "host/import/import_record.hpp"
 #include "host/record/read_record.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

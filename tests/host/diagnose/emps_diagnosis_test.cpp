@@ -11,8 +11,8 @@
 #include "host/evidence/measurement_gate.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/import/import_record.hpp"
 #include "host/record/channel_checks.hpp"
-#include "host/record/import.hpp"
 #include "tests/host/skip_where_instrumented.hpp"
 
 namespace {

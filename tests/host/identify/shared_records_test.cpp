@@ -13,9 +13,9 @@
 #include "host/identify/friction_identification.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/inverse_model.hpp"
+#include "host/import/import_record.hpp"
 #include "host/model/model_file.hpp"
 #include "host/record/channel_checks.hpp"
-#include "host/record/import.hpp"
 #include "host/record/read_record.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "host/record/import_log.hpp"
+#include "host/import/log_file.hpp"
 
 namespace host {
 

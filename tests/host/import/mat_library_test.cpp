@@ -1,5 +1,5 @@
 // matio is loaded only when it is needed: what happens where it is not there.
-#include "host/record/mat_library.hpp"
+#include "host/import/mat_library.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "host/record/mat_library.hpp"
+#include "host/import/mat_library.hpp"
 
 namespace host {
 

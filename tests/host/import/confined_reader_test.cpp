@@ -1,5 +1,5 @@
 // Reading in a process of its own: whatever the reader does, the caller gets its log or a refusal.
-#include "host/record/confined_reader.hpp"
+#include "host/import/confined_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 
 #include <map>
 
+#include "host/import/log_file.hpp"
 #include "host/number.hpp"
 #include "host/record/clock.hpp"
-#include "host/record/import_log.hpp"
 #include "host/record/table_layout.hpp"
 
 namespace host {

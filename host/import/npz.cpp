@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "host/exit_codes.hpp"
-#include "host/record/import_log.hpp"
+#include "host/import/log_file.hpp"
 
 namespace host {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/import/log_file.hpp"
 #include "host/number.hpp"
-#include "host/record/import_log.hpp"
 #include "host/record/table_layout.hpp"
 
 namespace host {

@@ -1,5 +1,5 @@
 // What may stand behind --map, and what is said when something else does.
-#include "host/record/import_mapping.hpp"
+#include "host/import/mapping.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

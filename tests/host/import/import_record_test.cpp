@@ -1,5 +1,5 @@
 // Records out of MATLAB files and tables, even and uneven ones.
-#include "host/record/import.hpp"
+#include "host/import/import_record.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

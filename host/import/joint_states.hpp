@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/record/import_log.hpp"
+#include "host/import/log_file.hpp"
 
 namespace host {
 

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/import/log_file.hpp"
 #include "host/input_limits.hpp"
 #include "host/number.hpp"
 #include "host/record/clock.hpp"
 #include "host/record/columns.hpp"
-#include "host/record/import_log.hpp"
 #include "host/record/table_layout.hpp"
 #include "host/record/text_encoding.hpp"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "host/record/import_log.hpp"
-#include "host/record/import_mapping.hpp"
+#include "host/import/log_file.hpp"
+#include "host/import/mapping.hpp"
 #include "host/record/record.hpp"
 
 namespace host {

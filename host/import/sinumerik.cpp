@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "host/exit_codes.hpp"
+#include "host/import/log_file.hpp"
 #include "host/number.hpp"
-#include "host/record/import_log.hpp"
 
 namespace host {
 

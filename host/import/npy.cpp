@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "host/exit_codes.hpp"
+#include "host/import/log_file.hpp"
 #include "host/input_limits.hpp"
-#include "host/record/import_log.hpp"
 
 namespace host {
 

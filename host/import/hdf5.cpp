@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "host/exit_codes.hpp"
+#include "host/import/confined_reader.hpp"
+#include "host/import/log_file.hpp"
+#include "host/import/reader_library.hpp"
 #include "host/input_limits.hpp"
-#include "host/record/confined_reader.hpp"
-#include "host/record/import_log.hpp"
-#include "host/record/reader_library.hpp"
 
 namespace host {
 

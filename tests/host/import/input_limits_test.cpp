@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "host/exit_codes.hpp"
+#include "host/import/log_file.hpp"
 #include "host/read_file.hpp"
-#include "host/record/import_log.hpp"
 #include "host/record/read_record.hpp"
 #include "tests/host/temporary_folder.hpp"
 

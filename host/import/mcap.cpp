@@ -3,33 +3,19 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
-#include <array>
 #include <map>
+#include <span>
 
+#include "firmware/app/crc32.hpp"
 #include "host/exit_codes.hpp"
+#include "host/import/joint_states.hpp"
+#include "host/import/log_file.hpp"
+#include "host/import/reader_library.hpp"
 #include "host/input_limits.hpp"
-#include "host/record/import_log.hpp"
-#include "host/record/joint_states.hpp"
-#include "host/record/reader_library.hpp"
 
 namespace host {
 
 namespace {
-
-/// Polynomial 0xEDB88320, as zlib has it.
-std::uint32_t crc_of(std::string_view bytes) {
-  static const std::array<std::uint32_t, 256> kTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t k = 0; k < table.size(); ++k) {
-      table[k] = k;
-      for (int bit = 0; bit < 8; ++bit) table[k] = (table[k] >> 1U) ^ ((table[k] & 1U) != 0 ? 0xEDB88320U : 0U);
-    }
-    return table;
-  }();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (const char c : bytes) crc = (crc >> 8U) ^ kTable[(crc ^ static_cast<unsigned char>(c)) & 0xFFU];
-  return ~crc;
-}
 
 /// `records` unpacked to its `size` bytes; empty where they are damaged.
 std::string unpack_zstd(std::string_view records, std::size_t size) {
@@ -180,7 +166,8 @@ class McapReader {
                       "zstd",
                       packing.substr(0, 32)));
     const std::string_view plain = packing.empty() ? records : unpacked;
-    if (plain.size() != size || (crc != 0 && crc_of(plain) != crc) || !take_records(plain, true))
+    if (plain.size() != size || (crc != 0 && firmware::crc32(std::as_bytes(std::span(plain))) != crc) ||
+        !take_records(plain, true))
       fail("a chunk does not hold what its header says: damaged; mend it with mcap recover");
   }
 

@@ -1,4 +1,4 @@
-#include "host/record/reader_library.hpp"
+#include "host/import/reader_library.hpp"
 
 namespace host {
 

@@ -1,4 +1,4 @@
-#include "host/record/import_mapping.hpp"
+#include "host/import/mapping.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include <matio.h>
 
-#include "host/record/reader_library.hpp"
+#include "host/import/reader_library.hpp"
 
 namespace host {
 

@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "host/exit_codes.hpp"
+#include "host/import/import_record.hpp"
 #include "host/record/clock.hpp"
-#include "host/record/import.hpp"
 #include "host/record/read_record.hpp"
 #include "host/record/text_encoding.hpp"
 #include "tests/host/temporary_folder.hpp"

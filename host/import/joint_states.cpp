@@ -1,4 +1,4 @@
-#include "host/record/joint_states.hpp"
+#include "host/import/joint_states.hpp"
 
 #include <fmt/format.h>
 

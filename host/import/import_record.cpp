@@ -1,4 +1,4 @@
-#include "host/record/import.hpp"
+#include "host/import/import_record.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

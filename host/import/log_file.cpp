@@ -1,4 +1,4 @@
-#include "host/record/import_log.hpp"
+#include "host/import/log_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "host/record/confined_reader.hpp"
+#include "host/import/confined_reader.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
