@@ -135,14 +135,14 @@ void settle_status(Diagnosis& diagnosis) {
   if (verdict.status == Status::ambiguous && probability_of_any(diagnosis, verdict.effects) >= kNamed) return;
   const JudgedCandidate* whole = candidate_of(diagnosis, verdict.effects);
   const bool hardly_helps = whole != nullptr && taken_by(*whole) < kWorthNaming;
-  if (verdict.status == Status::missing && !hardly_helps &&
-      probability_of(diagnosis, {verdict.effects.front()}) >= kNamed) {
-    // What is named holds together; the rest of the best candidate is a group at most.
-    Kinds together;
+  // What is named holds together; the rest of the best candidate is a group at most.
+  Kinds together;
+  if (verdict.status == Status::missing && !hardly_helps)
     for (const std::string& kind : verdict.effects) {
       together.push_back(kind);
       if (probability_of(diagnosis, together) < kNamed) together.pop_back();
     }
+  if (!together.empty()) {
     verdict.effects = std::move(together);
     std::erase_if(verdict.alternatives, [&](const Kinds& group) {
       return group.size() > kLargestGroup && !holds(verdict.effects, group.front());

@@ -44,6 +44,11 @@ double coulomb_level(const sim::DriveDescription& model) {
   return 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb);
 }
 
+bool is_linear(const sim::EffectEntry& entry) {
+  constexpr std::string_view kLinear[] = {"constant_torque", "dac_offset", "cogging", "encoder_cyclic_error"};
+  return std::ranges::find(kLinear, entry.kind) != std::end(kLinear);
+}
+
 /// A term of one column whose entry follows from its factor and the model with its fitted base.
 EffortTerm simple(std::string kind, const VectorXd& column, int sign,
                   std::function<bool(double factor, sim::DriveDescription&)> write) {
@@ -171,14 +176,16 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
       const double per_unit = volts ? -model.data.effort_per_volt() : -1.0;
       const std::string id = volts ? "offset" : "torque";
       terms.push_back({entry.kind, VectorXd::Constant(rows.w.size(), per_unit), {0}, set(entry.kind, id, 1.0), {}});
-    } else if (entry.kind == "cogging" && info.periodic && rows.has_position) {
+    } else if (is_linear(entry) && info.periodic && rows.has_position) {
       const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
       std::vector<double> orders;
       for (const sim::HarmonicTerm& term : harmonics) orders.push_back(term.order);
       MatrixXd columns(rows.w.size(), 2 * static_cast<Index>(orders.size()));
       for (std::size_t n = 0; n < orders.size(); ++n)
         columns.middleCols(2 * static_cast<Index>(n), 2) =
-            wave_columns(rows, VectorXd::Constant(rows.w.size(), -1.0), {entry.at("period"), orders[n]});
+            entry.kind == "cogging"
+                ? wave_columns(rows, VectorXd::Constant(rows.w.size(), -1.0), {entry.at("period"), orders[n]})
+                : encoder_error_columns(model, rows, {entry.at("period"), orders[n]});
       const auto index = static_cast<std::size_t>(&entry - model.effects.data());
       EffortTerm term{
           entry.kind,
@@ -199,11 +206,6 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
 }
 
 namespace {
-
-bool is_linear(const sim::EffectEntry& entry) {
-  constexpr std::string_view kLinear[] = {"constant_torque", "dac_offset", "cogging"};
-  return std::ranges::find(kLinear, entry.kind) != std::end(kLinear);
-}
 
 bool is_base(const sim::EffectEntry& entry) { return sim::find_effect(entry.kind)->base; }
 

@@ -119,22 +119,36 @@ MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave) {
   return columns;
 }
 
+MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortRows& rows, const Wave& wave) {
+  const sim::EffectEntry *inertia = model.find("inertia"), *viscous = model.find("viscous");
+  const double per_travel = 2.0 * std::numbers::pi * wave.order / wave.period;
+  const double mass = inertia == nullptr ? 0.0 : inertia->at("J"), drag = viscous == nullptr ? 0.0 : viscous->at("B");
+  // For an error e(x) the reading has de/dt = v e' and d2e/dt2 = (dv/dt) e' + v^2 e'' more than the motor.
+  const MatrixXd of_slope = wave_columns(rows, per_travel * (mass * rows.acceleration + drag * rows.w), wave);
+  MatrixXd columns = wave_columns(rows, per_travel * per_travel * rows.lead * mass * rows.w.cwiseAbs2(), wave);
+  columns.col(0) += of_slope.col(1);
+  columns.col(1) -= of_slope.col(0);
+  return columns;
+}
+
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
-                     const VectorXd& weight, const Wave& wave) {
-  EffortTerm term{kind, wave_columns(rows, weight, wave), {0, 0}, {}, {}};
+                     const WaveColumns& columns_of, const Wave& wave) {
+  EffortTerm term{kind, columns_of(wave), {0, 0}, {}, {}};
   term.write = [kind, wave](const VectorXd& factors, sim::DriveDescription& fitted) {
-    const double level = kind == "position_dependent_friction" ? coulomb_level(fitted) : -1.0;
-    return level != 0.0 && write_wave(kind, wave, factors(0) / level, factors(1) / level, fitted);
+    const double unit = kind == "position_dependent_friction" ? coulomb_level(fitted)
+                        : kind == "encoder_cyclic_error"      ? 1.0
+                                                              : -1.0;
+    return unit != 0.0 && write_wave(kind, wave, factors(0) / unit, factors(1) / unit, fitted);
   };
   term.can_repeat = true;
   term.words = words_of({wave.order}, wave.period, model.data.kind);
   if (wave.period == turn_of(model.data)) return term;
-  term.neighbours = [&model, &rows, kind, weight, wave](double part) {
+  term.neighbours = [&model, &rows, kind, columns_of, wave](double part) {
     constexpr double kWaves = 8.0;  // the largest part is a quarter of a wave over the travel
     std::vector<EffortTerm> around;
     for (const double sign : {-1.0, 1.0}) {
       const double factor = 1.0 + sign * kWaves * part * wave.period / travel_of(rows);
-      if (factor > 0.5) around.push_back(wave_term(model, rows, kind, weight, {factor * wave.period, wave.order}));
+      if (factor > 0.5) around.push_back(wave_term(model, rows, kind, columns_of, {factor * wave.period, wave.order}));
     }
     return around;
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,17 @@ Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weig
 /// J(x) a + w^2/2 dJ/dx. Two columns, for the cosine and sine of J. Not in the catalogue.
 Eigen::MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave);
 
-/// A periodic effect of one wave. A model that has an entry of that kind and period gets one order more.
+/// Torque or force that an error of the encoder, one wave of the reading, seems to need: the motion that is read has the
+/// error's acceleration and speed, the drive has not. Two columns, for the cosine and the sine of the error in mm or m;
+/// by the model's inertia and viscous friction.
+Eigen::MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortRows& rows, const Wave& wave);
+
+using WaveColumns = std::function<Eigen::MatrixXd(const Wave&)>;
+
+/// A periodic effect of one wave, with its columns at every row. A model that has an entry of that kind and period gets
+/// one order more.
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
-                     const Eigen::VectorXd& weight, const Wave& wave);
+                     const WaveColumns& columns_of, const Wave& wave);
 
 /// All waves that a model holds of a kind: "orders 72, 18 of 6.283 mm".
 std::string words_of_waves(const sim::DriveDescription& model, const std::string& kind);
