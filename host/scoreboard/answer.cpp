@@ -63,10 +63,15 @@ Outcome outcome_of(const Truth& truth, const DiagnosisVerdict& verdict) {
   const bool all_clear = verdict.status == Status::adequate || verdict.status == Status::parameters;
   if (truth.alien) return verdict.effects.empty() && !all_clear ? Outcome::right : Outcome::wrong;
   if (verdict.effects.empty()) return truth.effects.empty() ? Outcome::right : Outcome::missed;
-  if (std::ranges::is_permutation(truth.effects, verdict.effects) && verdict.status == Status::missing)
+  // A group of which no member is named stands for one effect more.
+  const auto unnamed =
+      static_cast<std::size_t>(std::ranges::count_if(verdict.alternatives, [&](const std::vector<std::string>& group) {
+        return std::ranges::none_of(group, claims);
+      }));
+  if (std::ranges::is_permutation(truth.effects, verdict.effects) && verdict.status == Status::missing && unnamed == 0)
     return Outcome::right;
   if (!truth.effects.empty() && std::ranges::all_of(truth.effects, is_offered) &&
-      (verdict.status == Status::ambiguous || truth.effects.size() == verdict.effects.size()))
+      (verdict.status == Status::ambiguous || truth.effects.size() == verdict.effects.size() + unnamed))
     return Outcome::group;
   return std::ranges::all_of(verdict.effects, is_true) ? Outcome::partly : Outcome::wrong;
 }

@@ -54,6 +54,15 @@ TEST(Certainty, RivalsThatTogetherHoldItAreAGroup) {
   EXPECT_THAT(modelled_kinds(diagnosis), ElementsAre("constant_torque"));
 }
 
+/// An offset of the command and a weight are one thing to most records; the encoder's error beside them is not.
+TEST(Certainty, WhatIsCertainStandsBesideAGroup) {
+  const Diagnosis diagnosis =
+      claimed({"dac_offset", "encoder_cyclic_error"}, {candidate({"dac_offset", "encoder_cyclic_error"}, 0.49),
+                                                       candidate({"constant_torque", "encoder_cyclic_error"}, 0.48)});
+  EXPECT_EQ(diagnosis.verdict.status, Status::missing);
+  EXPECT_THAT(diagnosis.verdict.effects, ElementsAre("encoder_cyclic_error"));
+}
+
 TEST(Certainty, APairStaysNamedWhileItsFirstIsMoreProbableThanNot) {
   const Diagnosis diagnosis =
       claimed({"cogging", "backlash"}, {candidate({"cogging"}, 0.3), candidate({"cogging", "backlash"}, 0.67)});

@@ -51,6 +51,40 @@ TEST(CertainEffects, NamesCoggingOfTwoOrders) {
   EXPECT_NEAR(std::abs(cogging.at("sine_12")), 0.005, 0.001);
 }
 
+/// The position alone is wrong; the torque knows nothing of it.
+TEST(CertainEffects, NamesAnErrorOfTheEncoderAndNotTheTorqueThatItSeemsToNeed) {
+  AXIS_SKIP_WHERE_INSTRUMENTED();
+  constexpr double kAmplitude = 0.004, kStep = kTurn / 200000.0;
+  const auto turning = [](double t_s) {
+    const double slow = kTurn * 0.2, fast = kTurn * 0.53;
+    return Point{-40.0 / slow * std::cos(slow * t_s) - 20.0 / fast * std::cos(fast * t_s),
+                 40.0 * std::sin(slow * t_s) + 20.0 * std::sin(fast * t_s),
+                 40.0 * slow * std::cos(slow * t_s) + 20.0 * fast * std::cos(fast * t_s)};
+  };
+  const auto misread = [&](double from_s, double to_s, unsigned seed) {
+    host::Record record = record_of(
+        turning, [](const Point&) { return 0.0; }, from_s, to_s, seed);
+    for (std::size_t k = 0; k < record.size(); ++k) {  // at even times
+      const double x = turning(from_s + record.t_s[k]).x;
+      record.x[k] = kStep * std::round((x + kAmplitude * std::cos(3.0 * x)) / kStep);
+    }
+    return record;
+  };
+  const host::Record train = misread(0.0, 20.0, 1), validate = misread(31.0, 45.0, 2);
+  sim::DriveDescription model = motor();
+  model.data.encoder_resolution = kStep;
+  const host::EffortScreen found =
+      host::screen_effort(model, host::compare_on({&train}, model), host::compare_on({&validate}, model), 6);
+  ASSERT_THAT(named(found), testing::ElementsAre("encoder_cyclic_error"));
+  EXPECT_NEAR(found.best().model.find("encoder_cyclic_error")->at("cosine_3"), kAmplitude, 0.1 * kAmplitude);
+  // A model that holds it has nothing left to explain.
+  sim::DriveDescription knows = model;
+  knows.effects.push_back(*found.best().model.find("encoder_cyclic_error"));
+  const host::EffortScreen again =
+      host::screen_effort(knows, host::compare_on({&train}, knows), host::compare_on({&validate}, knows), 6);
+  EXPECT_THAT(named(again), IsEmpty());
+}
+
 TEST(CertainEffects, CannotTellAWeightFromAnOffset) {
   AXIS_SKIP_WHERE_INSTRUMENTED();
   const host::EffortScreen found = screened([](const Point&) { return 0.008; });

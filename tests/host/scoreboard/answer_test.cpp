@@ -29,6 +29,10 @@ TEST(Outcomes, AreWhatTheTruthMakesOfAnAnswer) {
   either.alternatives = {{"presliding", "backlash"}};
   EXPECT_EQ(host::outcome_of(both, either), Outcome::group);
   EXPECT_EQ(host::outcome_of(cogging, either), Outcome::wrong);
+  host::DiagnosisVerdict beside = verdict(Status::missing, {"cogging"});
+  beside.alternatives = {{"presliding", "backlash"}};
+  EXPECT_EQ(host::outcome_of(both, beside), Outcome::group);
+  EXPECT_EQ(host::outcome_of(cogging, beside), Outcome::partly);
   EXPECT_EQ(host::outcome_of(nothing, verdict(Status::parameters)), Outcome::right);
   EXPECT_EQ(host::outcome_of(nothing, verdict(Status::missing, {"cogging"})), Outcome::wrong);
   EXPECT_EQ(host::outcome_of(alien, verdict(Status::unexplained)), Outcome::right);
