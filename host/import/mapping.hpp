@@ -18,9 +18,9 @@ struct Mapping {
   double apply(double value) const { return factor * value + shift; }
 };
 
-/// Parses a comma-separated list of `column=expression`. An expression is linear in one source: numbers, + - * /,
-/// parentheses none. Names that hold blanks or operators stand in quotes: `u_V="Command (V)"`. Without a name, a whole
-/// number in front is the number of a column: `x_mm=3*0.00122`.
+/// Parses a comma-separated list of `column=expression`. An expression is linear in one source. It holds numbers and
+/// + - * /, but no parentheses. A name with blanks or operators stands in quotes: `u_V="Command (V)"`. Without a name,
+/// a whole number in front is the number of a column: `x_mm=3*0.00122`.
 /// Throws Failure(usage) naming the expression, the place in it and what would be right.
 std::vector<Mapping> parse_mappings(std::string_view text);
 

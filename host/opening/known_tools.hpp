@@ -8,8 +8,8 @@
 
 namespace host {
 
-/// Completes what names say where the log is one of ODrive's, moteus', VESC Tool's, Betaflight's or LinuxCNC's, or
-/// joint states of ROS; and names the layout after the tool.
+/// Recognises a log of ODrive, moteus, VESC Tool, Betaflight, LinuxCNC or ROS (joint states). Adds the units and
+/// meanings that this tool's channel names imply, and names the layout after the tool.
 void apply_known_tools(Log& log, std::vector<ChannelName>& names);
 
 }  // namespace host

@@ -42,8 +42,8 @@ class DrivenAxis {
     io.tachometer().reading.code = static_cast<std::int32_t>(std::lround(64.0 * w_rad_s_));
   }
   double at_mm() const { return x_mm_; }
-  double stuck_V = 0.0;             ///< that the drive gets whatever the enable says
-  double amplifier_offset_V = 0.0;  ///< or what a stuck converter puts out beside its word; while enabled
+  double stuck_V = 0.0;             ///< reaches the drive with and without the enable
+  double amplifier_offset_V = 0.0;  ///< added to the command while enabled: offset of amplifier or converter
 
   firmware::boards::ValueAxis io;
   firmware::SupervisedAxis<float, firmware::boards::ValueAxis> axis{io};

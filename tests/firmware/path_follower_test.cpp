@@ -100,7 +100,7 @@ class Followed : public testing::Test {
   double off_ = 0.0, hardest_ = 0.0;
 };
 
-/// Catches a clock that loses time between pieces, wrong coefficients, a sum of roundings, and an end that is missed.
+/// Catches a clock that loses time between pieces, wrong coefficients, accumulated rounding, and a missed end.
 TEST_F(Followed, IsOnThePathAtEverySampleAndExactAtItsEnd) {
   open();
   EXPECT_EQ(run(pieces()), circle_.samples) << "no time is lost";

@@ -1,4 +1,4 @@
-// Nodes of a path between an axistool and a firmware that do not read them alike: refused, before an axis moves.
+// A firmware whose format of path nodes differs from axistool's is refused before an axis moves.
 #include <gtest/gtest.h>
 
 #include <deque>

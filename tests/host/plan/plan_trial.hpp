@@ -82,7 +82,7 @@ inline PlanTrial with_load_dependent_friction(const PlanTrial& trial) {
   return with_other_truth(trial, trial.name + " load", "load_dependent_friction", drive);
 }
 
-/// One of the three that a drive without static friction cannot tell apart.
+/// One of three effects that cannot be told apart on a drive without static friction.
 inline PlanTrial with_level(PlanTrial trial, const std::string& truth, double share) {
   IndependentDrive drive = trial.drive;
   drive.delay_s = drive.load = 0.0;
