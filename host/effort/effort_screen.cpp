@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "host/cancellation.hpp"
@@ -187,16 +186,14 @@ class Search {
     const auto of = [&](const std::string& kind) {
       return std::ranges::find_if(list, [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
     };
-    const auto gap =
-        std::ranges::find_if(next.effects, [](const NextEffect& effect) { return effect.term.contained != nullptr; });
+    const auto gap = std::ranges::find_if(next.effects, [](const auto& one) { return one.term.contained != nullptr; });
     if (gap == next.effects.end() || of(gap->term.kind) == list.end()) return;
     const std::string wide = gap->term.kind;
     NextEffect spring{gap->term.contained(), {}, gap->log_odds, gap->probability};
-    const std::string narrow = spring.term.kind;
     ScreenedModel fitted;
     if (!with_closest(spring, fitted)) return;
-    if (const auto seen = of(narrow); seen != list.end()) {
-      const NextEffect& other = effect_of(next, narrow);
+    if (const auto seen = of(spring.term.kind); seen != list.end()) {
+      const NextEffect& other = effect_of(next, spring.term.kind);
       spring.log_odds = std::max(spring.log_odds, other.log_odds);
       spring.probability += other.probability;
       if (seen->train < fitted.train) {
@@ -207,12 +204,9 @@ class Search {
     if (is_worth_naming(fitted.validate, of(wide)->validate)) return;
     fitted.probability = spring.probability;
     fitted.confidence = logistic(spring.log_odds);
-    const auto is_either = [&](const std::string& kind) { return kind == wide || kind == narrow; };
-    std::erase_if(list, [&](const ScreenedModel& tried) { return is_either(tried.kinds.back()); });
-    std::erase_if(next.effects, [&](const NextEffect& effect) { return is_either(effect.term.kind); });
+    std::erase_if(list, [&](const auto& m) { return m.kinds.back() == wide || m.kinds.back() == spring.term.kind; });
     list.push_back(std::move(fitted));
-    next.effects.push_back(std::move(spring));
-    std::ranges::stable_sort(next.effects, std::greater(), &NextEffect::probability);
+    give_place(next, wide, std::move(spring));
   }
 
   /// From the candidates; refuted ones are removed from them and, permanently, from `all`.
