@@ -177,6 +177,8 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
       const std::string id = volts ? "offset" : "torque";
       terms.push_back({entry.kind, VectorXd::Constant(rows.w.size(), per_unit), {0}, set(entry.kind, id, 1.0), {}});
     } else if (is_linear(entry) && info.periodic && rows.has_position) {
+      // What these rows do not show stays as it is given.
+      if (entry.kind != "cogging" && (rows.by_speed || rows.steady)) continue;
       const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
       std::vector<double> orders;
       for (const sim::HarmonicTerm& term : harmonics) orders.push_back(term.order);
