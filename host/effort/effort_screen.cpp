@@ -160,7 +160,6 @@ class Search {
     NextEffects all = weigh(hypotheses);
     weigh_unnamed(all);
     std::vector<ScreenedModel> list = all_of(all);
-    give_what_is_contained_its_due(list, all);
     if (screen_.leaves_noise()) leave_nothing(all);
     // A certain effect with a small share is no rival of one with a large share.
     std::vector<std::string> small;
@@ -168,6 +167,7 @@ class Search {
       if (!is_worth_naming(tried)) small.push_back(tried.kinds.back());
     NextEffects next = all;
     take_out(next, small);
+    take_out_needless_gap(list, next);
     if (take_one(next, all, list)) {
       to_be_followed_.clear();
       return true;
@@ -180,33 +180,14 @@ class Search {
     return false;
   }
 
-  /// A gap of no width is a spring, and a coarse form of one may hide behind a fine form of the other. Where the spring
-  /// that a gap contains, fitted as finely, leaves as much, the probability is the spring's.
-  void give_what_is_contained_its_due(std::vector<ScreenedModel>& list, NextEffects& next) const {
-    const auto of = [&](const std::string& kind) {
+  /// A spring is a gap of zero width: a gap must explain part of the spring's residual.
+  void take_out_needless_gap(const std::vector<ScreenedModel>& list, NextEffects& next) const {
+    const auto of = [&](const char* kind) {
       return std::ranges::find_if(list, [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });
     };
-    const auto gap = std::ranges::find_if(next.effects, [](const auto& one) { return one.term.contained != nullptr; });
-    if (gap == next.effects.end() || of(gap->term.kind) == list.end()) return;
-    const std::string wide = gap->term.kind;
-    NextEffect spring{gap->term.contained(), {}, gap->log_odds, gap->probability};
-    ScreenedModel fitted;
-    if (!with_closest(spring, fitted)) return;
-    if (const auto seen = of(spring.term.kind); seen != list.end()) {
-      const NextEffect& other = effect_of(next, spring.term.kind);
-      spring.log_odds = std::max(spring.log_odds, other.log_odds);
-      spring.probability += other.probability;
-      if (seen->train < fitted.train) {
-        fitted = *seen;
-        spring.term = other.term;
-      }
-    }
-    if (is_worth_naming(fitted.validate, of(wide)->validate)) return;
-    fitted.probability = spring.probability;
-    fitted.confidence = logistic(spring.log_odds);
-    std::erase_if(list, [&](const auto& m) { return m.kinds.back() == wide || m.kinds.back() == spring.term.kind; });
-    list.push_back(std::move(fitted));
-    give_place(next, wide, std::move(spring));
+    const auto spring = of("compliance"), gap = of("backlash");
+    if (spring != list.end() && gap != list.end() && !is_worth_naming(spring->validate, gap->validate))
+      take_out(next, {"backlash"});
   }
 
   /// From the candidates; refuted ones are removed from them and, permanently, from `all`.

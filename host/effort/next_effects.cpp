@@ -1,8 +1,6 @@
 #include "host/effort/next_effects.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <utility>
 
 #include "host/infer/posterior.hpp"
 
@@ -39,13 +37,6 @@ void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
 void leave_nothing(NextEffects& next) {
   next.effects.clear();
   next.nothing = 1.0;
-}
-
-void give_place(NextEffects& next, const std::string& kind, NextEffect to) {
-  std::erase_if(next.effects,
-                [&](const NextEffect& effect) { return effect.term.kind == kind || effect.term.kind == to.term.kind; });
-  next.effects.push_back(std::move(to));
-  std::ranges::stable_sort(next.effects, std::greater(), &NextEffect::probability);
 }
 
 NextEffect& effect_of(NextEffects& next, const std::string& kind) {
