@@ -86,8 +86,6 @@ bool is_slow(const Wave& wave, const EffortRows& rows, double turn) {
   return wave.order * travel / wave.period <= kMostWaves || (wave.period == turn && wave.order <= kMostOrders);
 }
 
-using ColumnsOfRows = std::function<MatrixXd(const EffortRows&, const Wave&)>;
-
 /// Of many waves, those with the largest plain gain.
 std::vector<std::size_t> most_promising(const std::vector<Wave>& waves, const WaveColumns& columns_of,
                                         const VectorXd& left) {
@@ -224,15 +222,6 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
                               [](const VectorXd&, sim::DriveDescription&) { return true; },
                               {}};
           });
-    const auto weigh_effect = [&](const std::string& kind, const std::vector<Wave>& waves,
-                                  const ColumnsOfRows& columns_of) {
-      weigh_waves(
-          kind, waves, [&](const Wave& wave) { return columns_of(thin_.rows, wave); },
-          [this, kind, columns_of](const Wave& wave) {
-            return wave_term(
-                model_, rows_, kind, [this, columns_of](const Wave& other) { return columns_of(rows_, other); }, wave);
-          });
-    };
     for (const auto& [kind, weight, longest] : {std::tuple<std::string, const VectorXd*, double>{"cogging", &one, 1.0},
                                                 {"torque_ripple", &explained, 1.0},
                                                 {"position_dependent_friction", &direction, 2.0}}) {
@@ -240,18 +229,28 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
       // Friction varies slowly along the travel, or with the pitch of the screw.
       const std::vector<Wave> waves =
           kind == "position_dependent_friction" ? slow_waves(longest) : waves_over(model_.data, rows_, longest);
-      weigh_effect(kind, waves,
-                   [this, all = *weight, thin = VectorXd(thin_.of(*weight))](const EffortRows& rows, const Wave& wave) {
-                     return wave_columns(rows, &rows == &rows_ ? all : thin, wave);
-                   });
+      weigh_waves(
+          kind, waves,
+          [this, thin_weight = VectorXd(thin_.of(*weight))](const Wave& wave) {
+            return wave_columns(thin_.rows, thin_weight, wave);
+          },
+          [this, kind = kind, weight = *weight](const Wave& wave) {
+            return wave_term(
+                model_, rows_, kind,
+                [&rows = rows_, weight](const Wave& other) { return wave_columns(rows, weight, other); }, wave);
+          });
     }
     // Where the speed hardly changes, an error of the encoder and a torque along the travel are one wave. Discs err
     // once a turn and more often, gratings many times over the travel; a few waves over it are no cyclic error.
-    if (!rows_.steady && !rows_.by_speed && !is_excluded("encoder_cyclic_error")) {
+    const std::string misread = "encoder_cyclic_error";
+    if (!rows_.steady && !rows_.by_speed && !is_excluded(misread)) {
       std::vector<Wave> waves = waves_over(model_.data, rows_, 1.0);
       std::erase_if(waves, [&](const Wave& wave) { return wave.period != turn && is_slow(wave, rows_, turn); });
-      weigh_effect("encoder_cyclic_error", waves, [this](const EffortRows& rows, const Wave& wave) {
-        return encoder_error_columns(model_, rows, wave);
+      const auto columns_on = [&model = model_](const EffortRows& rows) {
+        return [&model, &rows](const Wave& wave) { return encoder_error_columns(model, rows, wave); };
+      };
+      weigh_waves(misread, waves, columns_on(thin_.rows), [this, misread, columns_on](const Wave& wave) {
+        return wave_term(model_, rows_, misread, columns_on(rows_), wave);
       });
     }
   }

@@ -170,13 +170,12 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
     }
   }
   for (const sim::EffectEntry& entry : model.effects) {
-    const sim::EffectInfo& info = *sim::find_effect(entry.kind);
     if (entry.kind == "constant_torque" || entry.kind == "dac_offset") {
       const bool volts = entry.kind == "dac_offset";
       const double per_unit = volts ? -model.data.effort_per_volt() : -1.0;
       const std::string id = volts ? "offset" : "torque";
       terms.push_back({entry.kind, VectorXd::Constant(rows.w.size(), per_unit), {0}, set(entry.kind, id, 1.0), {}});
-    } else if (is_linear(entry) && info.periodic && rows.has_position) {
+    } else if (is_linear(entry) && rows.has_position) {
       // What these rows do not show stays as it is given.
       if (entry.kind != "cogging" && (rows.by_speed || rows.steady)) continue;
       const std::vector<sim::HarmonicTerm> harmonics = sim::harmonics_of(entry);
