@@ -160,6 +160,7 @@ class Search {
     NextEffects all = weigh(hypotheses);
     weigh_unnamed(all);
     std::vector<ScreenedModel> list = all_of(all);
+    put_in_place_what_is_contained(list, all);
     if (screen_.leaves_noise()) leave_nothing(all);
     // A certain effect with a small share is no rival of one with a large share.
     std::vector<std::string> small;
@@ -180,7 +181,25 @@ class Search {
     return false;
   }
 
-  /// A spring is a gap of zero width: a gap must explain part of the spring's residual.
+  /// Fits the spring behind a gap that the encoder hardly resolves as finely, and puts it in the gap's place.
+  void put_in_place_what_is_contained(std::vector<ScreenedModel>& list, NextEffects& next) const {
+    const auto gap = std::ranges::find_if(next.effects, [](const auto& one) { return one.term.contained != nullptr; });
+    if (gap == next.effects.end()) return;
+    const std::string wide = gap->term.kind;
+    NextEffect spring{.term = gap->term.contained(), .others = {}, .log_odds = gap->log_odds};
+    for (const NextEffect& other : next.effects)
+      if (other.term.kind == spring.term.kind) spring.others.push_back(other.term);
+    ScreenedModel fitted;
+    if (!with_closest(spring, fitted)) return;
+    const std::string narrow = spring.term.kind;
+    give_place(next, wide, std::move(spring));
+    fitted.probability = effect_of(next, narrow).probability;
+    fitted.confidence = logistic(effect_of(next, narrow).log_odds);
+    std::erase_if(list, [&](const auto& one) { return one.kinds.back() == wide || one.kinds.back() == narrow; });
+    list.push_back(std::move(fitted));
+  }
+
+  /// A wider gap must explain part of the spring's residual.
   void take_out_needless_gap(const std::vector<ScreenedModel>& list, NextEffects& next) const {
     const auto of = [&](const char* kind) {
       return std::ranges::find_if(list, [&](const ScreenedModel& tried) { return tried.kinds.back() == kind; });

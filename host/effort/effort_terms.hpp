@@ -21,6 +21,9 @@ struct EffortTerm {
   bool can_repeat = false;  ///< a drive may have several: waves of other periods
   /// Forms whose shape differs by this part; empty if the forms to try are close enough. Refers to the rows.
   std::function<std::vector<EffortTerm>(double part)> neighbours{};
+  /// The effect of another kind that this form cannot be told from: of a gap that the encoder hardly resolves, the
+  /// spring behind it. Empty for most. Refers to the rows.
+  std::function<EffortTerm()> contained{};
   /// RMS of the torque or force that acts with this effect, over that of the logged one. The residual is expressed in
   /// this unit: where nothing acts, nothing remains to be explained.
   double acting = 1.0;

@@ -38,9 +38,9 @@ Eigen::MatrixXd wave_columns(const EffortRows& rows, const Eigen::VectorXd& weig
 /// J(x) a + w^2/2 dJ/dx. Two columns, for the cosine and sine of J. Not in the catalogue.
 Eigen::MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave);
 
-/// Torque or force that an error of the encoder, one wave of the reading, seems to need: the motion that is read has the
-/// error's acceleration and speed, the drive has not. Two columns, for the cosine and the sine of the error in mm or m;
-/// by the model's inertia and viscous friction.
+/// Torque or force that an error of the encoder, one wave of the reading, seems to need: the motion that is read has
+/// the error's acceleration and speed, the drive has not. Two columns, for the cosine and the sine of the error in mm
+/// or m; by the model's inertia and viscous friction.
 Eigen::MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortRows& rows, const Wave& wave);
 
 using WaveColumns = std::function<Eigen::MatrixXd(const Wave&)>;

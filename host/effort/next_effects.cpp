@@ -1,6 +1,8 @@
 #include "host/effort/next_effects.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "host/infer/posterior.hpp"
 
@@ -37,6 +39,19 @@ void take_out(NextEffects& next, const std::vector<std::string>& kinds) {
 void leave_nothing(NextEffects& next) {
   next.effects.clear();
   next.nothing = 1.0;
+}
+
+void give_place(NextEffects& next, const std::string& kind, NextEffect to) {
+  to.probability = 0.0;
+  for (const NextEffect& effect : next.effects)
+    if (effect.term.kind == kind || effect.term.kind == to.term.kind) {
+      to.probability += effect.probability;
+      to.log_odds = std::max(to.log_odds, effect.log_odds);
+    }
+  std::erase_if(next.effects,
+                [&](const NextEffect& effect) { return effect.term.kind == kind || effect.term.kind == to.term.kind; });
+  next.effects.push_back(std::move(to));
+  std::ranges::stable_sort(next.effects, std::greater(), &NextEffect::probability);
 }
 
 NextEffect& effect_of(NextEffects& next, const std::string& kind) {

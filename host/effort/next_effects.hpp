@@ -40,6 +40,9 @@ void take_out(NextEffects& next, const std::vector<std::string>& kinds);
 /// Removes all kinds from the candidates.
 void leave_nothing(NextEffects& next);
 
+/// Puts a candidate in the place of those of `kind` and of its own kind, with the probability of both.
+void give_place(NextEffects& next, const std::string& kind, NextEffect to);
+
 /// The candidate of that kind, which must exist.
 NextEffect& effect_of(NextEffects& next, const std::string& kind);
 

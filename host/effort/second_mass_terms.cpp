@@ -18,12 +18,15 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+constexpr double kGapStep = 1.5;  ///< from one width of the gap to the next that is tried
+
 /// A load behind a spring whose motor end moves as recorded.
 struct Load {
   double resonance_Hz;  ///< with the motor held: the antiresonance that the motor sees
   double damping;
-  double friction;   ///< Coulomb friction over inertia, rad/s^2 or m/s^2
-  double gap = 0.0;  ///< free travel, rad or m
+  double friction;         ///< Coulomb friction over inertia, rad/s^2 or m/s^2
+  double gap = 0.0;        ///< free travel, rad or m
+  double least_gap = 0.0;  ///< that the encoder shows: a smaller one is a spring
 };
 
 /// The coupling's pull over the load's inertia at every sample: w^2 d + 2 z w d', with d the twist beyond the gap,
@@ -60,8 +63,9 @@ VectorXd pull_of(const EffortRows& rows, const Load& load) {
   VectorXd column(rows.w.size());
   for (const EffortSignals& signals : rows.signals) {
     std::vector<double> pulls = pull_over(signals, load);
-    // A spring's pull is as smooth as the motion; what strikes is not, and the effort was smoothed.
-    if (load.gap > 0.0) pulls = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(pulls);
+    // A free load's pull is as smooth as the motion; what strikes or sticks is not, and the effort was smoothed.
+    if (load.gap > 0.0 || load.friction > 0.0)
+      pulls = ZeroPhaseLowPass::butterworth(signals.cutoff_Hz, 1.0 / signals.period_s)(pulls);
     for (std::size_t k = 0; k < signals.kept.size(); ++k)
       column(static_cast<Index>(signals.first_row + k)) = pulls[signals.kept[k]];
   }
@@ -109,6 +113,12 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
   else
     term.words = fmt::format("antiresonance {:.3g} Hz{}", load.resonance_Hz,
                              load.friction > 0.0 ? ", friction on both sides" : "");
+  if (load.gap > 0.0 && load.gap < kGapStep * load.least_gap)
+    term.contained = [&rows, load, unit] {
+      Load spring = load;
+      spring.gap = spring.least_gap = 0.0;
+      return term_of(rows, spring, unit);
+    };
   term.neighbours = [&rows, load, unit](double part) {
     std::vector<EffortTerm> around;
     // Damping and friction show far less than the frequency; behind a gap, so does the frequency.
@@ -118,7 +128,7 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
       const auto moved = [&](double Load::*parameter, double factor) {
         Load other = load;
         other.*parameter *= factor;
-        around.push_back(term_of(rows, other, unit));
+        if (other.gap >= load.least_gap) around.push_back(term_of(rows, other, unit));
       };
       if (load.gap > 0.0) moved(&Load::gap, fine);
       moved(&Load::resonance_Hz, load.gap > 0.0 ? coarse : fine);
@@ -138,12 +148,13 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   for (const char* contact : {"compliance", "backlash", "presliding"})
     if (model.find(contact) != nullptr) return {};
   if (rows.steady) return {};  // without acceleration a second mass does not show
-  constexpr double kLowest_Hz = 1.0, kStep = 1.12, kShareOfCutoff = 0.8;
+  // Beyond the cut-off a spring still shows as a travel in proportion to the force.
+  constexpr double kLowest_Hz = 1.0, kStep = 1.12, kShareOfCutoff = 0.8, kBeyond = 2.0;
   sim::DriveDescription base = model;
   std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
   const sim::Drive drive(base);
   const double usual = 0.5 * (drive.friction[0].coulomb + drive.friction[1].coulomb) / drive.inertia;
-  const double highest_Hz = kShareOfCutoff * rows.lowest_cutoff_Hz, span = std::log(highest_Hz / kLowest_Hz);
+  const double highest_Hz = kShareOfCutoff * rows.lowest_cutoff_Hz, span = std::log(kBeyond * highest_Hz / kLowest_Hz);
   constexpr double kMost = 100.0;  // up to 90 kHz
   const auto frequencies = static_cast<int>(std::ceil(std::clamp(span / std::log(kStep), 0.0, kMost)));
   std::vector<Load> loads;
@@ -160,11 +171,12 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
     const sim::ParameterInfo& gap = *sim::find_effect("backlash")->parameter("gap");
     constexpr double kFewCounts = 4.0, kOfTravel = 0.05;
     const double most = std::min(gap.upper, kOfTravel * (rows.x.maxCoeff() - rows.x.minCoeff()));
-    for (double free = kFewCounts * model.data.encoder_resolution; free > 0.0 && free <= most; free *= 1.5)
-      for (const double resonance_Hz : {0.5 * highest_Hz, highest_Hz, 2.0 * highest_Hz})
+    const double least = kFewCounts * model.data.encoder_resolution;
+    for (double free = least; free > 0.0 && free <= most; free *= kGapStep)
+      for (const double resonance_Hz : {0.5 * highest_Hz, highest_Hz, kBeyond * highest_Hz})
         for (const double damping : {0.3, 0.6})
           for (const double part : {0.15, 0.5, 1.5})
-            loads.push_back({resonance_Hz, damping, part * usual, free / rows.lead});
+            loads.push_back({resonance_Hz, damping, part * usual, free / rows.lead, least / rows.lead});
   }
   const char* const unit = model.data.kind == sim::DriveKind::rotary ? "mm" : "m";
   std::vector<EffortTerm> terms(loads.size());
