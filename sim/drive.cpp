@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/catalogue.hpp"
 #include "sim/contact.hpp"
@@ -281,20 +282,24 @@ double Drive::follow(DriveState& state, double u_V, double x1, double w1, double
   note_reversal(state, state.x, w1);
   const double middle_x = 0.5 * (state.x + x1);
   const double mean_w = 0.5 * (w0 + w1);
-  double effort = deliver_over(state, u_V, duration_s) * product(effort_factor, middle_x);
+  const double motor = deliver_over(state, u_V, duration_s) * product(effort_factor, middle_x);
+  double effort = motor;
   for (const auto& load : load_effort) effort += load(t_s, middle_x);
   if (friction_memory_s > 0.0) lag_mean(state.friction_speed, std::abs(mean_w), friction_memory_s, duration_s);
-  if (dwell_gain > 0.0) follow_rest(state, w0, w1, effort, duration_s);
-  const FrictionSide& side = friction[mean_w >= 0.0 ? 0 : 1];
-  if (bristles)
-    follow_bristles(*bristles, side, inertia, state, mean_w, effort - inertia * (w1 - w0) / duration_s, duration_s);
+  if (dwell_gain > 0.0 || bristles) {
+    const RichContact contact(*this, state, t_s, middle_x, motor);
+    const double contact_effort = effort - inertia * (w1 - w0) / duration_s;
+    if (dwell_gain > 0.0) follow_rest(state, w0, w1, contact_effort, duration_s, contact);
+    if (bristles) follow_bristles(*bristles, inertia, state, mean_w, contact_effort, duration_s, contact);
+  }
   state.x = x1;
   state.w = w1;
   filter_tach(state, w0, duration_s);
   return effort;
 }
 
-void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double effort, double duration_s) const {
+void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double contact_effort, double duration_s,
+                        const RichContact& contact) const {
   if (w0 == 0.0 && w1 == 0.0) {
     motion.rest_s += duration_s;
     motion.slide_s = motion.restuck = 0.0;
@@ -313,11 +318,12 @@ void Drive::follow_rest(DriveMotion& motion, double w0, double w1, double effort
   // shows is held against the level with the gain and the level without, averaged over some 30 ms.
   constexpr double kAveraging_s = 0.03;
   const double w = 0.5 * (w0 + w1);
-  const FrictionSide& side = friction[w >= 0.0 ? 0 : 1];
-  const double without = stribeck_curve(side, side.breakaway, std::abs(w)).effort + side.viscous * std::abs(w);
-  const double with = stribeck_curve(side, side.breakaway * (1.0 + motion.breakaway_gain), std::abs(w)).effort +
-                      side.viscous * std::abs(w);
-  const double shown = (w >= 0.0 ? 1.0 : -1.0) * (effort - inertia * (w1 - w0) / duration_s);
+  const int side = w >= 0.0 ? 0 : 1;
+  const double with = contact.sliding(side, std::abs(w)).effort;
+  const double gain = std::exchange(motion.breakaway_gain, 0.0);
+  const double without = contact.sliding(side, std::abs(w)).effort;
+  motion.breakaway_gain = gain;
+  const double shown = (w >= 0.0 ? 1.0 : -1.0) * contact_effort;
   const double levels_apart = with - without;
   if (levels_apart <= 1e-3 * with) return;
   const double verdict = (0.5 * (with + without) - shown) / levels_apart;

@@ -57,6 +57,7 @@ struct DriveMotion {
   double load_x = 0.0;  ///< travel of the table, where it is a mass of its own
   double load_w = 0.0;
   double bristle = 0.0;         ///< deflection of the contact, rad or m
+  double bristle_doubt = 1.0;   ///< its error while following a known motion, over that at rest
   double friction_speed = 0.0;  ///< the speed that the friction remembers
   double rest_s = 0.0;          ///< time at rest
   double restuck = 0.0;         ///< evidence that an unseen stop has taken the rest's gain away, -1..1
@@ -71,6 +72,8 @@ struct DriveMotion {
 struct DriveState : DriveMotion {
   std::array<double, 128> past_u_V{};  ///< commands before the present one, latest first (only kept for a delay)
 };
+
+struct RichContact;
 
 class Drive {
  public:
@@ -194,7 +197,8 @@ class Drive {
   template <Mechanics kMechanics, typename Contact>
   double limiting_speed(const DriveMotion& motion, double u_V, double t_s, double duration_s) const;
   void observe(DriveState& state, double u_V, double x1, double t_s, double duration_s) const;
-  void follow_rest(DriveMotion& motion, double w0, double w1, double effort, double duration_s) const;
+  void follow_rest(DriveMotion& motion, double w0, double w1, double contact_effort, double duration_s,
+                   const RichContact& contact) const;
   void filter_tach(DriveMotion& motion, double w_before, double duration_s) const;
   void note_reversal(DriveMotion& motion, double x, double w) const;
   std::size_t whole_periods_of_delay(double period_s) const;

@@ -93,19 +93,26 @@ template <typename Contact>
 
 /// Lets the deflection follow a speed that is known: the bristle's equation, drawn towards the deflection that carries
 /// `contact_effort` (what the motor gives beyond acceleration) as fast as the mass on the bristles itself settles.
-inline void follow_bristles(const Bristles& bristles, const FrictionSide& side, double inertia, DriveMotion& motion,
-                            double w, double contact_effort, double duration_s) {
-  const double g = stribeck_curve(side, side.breakaway, std::abs(w)).effort;
+template <typename Contact>
+void follow_bristles(const Bristles& bristles, double inertia, DriveMotion& motion, double w, double contact_effort,
+                     double duration_s, const Contact& contact) {
+  const int side = w >= 0.0 ? 0 : 1;
+  const double speed = std::abs(w), sign = w >= 0.0 ? 1.0 : -1.0;
+  const double g = contact.dry(side, speed).effort;
   if (g <= 0.0) return;
   const double settled = g / bristles.stiffness;
   if (w != 0.0) {
     const double end = w > 0.0 ? settled : -settled;
-    motion.bristle = end + (motion.bristle - end) * decay(std::abs(w) / settled * duration_s);
+    motion.bristle = end + (motion.bristle - end) * decay(speed / settled * duration_s);
   }
-  const double carried = (contact_effort - side.viscous * w - bristles.damping * w) / bristles.stiffness;
-  const double rate = std::sqrt(bristles.stiffness / inertia);
-  // At speed the bristle's own equation settles faster than that, and knows better than a noisy acceleration.
-  if (std::abs(w) / settled < rate) motion.bristle += (carried - motion.bristle) * (1.0 - decay(rate * duration_s));
+  const double viscous = sign * contact.viscous(side, speed).effort;
+  const double carried = (contact_effort - viscous - bristles.damping * w) / bristles.stiffness;
+  // What was wrong at rest fades with the travel; the less is left of it, the more the noise of the acceleration would
+  // spoil. Kalman's gain goes with the square.
+  if (w == 0.0) motion.bristle_doubt = 1.0;
+  motion.bristle_doubt *= decay(speed / settled * duration_s);
+  const double rate = motion.bristle_doubt * motion.bristle_doubt * std::sqrt(bristles.stiffness / inertia);
+  motion.bristle += (carried - motion.bristle) * (1.0 - decay(rate * duration_s));
   motion.bristle = std::clamp(motion.bristle, -settled, settled);
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "tests/sim/small_drive.hpp"
 
@@ -136,6 +137,23 @@ TEST(Presliding, SteadyFrictionIsTheCurve) {
   }
 }
 
+TEST(Presliding, FollowingASlideFindsTheFrictionThatActs) {
+  // A slide bends the bristle by g/sigma0, whatever changes g, and though the effort is known to 3 % only.
+  const double sigma0 = 800.0, w = 0.05, warm = -0.3, asymmetry = 0.2, late_s = 1e3;
+  const sim::DriveDescription plain = with(coulomb_drive(), "presliding", {{"sigma0", sigma0}, {"sigma1", 0.5}});
+  const sim::DriveDescription drifting = with(
+      plain, "thermal_friction_drift", {{"coulomb_change", warm}, {"viscous_change", 0.0}, {"time_constant", 10.0}});
+  const sim::DriveDescription uneven = with(plain, "coulomb_asymmetry", {{"asymmetry", asymmetry}});
+  for (const auto& [description, g] :
+       {std::pair(plain, kCoulomb), {drifting, (1.0 + warm) * kCoulomb}, {uneven, (1.0 + asymmetry) * kCoulomb}}) {
+    const Drive drive(description);
+    DriveState state = drive.at(0.0, w);
+    for (int k = 0; k < 1000; ++k)
+      drive.follow(state, 0.97 * (g + kViscous * w), state.x + 0.001 * kLead * w, w, late_s + 0.001 * k, 0.001);
+    EXPECT_NEAR(sigma0 * state.bristle, g, 1e-3 * g);
+  }
+}
+
 TEST(FrictionLag, FrictionFollowsASpeedJumpWithItsTimeConstant) {
   // A flywheel so heavy that its speed stays; the impulse of friction after a jump from 1 to 6 rad/s.
   const double heavy = 1e4, tau_s = 0.03, before = 1.0, after = 6.0, end_s = 0.06;
@@ -163,6 +181,22 @@ TEST(DwellStiction, BreakawayGrowsWithTheRest) {
     const double level = kStatic * (1.0 + gain * (1.0 - std::exp(-rest_s / tau_s)));
     expect_breakaway(drive, rested, level);
     expect_breakaway(drive, rested, -level);
+  }
+}
+
+TEST(DwellStiction, FollowingAMotionSeesThatTheRestIsForgottenBesideADrag) {
+  // A creep after a rest shows the level without the rest's gain: a stop too short to be seen has taken it away. A drag
+  // as large as the gain must not be taken for it.
+  const double gain = 0.4, w = 0.2, fading = std::exp(-w / kOmega), drag = gain * kStatic * fading;
+  const Drive drive(with(with(stribeck_drive(), "dwell_stiction", {{"gain", gain}, {"time_constant", 0.5}}),
+                         "nonlinear_viscous", {{"coefficient", drag * std::sqrt(10.0 / w)}, {"exponent", 0.5}}));
+  const double without = kStatic * fading + kCoulomb * (1.0 - fading) + kViscous * w + drag;
+  for (const bool keeps : {true, false}) {
+    DriveState state = drive.at(0.0, 0.0);
+    for (int k = 0; k < 5000; ++k) drive.follow(state, 0.0, 0.0, 0.0, 0.001 * k, 0.001);
+    for (int k = 0; k < 300; ++k)
+      drive.follow(state, without + (keeps ? drag : 0.0), state.x + 0.001 * kLead * w, w, 5.0 + 0.001 * k, 0.001);
+    EXPECT_NEAR(state.breakaway_gain, keeps ? gain : 0.0, 1e-3);
   }
 }
 
