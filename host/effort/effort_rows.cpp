@@ -182,6 +182,13 @@ bool enough(const EffortRows& rows, bool judges) {
 
 }  // namespace
 
+double most_noise(const EffortRows& rows, bool judges) {
+  // Rows stand a quarter of the cut-off's period apart: two of them are one independent value. The RMS of n such values
+  // has a relative standard deviation of 1/sqrt(2 n).
+  const auto count = static_cast<double>(std::ranges::count(rows.judges, judges));
+  return rows.noise * (1.0 + 2.0 / std::sqrt(std::max(count, 1.0)));
+}
+
 double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges) {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {

@@ -45,6 +45,10 @@ struct EffortRows {
 /// speed per direction, and no acceleration.
 void take_mean_speeds(EffortRows& rows);
 
+/// RMS that the sensors' noise leaves on the rows that judge, or on the others, at most: two standard deviations of an
+/// RMS of so many values above `noise`.
+double most_noise(const EffortRows& rows, bool judges);
+
 /// RMS of one value per row, over validation rows or training rows.
 double root_mean_square(const EffortRows& rows, const Eigen::VectorXd& values, bool judges);
 

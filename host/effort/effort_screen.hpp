@@ -36,8 +36,8 @@ struct EffortScreen {
 
   bool empty() const { return rows.size() == 0; }
   const ScreenedModel& best() const { return chosen.empty() ? base : chosen.back(); }
-  /// Whether the sensors' noise alone leaves as much as the best model does on the rows that judge.
-  bool leaves_noise() const { return best().validate * effort_validate <= rows.noise; }
+  /// Whether the sensors' noise alone may leave as much as the best model does on the rows that judge.
+  bool leaves_noise() const { return best().validate * effort_validate <= most_noise(rows, true); }
 };
 
 /// Chooses up to `most_effects`, without the kinds in `absent`. Empty if the records hold no torque or force, hardly
