@@ -135,10 +135,13 @@ bool goes_further(const Diagnosis& by_effort, const Diagnosis& by_motion) {
          holds_all(known, by_motion.verdict.effects);
 }
 
-/// One diagnosis from the regression's effects and the further ones of the motion, by the motion's errors.
+/// One diagnosis from the regression's effects and the further ones of the motion, by the motion's errors. What the
+/// regression cannot tell apart stays a group.
 Diagnosis together(const sim::DriveDescription& given, Diagnosis by_effort, Diagnosis further) {
   const auto put_first = [](auto& list, const auto& first) { list.insert(list.begin(), first.begin(), first.end()); };
-  const std::vector<std::string> known = by_effort.verdict.effects;
+  const DiagnosisVerdict& first = by_effort.verdict;
+  const bool is_tied = first.status == Status::ambiguous;
+  const std::vector<std::string> known = is_tied ? std::vector{first.effects.front()} : first.effects;
   further.base = std::move(by_effort.base);
   const sim::Drive base(further.base), as_given(given);
   further.given_train = error_of(as_given, further.training).combined;
@@ -149,10 +152,10 @@ Diagnosis together(const sim::DriveDescription& given, Diagnosis by_effort, Diag
     put_first(candidate.kinds, known);
     candidate.before = further.before_validate;
   }
-  put_first(further.verdict.effects, known);
-  put_first(further.verdict.alternatives, by_effort.verdict.alternatives);
+  if (!is_tied) put_first(further.verdict.effects, known);
+  put_first(further.verdict.alternatives, first.alternatives);
+  further.verdict.explanation = first.explanation + " Beyond that: " + further.verdict.explanation;
   further.verdict.parameters = std::move(by_effort.verdict.parameters);
-  further.verdict.explanation = by_effort.verdict.explanation + " Beyond that: " + further.verdict.explanation;
   return further;
 }
 
@@ -216,7 +219,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
                                    : goes_beyond(*over_long_windows, *screen) ||
                                          explains_what_the_balance_does_not(*over_long_windows, *diagnosis);
       if (is_better) return *std::move(over_long_windows);
-      if (!tells || diagnosis->verdict.status != Status::missing) return *std::move(diagnosis);
+      if (!tells) return *std::move(diagnosis);
       PreparedSets on_top = split;
       on_top.base = diagnosis->best;
       Diagnosis further = search(with_base_fitted(std::move(on_top)), diagnosis->best);
