@@ -190,7 +190,7 @@ class Search {
     for (const NextEffect& other : next.effects)
       if (other.term.kind == spring.term.kind) spring.others.push_back(other.term);
     ScreenedModel fitted;
-    if (!with_closest(spring, fitted)) return;
+    if (contains(excluded_, spring.term.kind) || !with_closest(spring, fitted)) return;
     const std::string narrow = spring.term.kind;
     give_place(next, wide, std::move(spring));
     fitted.probability = effect_of(next, narrow).probability;
