@@ -101,16 +101,14 @@ void follow_bristles(const Bristles& bristles, double inertia, DriveMotion& moti
   const double g = contact.dry(side, speed).effort;
   if (g <= 0.0) return;
   const double settled = g / bristles.stiffness;
-  if (w != 0.0) {
-    const double end = w > 0.0 ? settled : -settled;
-    motion.bristle = end + (motion.bristle - end) * decay(speed / settled * duration_s);
-  }
+  const double left = decay(speed / settled * duration_s);  // of what it was off before this step
+  if (w != 0.0) motion.bristle = sign * settled + (motion.bristle - sign * settled) * left;
   const double viscous = sign * contact.viscous(side, speed).effort;
   const double carried = (contact_effort - viscous - bristles.damping * w) / bristles.stiffness;
   // What was wrong at rest fades with the travel; the less is left of it, the more the noise of the acceleration would
   // spoil. Kalman's gain goes with the square.
   if (w == 0.0) motion.bristle_doubt = 1.0;
-  motion.bristle_doubt *= decay(speed / settled * duration_s);
+  motion.bristle_doubt *= left;
   const double rate = motion.bristle_doubt * motion.bristle_doubt * std::sqrt(bristles.stiffness / inertia);
   motion.bristle += (carried - motion.bristle) * (1.0 - decay(rate * duration_s));
   motion.bristle = std::clamp(motion.bristle, -settled, settled);
