@@ -171,14 +171,29 @@ bool acts_late(const sim::EffectInfo& effect) {
   return drive.delay_s > 0.0 || drive.current_lag_s > 0.0;
 }
 
+using Timed = std::shared_ptr<const std::vector<Record>>;
+
+/// `timed`: the records that the diagnosis refers to where these are not the measured ones.
 Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurements& measured, const ShareDone& progress,
-                           const Diagnosis* before, const std::vector<std::string>& absent) {
+                           const Diagnosis* before, const std::vector<std::string>& absent, Timed& timed) {
   if (progress) progress(0.01);
   const sim::DriveDescription model = with_measured_sensors(given, measured);
-  const std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
+  std::vector<const Record*> training = measured.training_records(), validation = measured.validation_records();
   const bool by_short_windows = before != nullptr && before->rough;
-  PreparedSets split = by_short_windows ? PreparedSets{} : split_sets(model, training, validation);
-  split.absent = absent;
+  PreparedSets split;
+  const auto prepare = [&] {
+    if (!by_short_windows) split = split_sets(model, training, validation);
+    split.absent = absent;
+  };
+  const auto time_beside = [&](const sim::DriveDescription& known) {
+    if (!is_timing_estimated(measured.all_records())) return;
+    timed = std::make_shared<const std::vector<Record>>(timed_beside(known, measured.all_records()));
+    for (std::size_t k = 0; k < timed->size(); ++k)
+      (k < training.size() ? training[k] : validation[k - training.size()]) = &(*timed)[k];
+    prepare();
+  };
+  prepare();
+  if (before != nullptr) time_beside(given);
   const FigureRows rows = before != nullptr ? before->rows : figure_rows(given, measured, &split);
   std::shared_ptr<const EffortScreen> screen;
   const auto search = [&](PreparedSets sets, const sim::DriveDescription& from) {
@@ -188,13 +203,17 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     result.screen = screen;
     return result;
   };
-  const auto by_effort = [&](bool rough) {
-    std::optional<Diagnosis> diagnosis = diagnose_by_effort(model, split, screen, rough);
-    if (diagnosis) {
-      diagnosis->log = measured.log();
-      diagnosis->rows = rows;
-    }
-    if (diagnosis && progress) progress(1.0);
+  // Empty where the search by motion decides. `rough`: that has shown that it is not to judge.
+  const auto by_effort = [&](bool rough) -> std::optional<Diagnosis> {
+    if (!split.moves_enough || (!has_linear_form(model) && !rough)) return {};
+    const std::shared_ptr<const EffortScreen> seen = screen_of(model, split);
+    if (!seen->empty()) screen = seen;
+    if (seen->chosen.empty() && !effort_decides(*seen, split.validation)) return {};
+    if (!seen->chosen.empty()) time_beside(seen->best().model);
+    Diagnosis diagnosis = diagnosis_of(model, split, seen);
+    diagnosis.log = measured.log();
+    diagnosis.rows = rows;
+    if (progress) progress(1.0);
     return diagnosis;
   };
   std::optional<Diagnosis> over_long_windows, only_in_the_effort;
@@ -271,7 +290,9 @@ Diagnosis diagnose(const sim::DriveDescription& given, const Measurements& measu
   const std::shared_ptr<const TableStudy> table =
       before != nullptr ? before->table : std::make_shared<TableStudy>(study_table(given, measured.all_records()));
   const std::vector<std::string> absent = without_excluded(known_absent, measured, table.get());
-  Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent);
+  Timed timed;
+  Diagnosis diagnosis = diagnose_records(given, measured, progress, before, absent, timed);
+  diagnosis.timed = std::move(timed);
   diagnosis.table = table;
   take_figures(given, diagnosis);
   if (!diagnosis.moves_enough) return diagnosis;

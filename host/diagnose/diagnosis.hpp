@@ -97,10 +97,11 @@ struct Diagnosis : PreparedSets {
   std::vector<JudgedCandidate> candidates;  ///< best first
   std::vector<std::string> not_searched;    ///< kinds of which a fit ended at its budget, not at its best
   DiagnosisVerdict verdict;
-  sim::DriveDescription best;                  ///< with the effects of the verdict; the base where there are none
-  std::shared_ptr<const EffortScreen> screen;  ///< what plain least squares of the effort saw; may be absent
-  std::shared_ptr<const TableStudy> table;     ///< what a sensor on the table shows; empty where there is none
-  bool by_effort = false;                      ///< that decided: errors are then of the effort over its sensors' noise
+  sim::DriveDescription best;                        ///< with the effects of the verdict; the base where there are none
+  std::shared_ptr<const EffortScreen> screen;        ///< what plain least squares of the effort saw; may be absent
+  std::shared_ptr<const std::vector<Record>> timed;  ///< the records of the sets, timed beside what was found
+  std::shared_ptr<const TableStudy> table;           ///< what a sensor on the table shows; empty where there is none
+  bool by_effort = false;  ///< that decided: errors are then of the effort over its sensors' noise
 
   /// Whether candidates were compared by the error that compare prints.
   bool judged_as_compared() const { return measure == Measure::motion && window_s == kWindow_s; }

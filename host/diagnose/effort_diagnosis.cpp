@@ -185,17 +185,12 @@ std::shared_ptr<const EffortScreen> screen_of(const sim::DriveDescription& model
 
 }  // namespace
 
-std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& model, const PreparedSets& sets) {
-  return screen_of(model, sets, 1);
+std::shared_ptr<const EffortScreen> screen_of(const sim::DriveDescription& model, const PreparedSets& sets) {
+  return screen_of(model, sets, kMostEffects);
 }
 
-std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
-                                            std::shared_ptr<const EffortScreen>& seen, bool rough) {
-  if (!sets.moves_enough || (!has_linear_form(model) && !rough)) return {};
-  std::shared_ptr<const EffortScreen> screen = screen_of(model, sets, kMostEffects);
-  if (!screen->empty()) seen = screen;
-  if (screen->chosen.empty() && !effort_decides(*screen, sets.validation)) return {};
-  return diagnosis_of(model, sets, std::move(screen));
+std::shared_ptr<const EffortScreen> first_step_of(const sim::DriveDescription& model, const PreparedSets& sets) {
+  return screen_of(model, sets, 1);
 }
 
 Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& sets,

@@ -21,13 +21,10 @@ JudgedCandidate judged_by_effort(const EffortScreen& screen, const ScreenedModel
 /// best model's residual is far above sensor noise.
 bool effort_decides(const EffortScreen& screen, const RecordSet& validation);
 
-/// The diagnosis by regression, or nothing if the search by motion decides; `screen` is then the regression's result,
-/// if any. `sets`: of these records, split_sets() of the model. `rough`: the search by motion has shown that it is not
-/// to judge. Throws as prepare_sets() does.
-std::optional<Diagnosis> diagnose_by_effort(const sim::DriveDescription& model, const PreparedSets& sets,
-                                            std::shared_ptr<const EffortScreen>& screen, bool rough = false);
+/// The regression on sets that move enough, up to the number of effects that a diagnosis names.
+std::shared_ptr<const EffortScreen> screen_of(const sim::DriveDescription& model, const PreparedSets& sets);
 
-/// The diagnosis by a regression that saw something, whoever decides.
+/// The diagnosis by a regression that saw something, whoever decides. `sets`: of the same records.
 Diagnosis diagnosis_of(const sim::DriveDescription& model, const PreparedSets& sets,
                        std::shared_ptr<const EffortScreen> screen);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/evidence/measured_sensors.hpp"
+#include "host/identify/effort_timing.hpp"
 
 namespace host {
 
@@ -29,7 +30,14 @@ nlohmann::json to_json(const ErrorOnSets& error) {
 
 ErrorOnSets FigureRows::error_of(sim::DriveDescription model) const {
   model.data = data;
-  return {error_figures(model, train), error_figures(model, validate)};
+  const auto error_on = [&](std::vector<FigureRecord> rows) {
+    std::vector<const Record*> records;
+    for (const FigureRecord& one : rows) records.push_back(one.record);
+    const std::vector<Record> timed = timed_beside(model, records);
+    for (std::size_t k = 0; k < rows.size(); ++k) rows[k].record = &timed[k];
+    return error_figures(model, rows);
+  };
+  return {error_on(train), error_on(validate)};
 }
 
 FigureRows figure_rows(const sim::DriveDescription& given, const Measurements& measured, const PreparedSets* split) {

@@ -21,7 +21,8 @@ struct FigureRows {
   std::vector<FigureRecord> train, validate;
   sim::DataSheet data;  ///< as it was given, without what the records show of the sensors
 
-  /// Throws as figure_set() does.
+  /// Of each set as compare tells it: with the time at which a logged current acts estimated beside the model. Throws
+  /// as figure_set() does.
   ErrorOnSets error_of(sim::DriveDescription model) const;
 };
 

@@ -9,6 +9,7 @@
 #include "host/diagnose/claim.hpp"
 #include "host/diagnose/model_fit.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/effort/second_mass_terms.hpp"
 #include "sim/catalogue.hpp"
 
 namespace host {
@@ -126,6 +127,32 @@ std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::ve
   return found;
 }
 
+/// Replaces gaps that the encoder does not show by the spring behind them, unless a spring is no candidate. Of two
+/// candidates with the same effects, the better remains.
+void close_unseen_gaps(std::vector<Candidate>& candidates, const PreparedSets& sets) {
+  if (std::ranges::find(sets.absent, "compliance") != sets.absent.end()) return;
+  bool closed = false;
+  for (Candidate& candidate : candidates) {
+    sim::DriveDescription model = candidate.model;
+    sim::EffectEntry* gap = model.find("backlash");
+    if (gap == nullptr || gap->at("gap") >= least_gap(model.data)) continue;
+    gap->kind = "compliance";
+    gap->parameters.erase("gap");
+    std::ranges::replace(candidate.kinds, "backlash", "compliance");
+    candidate = judged(candidate.kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base, sets.training,
+                       sets.validation);
+    closed = true;
+  }
+  if (!closed) return;
+  std::ranges::stable_sort(candidates, {}, &Candidate::left);
+  std::vector<Candidate> best;
+  for (Candidate& candidate : candidates)
+    if (std::ranges::none_of(
+            best, [&](const Candidate& other) { return std::ranges::is_permutation(other.kinds, candidate.kinds); }))
+      best.push_back(std::move(candidate));
+  candidates = std::move(best);
+}
+
 }  // namespace
 
 Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEffort effort) {
@@ -133,8 +160,10 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   std::vector<std::string> excluded = sets.absent;
   effort.absent = &excluded;
   const auto on_top_of = [&](const Candidate& first, double from, double to) {
-    return search_candidates(first.model, first.kinds, sets.training, sets.validation, part_of(progress, from, to),
-                             effort);
+    std::vector<Candidate> further = search_candidates(first.model, first.kinds, sets.training, sets.validation,
+                                                       part_of(progress, from, to), effort);
+    close_unseen_gaps(further, sets);
+    return further;
   };
   const auto renew = [&sets](const sim::DriveDescription& model) {
     renew_floors(sets.training, model);
@@ -143,6 +172,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto search_singles = [&](double from, double to) {
     found.singles =
         search_candidates(sets.base, {}, sets.training, sets.validation, part_of(progress, from, to), effort);
+    close_unseen_gaps(found.singles, sets);
     if (!found.singles.empty()) renew(found.singles.front().model);
   };
   search_singles(0.0, 0.4);
@@ -163,6 +193,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   renew(pair->model);
   Candidate best_pair = *pair;
   std::vector<Candidate> exchanged = with_first_exchanged(best_pair, found.singles, sets);
+  close_unseen_gaps(exchanged, sets);
   for (const Candidate& other : exchanged)
     if (cost(other) < cost(best_pair)) best_pair = other;
   std::ranges::move(exchanged, std::back_inserter(found.pairs));

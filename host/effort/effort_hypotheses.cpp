@@ -31,8 +31,6 @@ constexpr double kTails[] = {0.3, 1.0, 5.0, 25.0};
 constexpr Index kTailCount = 4;
 /// Prior deviation of a base parameter: some three times its least-squares value.
 constexpr double kBaseKnownTo = 3.0;
-/// Time within a row at which a measured current acts, in samples (the base's own shift is already removed).
-constexpr double kInstantKnownTo = 0.25;
 /// Kinds whose approximate evidence is this many nats behind the best are not fitted: e^-30 does not change the odds.
 constexpr double kOutOfReach = 30.0;
 constexpr std::size_t kFormsFitted = 6;  // of each ranking
@@ -119,15 +117,19 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
   std::vector<double> deviations;
   const double size = rms(thin_.rows.effort);
   MatrixXd all(rows_count, 0);
+  std::vector<double> known;
   for (const EffortTerm& term : base) {
     if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // inertia at steady speeds
     all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
     all.rightCols(term.columns.cols()) = thin_.of(term.columns);
+    known.resize(static_cast<std::size_t>(all.cols()), term.deviation);
   }
   const VectorXd factors = least_norm_solution(all, thin_.rows.effort);
   for (Index c = 0; c < all.cols(); ++c)
-    deviations.push_back(kBaseKnownTo *
-                         std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));
+    deviations.push_back(known[static_cast<std::size_t>(c)] > 0.0
+                             ? known[static_cast<std::size_t>(c)]
+                             : kBaseKnownTo *
+                                   std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));
   base_.columns = all;
   base_.deviations = Eigen::Map<const VectorXd>(deviations.data(), static_cast<Index>(deviations.size()));
 }
@@ -156,12 +158,7 @@ NextEffects EffortHypotheses::next(const std::vector<EffortTerm>& chosen, const 
   for (const EffortTerm& term : chosen)
     if (held.find(term.kind) == nullptr) held.effects.push_back({term.kind, {}, {}, {}});
   const std::vector<EffortTerm> terms = shaped_terms(held, rows_, explained);
-  Known known = known_with(chosen);
-  // The time at which the torque or force acts is uncertain by a part of a sample: a nuisance parameter, unless the
-  // candidate is a delay.
-  for (const EffortTerm& term : terms)
-    if (term.kind == "input_delay" && rows_.unknown_instant_s > 0.0)
-      known.add(thin_.of(term.columns.col(0)), kInstantKnownTo * rows_.unknown_instant_s);
+  const Known known = known_with(chosen);
   NextEffects found;
   found.fit = evidence_.fit(known.columns, known.deviations);
   constexpr int kAgain = 3;  // the fixed point of the sizes may be slow

@@ -100,6 +100,7 @@ double EffortRegression::confidence(const ScreenedModel& before, const ScreenedM
 EffortRegression::Prior EffortRegression::belief_of(std::size_t index, const std::vector<EffortTerm>& base) const {
   /// A data sheet value without a deviation has a prior deviation of half the value.
   constexpr double kBelief = 0.5;
+  if (base[index].deviation > 0.0) return {0.0, base[index].deviation, false};
   const std::string& kind = base[index].kind;
   const sim::EffectEntry* entry = model_.find(kind);
   const char* id = kind == "inertia" ? "J" : kind == "viscous" ? "B" : nullptr;

@@ -7,6 +7,7 @@
 #include "host/dense_solutions.hpp"
 #include "host/effort/effort_terms.hpp"
 #include "host/exit_codes.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/encoder_step.hpp"
 #include "host/identify/motion.hpp"
 #include "host/identify/smooth_acceleration.hpp"
@@ -63,7 +64,7 @@ struct Builder {
   const sim::Drive* path;  ///< command path of the effects that the model has
   bool by_speed;
   double inertia;
-  std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(5);
+  std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(6);
   EffortRows rows{};
   double noise = 0.0;
   std::size_t blocks = 0;
@@ -85,6 +86,10 @@ struct Builder {
     const std::vector<double> travel =
         record.has_position() ? low_pass(record.x) : std::vector<double>(record.size(), 0.0);
     const std::vector<double> effort = delivered_effort(record, model.data, signals.cutoff_Hz, true, path).effort;
+    const double timing_deviation = effort_timing_of(record).deviation;
+    const bool is_timed = timing_deviation == 0.0;
+    rows.timing_deviation = std::max(rows.timing_deviation, timing_deviation);
+    rows.commanded = rows.commanded && !record.u_V.empty();
     signals.motion = record.has_position() ? travel : speed;
     signals.speed = speed;
     signals.acceleration = smooth_acceleration(record, model.data, signals.cutoff_Hz, by_speed, speed);
@@ -106,8 +111,9 @@ struct Builder {
       for (std::size_t k = window.begin + 1; k <= window.begin + window.length; ++k) {
         if (k % stride != 0 || k < reach || k + reach >= speed.size() || run[k + reach] <= 2 * reach) continue;
         signals.kept.push_back(k);
-        const double values[] = {record.t_s[k], travel[k], speed[k], signals.acceleration[k], effort[k]};
-        for (std::size_t c = 0; c < 5; ++c) columns[c].push_back(values[c]);
+        const double change = is_timed ? 0.0 : 0.5 * (effort[k + 1] - effort[k - 1]);
+        const double values[] = {record.t_s[k], travel[k], speed[k], signals.acceleration[k], effort[k], change};
+        for (std::size_t c = 0; c < 6; ++c) columns[c].push_back(values[c]);
         rows.judges.push_back(judges);
         rows.record.push_back(rows.signals.size());
         if (in_block++ % rows_a_block == 0) ++blocks;
@@ -124,8 +130,9 @@ struct Builder {
   }
 
   EffortRows finish() {
-    Eigen::VectorXd* const targets[] = {&rows.t_s, &rows.x, &rows.w, &rows.acceleration, &rows.effort};
-    for (std::size_t c = 0; c < 5; ++c)
+    Eigen::VectorXd* const targets[] = {&rows.t_s,          &rows.x,      &rows.w,
+                                        &rows.acceleration, &rows.effort, &rows.effort_per_sample};
+    for (std::size_t c = 0; c < 6; ++c)
       *targets[c] = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), static_cast<Eigen::Index>(columns[c].size()));
     rows.by_speed = by_speed;
     if (!columns[0].empty()) rows.noise = std::sqrt(noise / static_cast<double>(columns[0].size()));
@@ -160,8 +167,6 @@ EffortRows built(const sim::DriveDescription& model, bool by_speed, const Record
       EffortRows rows = builder.finish();
       rows.first_stamp_s = first_stamp_s(training);
       rows.lead = model.data.lead;
-      for (const EffortSignals& signals : rows.signals)
-        if (signals.record->u_V.empty()) rows.unknown_instant_s = std::max(rows.unknown_instant_s, signals.period_s);
       return rows;
     }
     stride *= 1 + builder.columns[0].size() / most_rows;
@@ -263,7 +268,8 @@ ThinnedRows thinned(const EffortRows& rows, std::size_t stride) {
     thin.rows.block.push_back(rows.block[row]);
     thin.rows.record.push_back(rows.record[row]);
   }
-  for (auto* values : {&thin.rows.t_s, &thin.rows.x, &thin.rows.w, &thin.rows.acceleration, &thin.rows.effort})
+  for (auto* values : {&thin.rows.t_s, &thin.rows.x, &thin.rows.w, &thin.rows.acceleration, &thin.rows.effort,
+                       &thin.rows.effort_per_sample})
     *values = thin.of(*values);
   return thin;
 }
@@ -291,6 +297,7 @@ void take_mean_speeds(EffortRows& rows) {
     each([&](Eigen::Index k, std::size_t r) { rows.w(k) = sums[r] / counts[r]; });
   }
   rows.acceleration.setZero();
+  rows.effort_per_sample.setZero();
 }
 
 }  // namespace host

@@ -23,6 +23,9 @@ struct EffortSignals {
 /// All records after one another; one element a row. Speeds in rad/s or m/s, travel in mm or m, effort in Nm or N.
 struct EffortRows {
   Eigen::VectorXd t_s, x, w, acceleration, effort;
+  /// Change of the torque or force from one sample to the next, Nm or N: what one sample in the time at which a logged
+  /// current acts adds. 0 in records where that time is known.
+  Eigen::VectorXd effort_per_sample;
   std::vector<bool> judges;         ///< a row of the validation set
   std::vector<std::size_t> block;   ///< half a second of one record, whose rows are correlated
   std::vector<std::size_t> record;  ///< ascending from 0; a record in both sets counts twice
@@ -31,12 +34,11 @@ struct EffortRows {
   bool has_position = false;  ///< in every record
   bool steady = true;         ///< the speed hardly changes within the records, so that inertia cannot be identified
   double lowest_cutoff_Hz = 0.0;
-  double lead = 1.0;  ///< travel of one radian, mm; 1 of a linear drive
-  /// The longest sampling period of records with a measured torque or current, whose time within a row is unknown. A
-  /// command acts from its row on.
-  double unknown_instant_s = 0.0;
-  double first_stamp_s = 0.0;  ///< of the training records
-  double noise = 0.0;          ///< RMS torque or force due to sensor noise through the model's inertia, Nm or N
+  double lead = 1.0;              ///< travel of one radian, mm; 1 of a linear drive
+  bool commanded = true;          ///< by the logged command in every record, not by a measured torque or current
+  double timing_deviation = 0.0;  ///< of the time at which a logged current acts, samples; 0 if it is known
+  double first_stamp_s = 0.0;     ///< of the training records
+  double noise = 0.0;             ///< RMS torque or force due to sensor noise through the model's inertia, Nm or N
 
   std::size_t size() const { return judges.size(); }
 };

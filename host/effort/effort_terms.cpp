@@ -6,6 +6,7 @@
 
 #include "host/effort/effort_waves.hpp"
 #include "host/evidence/coming_back.hpp"
+#include "host/identify/effort_timing.hpp"
 #include "host/identify/inverse_model.hpp"
 #include "host/identify/motion.hpp"
 #include "sim/catalogue.hpp"
@@ -59,12 +60,15 @@ EffortTerm simple(std::string kind, const VectorXd& column, int sign,
           {}};
 }
 
-/// Friction that falls with speed: the part above the Coulomb level, by direction if the model has two levels.
-EffortTerm stribeck_term(const sim::DriveDescription& model, const EffortRows& rows, double fading) {
+/// Friction that falls with speed: the part above the Coulomb level, `by_direction` if the model has two levels.
+EffortTerm stribeck_term(bool by_direction, const EffortRows& rows, double fading) {
   const VectorXd shape = (-rows.w.array().abs() / fading).exp();
-  const sim::EffectEntry* coulomb = model.find("coulomb");
   EffortTerm term{"stribeck", {}, {}, {}, {}};
-  if (coulomb != nullptr && coulomb->has("positive")) {
+  term.neighbours = [by_direction, &rows, fading](double part) {
+    return std::vector<EffortTerm>{stribeck_term(by_direction, rows, fading * (1.0 + part)),
+                                   stribeck_term(by_direction, rows, fading * (1.0 - part))};
+  };
+  if (by_direction) {
     term.columns.resize(rows.w.size(), 2);
     term.columns.col(0) = (rows.w.array() > 0.0).select(shape, 0.0);
     term.columns.col(1) = (rows.w.array() > 0.0).select(VectorXd::Zero(rows.w.size()), -shape);
@@ -188,20 +192,30 @@ std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const Eff
                 ? wave_columns(rows, VectorXd::Constant(rows.w.size(), -1.0), {entry.at("period"), orders[n]})
                 : encoder_error_columns(model, rows, {entry.at("period"), orders[n]});
       const auto index = static_cast<std::size_t>(&entry - model.effects.data());
-      EffortTerm term{
-          entry.kind,
-          columns,
-          std::vector<int>(2 * orders.size(), 0),
-          [orders, index](const VectorXd& factors, sim::DriveDescription& fitted) {
-            std::vector<sim::HarmonicTerm> found;
-            for (std::size_t n = 0; n < orders.size(); ++n)
-              found.push_back({orders[n], factors(2 * static_cast<Index>(n)), factors(2 * static_cast<Index>(n) + 1)});
-            sim::set_harmonics(fitted.effects[index], found);
-            return true;
-          },
-          {}};
+      EffortTerm term{entry.kind,
+                      columns,
+                      std::vector<int>(2 * orders.size(), 0),
+                      [orders, index, &model](const VectorXd& factors, sim::DriveDescription& fitted) {
+                        const double unit =
+                            model.effects[index].kind == "cogging" ? 1.0 : encoder_error_unit(model, fitted);
+                        std::vector<sim::HarmonicTerm> found;
+                        for (std::size_t n = 0; n < orders.size(); ++n)
+                          found.push_back({orders[n], factors(2 * static_cast<Index>(n)) / unit,
+                                           factors(2 * static_cast<Index>(n) + 1) / unit});
+                        sim::set_harmonics(fitted.effects[index], found);
+                        return true;
+                      },
+                      {}};
       terms.push_back(std::move(term));
     }
+  }
+  if (rows.timing_deviation > 0.0) {
+    // What was found beside inertia and friction may be biased by all that is missing, and is no prior. Where nothing
+    // was found, a part of a sample: more is a delay, which is an effect.
+    constexpr double kPart = 0.25;
+    EffortTerm timing{"effort_timing", rows.effort_per_sample, {0}, [](const VectorXd&, auto&) { return true; }, {}};
+    timing.deviation = rows.timing_deviation < kBelievedTiming.deviation ? kBelievedTiming.deviation : kPart;
+    terms.push_back(std::move(timing));
   }
   return terms;
 }
@@ -281,15 +295,16 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
   if (may_have("nonlinear_viscous"))
     for (const double part : {0.05, 0.08, 0.12, 0.2, 0.4}) {
       const double saturation = part * top;
-      const int flattening = may_have("stribeck") ? 1 : 0;  // the name of friction that falls with speed
+      // Flattening: friction that falls with speed is Stribeck friction.
       terms.push_back(simple(
-          "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), flattening,
+          "nonlinear_viscous", -direction.array() * (-speed.array() / saturation).exp(), 1,
           [saturation](double coefficient, sim::DriveDescription& fitted) {
             return append(fitted, "nonlinear_viscous", {{"coefficient", coefficient}, {"saturation", saturation}});
           }));
     }
   if (may_have("stribeck") && coulomb != nullptr)
-    for (const double part : {0.02, 0.05, 0.08, 0.12, 0.2}) terms.push_back(stribeck_term(model, rows, part * top));
+    for (const double part : {0.02, 0.05, 0.08, 0.12, 0.2})
+      terms.push_back(stribeck_term(coulomb->has("positive"), rows, part * top));
   if (may_have("load_dependent_friction"))
     terms.push_back(simple("load_dependent_friction", direction.cwiseProduct(explained.cwiseAbs()), 1,
                            [](double share, sim::DriveDescription& fitted) {
@@ -300,9 +315,8 @@ std::vector<EffortTerm> shaped_terms(const sim::DriveDescription& model, const E
                            [](double width, sim::DriveDescription& fitted) {
                              return append(fitted, "dac_dead_zone", {{"width", width}});
                            }));
-  const bool commanded = rows.unknown_instant_s == 0.0;
   // At steady speeds all rows have the mean speed, to which a command that is cut to a constant fits best.
-  if (commanded && !rows.steady && may_have("current_saturation") && may_have("voltage_limit")) {
+  if (rows.commanded && !rows.steady && may_have("current_saturation") && may_have("voltage_limit")) {
     const double most = rows.effort.cwiseAbs().maxCoeff();
     for (const double part : {0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95})
       terms.push_back(current_limit_term(model, rows, part * most));

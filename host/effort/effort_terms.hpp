@@ -24,6 +24,8 @@ struct EffortTerm {
   /// The effect of another kind that this form cannot be told from: of a gap that the encoder hardly resolves, the
   /// spring behind it. Empty for most. Refers to the rows.
   std::function<EffortTerm()> contained{};
+  /// Prior standard deviation of the factors about 0; 0 if nothing is known of them.
+  double deviation = 0.0;
   /// RMS of the torque or force that acts with this effect, over that of the logged one. The residual is expressed in
   /// this unit: where nothing acts, nothing remains to be explained.
   double acting = 1.0;
@@ -35,7 +37,8 @@ std::vector<const EffortTerm*> pointers_to(const std::vector<EffortTerm>& terms)
 /// Adds an effect to a model; false if a parameter exceeds the catalogue's bounds.
 bool append_within_bounds(sim::DriveDescription& model, sim::EffectEntry entry);
 
-/// The base: inertia, viscous and Coulomb friction in the model's form, and its further effects with a linear form.
+/// The base: inertia, viscous and Coulomb friction in the model's form, its further effects with a linear form, and the
+/// time at which a logged current acts, which is no part of the model.
 std::vector<EffortTerm> base_terms(const sim::DriveDescription& model, const EffortRows& rows);
 
 /// Whether base_terms() represents the whole model.

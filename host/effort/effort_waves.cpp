@@ -131,12 +131,17 @@ MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortR
   return columns;
 }
 
+double encoder_error_unit(const sim::DriveDescription& given, const sim::DriveDescription& fitted) {
+  const sim::EffectEntry *before = given.find("inertia"), *after = fitted.find("inertia");
+  return before == nullptr || after == nullptr ? 1.0 : after->at("J") / before->at("J");
+}
+
 EffortTerm wave_term(const sim::DriveDescription& model, const EffortRows& rows, const std::string& kind,
                      const WaveColumns& columns_of, const Wave& wave) {
   EffortTerm term{kind, columns_of(wave), {0, 0}, {}, {}};
-  term.write = [kind, wave](const VectorXd& factors, sim::DriveDescription& fitted) {
+  term.write = [kind, wave, &model](const VectorXd& factors, sim::DriveDescription& fitted) {
     const double unit = kind == "position_dependent_friction" ? coulomb_level(fitted)
-                        : kind == "encoder_cyclic_error"      ? 1.0
+                        : kind == "encoder_cyclic_error"      ? encoder_error_unit(model, fitted)
                                                               : -1.0;
     return unit != 0.0 && write_wave(kind, wave, factors(0) / unit, factors(1) / unit, fitted);
   };

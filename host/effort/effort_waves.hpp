@@ -43,6 +43,10 @@ Eigen::MatrixXd varying_inertia_columns(const EffortRows& rows, const Wave& wave
 /// or m; by the model's inertia and viscous friction.
 Eigen::MatrixXd encoder_error_columns(const sim::DriveDescription& model, const EffortRows& rows, const Wave& wave);
 
+/// By what their factors are divided for an error in mm or m: the columns are of the given inertia, and the error acts
+/// on the fitted one.
+double encoder_error_unit(const sim::DriveDescription& given, const sim::DriveDescription& fitted);
+
 using WaveColumns = std::function<Eigen::MatrixXd(const Wave&)>;
 
 /// A periodic effect of one wave, with its columns at every row. A model that has an entry of that kind and period gets

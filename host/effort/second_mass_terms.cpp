@@ -142,6 +142,11 @@ EffortTerm term_of(const EffortRows& rows, const Load& load, const char* unit) {
 
 }  // namespace
 
+double least_gap(const sim::DataSheet& data) {
+  constexpr double kFewCounts = 4.0;
+  return kFewCounts * data.encoder_resolution;
+}
+
 std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows,
                                           const std::vector<std::string>& absent) {
   const auto may_be = [&](const char* kind) { return std::ranges::find(absent, kind) == absent.end(); };
@@ -169,9 +174,9 @@ std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, co
   // known to a count tells when.
   if (rows.has_position && may_be("backlash")) {
     const sim::ParameterInfo& gap = *sim::find_effect("backlash")->parameter("gap");
-    constexpr double kFewCounts = 4.0, kOfTravel = 0.05;
+    constexpr double kOfTravel = 0.05;
     const double most = std::min(gap.upper, kOfTravel * (rows.x.maxCoeff() - rows.x.minCoeff()));
-    const double least = kFewCounts * model.data.encoder_resolution;
+    const double least = least_gap(model.data);
     for (double free = least; free > 0.0 && free <= most; free *= kGapStep)
       for (const double resonance_Hz : {0.5 * highest_Hz, highest_Hz, kBeyond * highest_Hz})
         for (const double damping : {0.3, 0.6})

@@ -15,4 +15,7 @@ namespace host {
 std::vector<EffortTerm> second_mass_terms(const sim::DriveDescription& model, const EffortRows& rows,
                                           const std::vector<std::string>& absent);
 
+/// The narrowest gap that an encoder shows, mm or m: four of its counts. A narrower one is the spring behind it.
+double least_gap(const sim::DataSheet& data);
+
 }  // namespace host

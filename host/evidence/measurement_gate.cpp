@@ -228,8 +228,10 @@ Measurements MeasurementGate::admit(std::vector<Record> training, std::vector<Re
   compare_roles(training, validation, faults);
   if (!any_stops(faults)) {
     share_zero(training, validation, faults);
+    std::vector<Record*> all;
     for (auto* role : {&training, &validation})
-      for (Record& record : *role) settle_effort_timing(record, drive_.data);
+      for (Record& record : *role) all.push_back(&record);
+    settle_effort_timing(all, drive_);
   }
   std::string fatal;
   for (LogFault& fault : faults) {

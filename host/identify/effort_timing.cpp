@@ -11,16 +11,21 @@
 
 #include "host/exit_codes.hpp"
 #include "host/identify/encoder_step.hpp"
+#include "host/identify/inverse_model.hpp"
 #include "host/identify/least_squares.hpp"
 #include "host/identify/motion.hpp"
+#include "host/identify/zero_phase_filter.hpp"
 #include "host/number.hpp"
 #include "host/statistics.hpp"
+#include "sim/catalogue.hpp"
+#include "sim/drive.hpp"
 
 namespace host {
 
 namespace {
 
-constexpr const char *kSamplesKey = "effort_timing_samples", *kDeviationKey = "effort_timing_deviation";
+constexpr const char *kSamplesKey = "effort_timing_samples", *kDeviationKey = "effort_timing_deviation",
+                     *kEstimatedKey = "effort_timing_estimated";
 
 constexpr int kTravelTerms = 8;  // as beside inertia and friction elsewhere
 constexpr int kTerms = 7 + kTravelTerms;
@@ -95,19 +100,56 @@ std::optional<Step> step_of(const Motion& motion, std::vector<Terms>& terms, con
 void write_timing(Record& record, const EffortTiming& timing) {
   record.header[kSamplesKey] = fmt::format("{}", timing.samples);
   record.header[kDeviationKey] = fmt::format("{}", timing.deviation);
+  record.header[kEstimatedKey] = "1";
 }
 
-std::optional<EffortTiming> found_timing(const Record& record, const sim::DataSheet& data) {
+/// The motion of the axis itself, where the encoder errs.
+void take_off_encoder_error(const sim::Drive& drive, Motion& motion) {
+  if (drive.encoder_error.empty()) return;
+  std::vector<double> correction(motion.travel.size());
+  for (std::size_t k = 0; k < correction.size(); ++k)
+    correction[k] = drive.travel_at_reading(motion.travel[k]) - motion.travel[k];
+  correction = ZeroPhaseLowPass::butterworth(motion.cutoff_Hz, motion.sample_rate_Hz)(correction);
+  const double period_s = 1.0 / motion.sample_rate_Hz;
+  const std::vector<double> rate = central_difference(correction, period_s * drive.lead);
+  const std::vector<double> rate_of_rate = central_difference(rate, period_s);
+  for (std::size_t k = 0; k < correction.size(); ++k) {
+    motion.travel[k] += correction[k];
+    motion.speed[k] += rate[k];
+    motion.acceleration[k] += rate_of_rate[k];
+  }
+}
+
+/// What the effects besides inertia and friction need, low-passed as the motion is; empty where there are none.
+std::vector<double> further_effort(const sim::DriveDescription& model, const Motion& motion) {
+  sim::DriveDescription base = model;
+  std::erase_if(base.effects, [](const sim::EffectEntry& entry) { return !sim::find_effect(entry.kind)->base; });
+  if (base.effects.size() == model.effects.size()) return {};
+  std::vector<double> effort = inverse_effort(sim::Drive(model), motion);
+  const std::vector<double> of_base = inverse_effort(sim::Drive(base), motion);
+  for (std::size_t k = 0; k < effort.size(); ++k) effort[k] -= of_base[k];
+  return ZeroPhaseLowPass::butterworth(motion.cutoff_Hz, motion.sample_rate_Hz)(effort);
+}
+
+std::optional<EffortTiming> found_timing(const Record& record, const sim::DriveDescription& model) {
   constexpr int kMostSteps = 8;
   constexpr double kSettled = 0.002;  // samples
-  const std::optional<Motion> motion = sliding_motion(record, data);
+  const sim::DataSheet& data = model.data;
+  const sim::Drive drive(model);
+  std::optional<Motion> motion = sliding_motion(record, data);
   if (!motion) return {};
+  if (record.has_position()) take_off_encoder_error(drive, *motion);
+  const std::vector<double> further = further_effort(model, *motion);
+  const auto take_off = [&](std::vector<double>& effort) {
+    for (std::size_t k = 0; k < further.size(); ++k) effort[k] -= further[k];
+  };
   Record current;  // what the effort needs, so that only it is prepared again
   current.path = record.path;
   current.sample_period_s = record.sample_period_s;
   current.i_A = record.i_A;
   std::vector<Terms> terms = terms_of(*motion);
   std::vector<double> effort = motion->effort;
+  take_off(effort);
   double own = kBelievedTiming.samples, variance = HUGE_VAL;
   for (int step = 0; step < kMostSteps; ++step) {
     const std::optional<Step> found = step_of(*motion, terms, effort);
@@ -121,6 +163,7 @@ std::optional<EffortTiming> found_timing(const Record& record, const sim::DataSh
     effort = delivered_effort(current, data, motion->cutoff_Hz, true, nullptr).effort;
     effort.erase(effort.begin(), effort.begin() + static_cast<std::ptrdiff_t>(kMotionMargin));
     effort.resize(motion->effort.size());
+    take_off(effort);
   }
   if (std::abs(own - kBelievedTiming.samples) >= kLargestTiming) return {};
   const double prior = 1.0 / (kBelievedTiming.deviation * kBelievedTiming.deviation), information = 1.0 / variance;
@@ -128,10 +171,9 @@ std::optional<EffortTiming> found_timing(const Record& record, const sim::DataSh
                       1.0 / std::sqrt(information + prior)};
 }
 
-EffortTiming common_timing(const std::vector<const Record*>& records) {
+EffortTiming common_timing(const std::vector<EffortTiming>& timings) {
   double information = 0.0, sum = 0.0;
-  for (const Record* record : records) {
-    const EffortTiming timing = effort_timing_of(*record);
+  for (const EffortTiming& timing : timings) {
     if (timing.deviation == 0.0) return timing;  // known
     const double own = 1.0 / (timing.deviation * timing.deviation);
     information += own;
@@ -140,12 +182,10 @@ EffortTiming common_timing(const std::vector<const Record*>& records) {
   if (information == 0.0) return {};
   EffortTiming common{sum / information, 1.0 / std::sqrt(information)};
   double scatter = 0.0;  // in standard deviations, squared
-  for (const Record* record : records) {
-    const EffortTiming timing = effort_timing_of(*record);
+  for (const EffortTiming& timing : timings)
     scatter += std::pow((timing.samples - common.samples) / timing.deviation, 2);
-  }
-  if (records.size() > 1)
-    common.deviation *= std::sqrt(std::max(1.0, scatter / (static_cast<double>(records.size()) - 1.0)));
+  if (timings.size() > 1)
+    common.deviation *= std::sqrt(std::max(1.0, scatter / (static_cast<double>(timings.size()) - 1.0)));
   return common;
 }
 
@@ -194,9 +234,31 @@ HeldCurrent held_current(const Record& record) {
   return held;
 }
 
-void settle_effort_timing(Record& record, const sim::DataSheet& data) {
-  if (!record.u_V.empty() || record.i_A.empty() || record.header.contains(kSamplesKey)) return;
-  write_timing(record, found_timing(record, data).value_or(kBelievedTiming));
+void settle_effort_timing(const std::vector<Record*>& records, const sim::DriveDescription& model) {
+  std::vector<Record*> of_one_logger;
+  std::vector<EffortTiming> found;
+  for (Record* record : records) {
+    const bool stated = record->header.contains(kSamplesKey) && !record->header.contains(kEstimatedKey);
+    if (!record->u_V.empty() || record->i_A.empty() || stated) continue;
+    of_one_logger.push_back(record);
+    write_timing(*record, kBelievedTiming);
+    if (const std::optional<EffortTiming> own = found_timing(*record, model)) found.push_back(*own);
+  }
+  const EffortTiming common = found.empty() ? kBelievedTiming : common_timing(found);
+  for (Record* record : of_one_logger) write_timing(*record, common);
+}
+
+std::vector<Record> timed_beside(const sim::DriveDescription& model, const std::vector<const Record*>& records) {
+  std::vector<Record> copies;
+  for (const Record* record : records) copies.push_back(*record);
+  std::vector<Record*> pointers;
+  for (Record& copy : copies) pointers.push_back(&copy);
+  settle_effort_timing(pointers, model);
+  return copies;
+}
+
+bool is_timing_estimated(const std::vector<const Record*>& records) {
+  return std::ranges::any_of(records, [](const Record* record) { return record->header.contains(kEstimatedKey); });
 }
 
 bool timing_explains_delays(const std::vector<const Record*>& records) {
@@ -206,7 +268,11 @@ bool timing_explains_delays(const std::vector<const Record*>& records) {
 }
 
 nlohmann::json effort_timing_json(const std::vector<const Record*>& records) {
-  const EffortTiming common = common_timing(records);
+  std::vector<EffortTiming> different;
+  for (const Record* record : records)
+    if (const EffortTiming timing = effort_timing_of(*record); std::ranges::find(different, timing) == different.end())
+      different.push_back(timing);
+  const EffortTiming common = common_timing(different);
   const double half = kNormal95 * common.deviation;
   return {{"samples", common.samples}, {"ci95", {common.samples - half, common.samples + half}}};
 }

@@ -15,6 +15,8 @@ namespace host {
 struct EffortTiming {
   double samples = 0.5;
   double deviation = 0.0;
+
+  friend bool operator==(const EffortTiming&, const EffortTiming&) = default;
 };
 
 /// Prior for a logged current: held from its row on, like a command, within about a sample (loggers average over the
@@ -28,11 +30,17 @@ inline constexpr double kLargestTiming = 2.5;
 /// effort_timing_deviation:` (0 if absent); otherwise the prior.
 EffortTiming effort_timing_of(const Record& record);
 
-/// Estimates when the record's current acts and writes that to its header, unless the header states it. Fits the
+/// Estimates when the records' currents act and writes that to their headers, unless a header states it. Fits the
 /// inverse model (inertia, friction by direction with a curve over the speed, a curve over the travel) together with
-/// the time, on the samples that slide, and combines the result with the prior. Uses the prior alone if the record does
-/// not determine the time, or gives one that no logger can cause.
-void settle_effort_timing(Record& record, const sim::DataSheet& data);
+/// the time, on the samples that slide of each record, and combines the result with the prior. Effects that `model` has
+/// besides are taken off first: one that is missing may bias the time. Uses the prior alone if a record does not
+/// determine the time, or gives one that no logger can cause. One logger wrote all records: they share the weighted
+/// mean, with a deviation widened to their scatter if that is larger. A time that was estimated before is estimated
+/// again.
+void settle_effort_timing(const std::vector<Record*>& records, const sim::DriveDescription& model);
+
+/// Copies of the records with their times settled beside another model.
+std::vector<Record> timed_beside(const sim::DriveDescription& model, const std::vector<const Record*>& records);
 
 /// The current that acts, on average, from each row to the next, A. Interpolates between rows; beyond the ends the
 /// first and last row apply.
@@ -48,11 +56,14 @@ struct HeldCurrent {
 /// there the mean over the row, acting_current, would give another motion than the two currents one after the other.
 HeldCurrent held_current(const Record& record);
 
+/// Whether the time of one of them was estimated.
+bool is_timing_estimated(const std::vector<const Record*>& records);
+
 /// Whether the timing was estimated from each record, so that it contains no information on the drive.
 bool timing_explains_delays(const std::vector<const Record*>& records);
 
-/// {"samples", "ci95"} of all records together, weighted by their uncertainty; the interval is widened to their scatter
-/// if that is larger.
+/// {"samples", "ci95"} of all records together: the mean of the times that differ, weighted by their uncertainty; the
+/// interval is widened to their scatter if that is larger.
 nlohmann::json effort_timing_json(const std::vector<const Record*>& records);
 
 }  // namespace host

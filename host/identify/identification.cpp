@@ -134,13 +134,17 @@ void widen_by_timing(const std::vector<Record>& records, const std::vector<Motio
     const double half = std::hypot(one.half_width(), kNormal95 * deviation);
     one.ci95 = {one.value - half, one.value + half};
   };
-  for (std::size_t m = 0; m < motions.size(); ++m) {
-    const double deviation = effort_timing_of(records[m]).deviation;
-    if (!(deviation > 0.0)) continue;
-    std::vector<Motion> slopes = motions;  // the effort's change per sample, of this record alone
+  std::vector<EffortTiming> widened;
+  for (const Record& record : records) {
+    const EffortTiming timing = effort_timing_of(record);
+    const double deviation = timing.deviation;
+    if (!(deviation > 0.0) || std::ranges::find(widened, timing) != widened.end()) continue;
+    widened.push_back(timing);
+    std::vector<Motion> slopes = motions;  // the effort's change per sample, of the records that share this time
     for (std::size_t other = 0; other < slopes.size(); ++other)
-      slopes[other].effort =
-          other == m ? central_difference(motions[m].effort, 1.0) : std::vector<double>(motions[other].effort.size());
+      slopes[other].effort = effort_timing_of(records[other]) == timing
+                                 ? central_difference(motions[other].effort, 1.0)
+                                 : std::vector<double>(motions[other].effort.size());
     const RigidEstimate change = estimator(slopes);
     widen(estimate.inertia, deviation * change.inertia.value);
     widen(estimate.viscous, deviation * change.viscous.value);

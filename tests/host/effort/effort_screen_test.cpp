@@ -33,7 +33,11 @@ std::optional<host::Diagnosis> by_effort_of(const std::vector<const host::Record
                                             const std::vector<const host::Record*>& validate,
                                             std::shared_ptr<const host::EffortScreen>& seen) {
   const sim::DriveDescription model = motor();
-  return host::diagnose_by_effort(model, host::split_sets(model, train, validate), seen);
+  const host::PreparedSets sets = host::split_sets(model, train, validate);
+  const std::shared_ptr<const host::EffortScreen> screen = host::screen_of(model, sets);
+  if (!screen->empty()) seen = screen;
+  if (screen->chosen.empty() && !host::effort_decides(*screen, sets.validation)) return {};
+  return host::diagnosis_of(model, sets, screen);
 }
 
 // A screen that stops at one order, counts orders over a wrong period or mistakes the sign leaves more.

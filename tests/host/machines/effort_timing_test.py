@@ -73,6 +73,18 @@ class EffortTiming(logged.Log):
                 diagnosis = self.diagnosed()
                 self.assertIn(diagnosis["verdict"]["status"], ("adequate", "parameters"))
 
+    def test_an_error_of_the_encoder_does_not_move_the_instant(self) -> None:
+        # Beside inertia and friction alone it does, and what that leaves at steps of the torque looks like a spring.
+        # It moves the inertia as well, by which the error's amplitude is fitted.
+        for name, log in self.logs.items():
+            read = [(effort, x + 0.01 * math.sin(4.0 * x + 1.0)) for effort, x in log]
+            self.write(name, shifted(read, -0.25), NOISE_A)
+        self.identified()
+        diagnosis = self.diagnosed()
+        self.assertEqual(diagnosis["verdict"]["effects"], ["encoder_cyclic_error"])
+        self.assertAlmostEqual(diagnosis["effort_timing"]["samples"], HELD - 0.25, delta=0.05)
+        self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 3.0)
+
     def test_intervals_hold_the_truth(self) -> None:
         # The inertia's interval, 0.03 % wide, is narrower than what filters and differences leave of it.
         names = ["B_Nm_s_per_rad", "positive_Nm", "negative_Nm", "effort_timing"]

@@ -179,7 +179,9 @@ class LoggedMachines(Log):
             self.write(name, arm.run(follow(path, 80.0, 6.0, 15.0), 0.002, 7500), 0.02)
         self.identified()
         # A curve that flattens fits as well where it may rise towards rest, which is Stribeck friction.
-        self.assertEqual(sorted(self.diagnosed()["verdict"]["effects"]), ["cogging", "stribeck"])
+        diagnosis = self.diagnosed()
+        self.assertEqual(sorted(diagnosis["verdict"]["effects"]), ["cogging", "stribeck"])
+        self.assertLess(diagnosis["error"]["combined"]["after"]["validate"], 1.2)
 
     def test_a_vertical_axis_heavier_than_its_friction(self) -> None:
         self.sheet(0.8, 0.001, 0.004)
