@@ -186,14 +186,15 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     split.absent = absent;
   };
   const auto time_beside = [&](const sim::DriveDescription& known) {
-    if (!is_timing_estimated(measured.all_records())) return;
-    timed = std::make_shared<const std::vector<Record>>(timed_beside(known, measured.all_records()));
+    std::vector<Record> copies = timed_beside(known, measured.all_records());
+    if (copies.empty()) return false;
+    timed = std::make_shared<const std::vector<Record>>(std::move(copies));
     for (std::size_t k = 0; k < timed->size(); ++k)
       (k < training.size() ? training[k] : validation[k - training.size()]) = &(*timed)[k];
-    prepare();
+    return true;
   };
-  prepare();
   if (before != nullptr) time_beside(given);
+  prepare();
   const FigureRows rows = before != nullptr ? before->rows : figure_rows(given, measured, &split);
   std::shared_ptr<const EffortScreen> screen;
   const auto search = [&](PreparedSets sets, const sim::DriveDescription& from) {
@@ -209,7 +210,7 @@ Diagnosis diagnose_records(const sim::DriveDescription& given, const Measurement
     const std::shared_ptr<const EffortScreen> seen = screen_of(model, split);
     if (!seen->empty()) screen = seen;
     if (seen->chosen.empty() && !effort_decides(*seen, split.validation)) return {};
-    if (!seen->chosen.empty()) time_beside(seen->best().model);
+    if (!seen->chosen.empty() && time_beside(seen->best().model)) prepare();
     Diagnosis diagnosis = diagnosis_of(model, split, seen);
     diagnosis.log = measured.log();
     diagnosis.rows = rows;

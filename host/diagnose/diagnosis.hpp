@@ -100,7 +100,7 @@ struct Diagnosis : PreparedSets {
   sim::DriveDescription best;                        ///< with the effects of the verdict; the base where there are none
   std::shared_ptr<const EffortScreen> screen;        ///< what plain least squares of the effort saw; may be absent
   std::shared_ptr<const std::vector<Record>> timed;  ///< the records of the sets, timed beside what was found
-  std::shared_ptr<const TableStudy> table;           ///< what a sensor on the table shows; empty where there is none
+  std::shared_ptr<const TableStudy> table;           ///< what a sensor on the table shows; empty without one
   bool by_effort = false;  ///< that decided: errors are then of the effort over its sensors' noise
 
   /// Whether candidates were compared by the error that compare prints.

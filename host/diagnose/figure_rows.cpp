@@ -34,7 +34,7 @@ ErrorOnSets FigureRows::error_of(sim::DriveDescription model) const {
     std::vector<const Record*> records;
     for (const FigureRecord& one : rows) records.push_back(one.record);
     const std::vector<Record> timed = timed_beside(model, records);
-    for (std::size_t k = 0; k < rows.size(); ++k) rows[k].record = &timed[k];
+    for (std::size_t k = 0; k < timed.size(); ++k) rows[k].record = &timed[k];
     return error_figures(model, rows);
   };
   return {error_on(train), error_on(validate)};

@@ -117,19 +117,16 @@ EffortHypotheses::EffortHypotheses(const sim::DriveDescription& model, const Eff
   std::vector<double> deviations;
   const double size = rms(thin_.rows.effort);
   MatrixXd all(rows_count, 0);
-  std::vector<double> known;
   for (const EffortTerm& term : base) {
     if (!(term.columns.cwiseAbs().maxCoeff() > 0.0)) continue;  // inertia at steady speeds
     all.conservativeResize(Eigen::NoChange, all.cols() + term.columns.cols());
     all.rightCols(term.columns.cols()) = thin_.of(term.columns);
-    known.resize(static_cast<std::size_t>(all.cols()), term.deviation);
+    deviations.resize(static_cast<std::size_t>(all.cols()), term.deviation);
   }
   const VectorXd factors = least_norm_solution(all, thin_.rows.effort);
   for (Index c = 0; c < all.cols(); ++c)
-    deviations.push_back(known[static_cast<std::size_t>(c)] > 0.0
-                             ? known[static_cast<std::size_t>(c)]
-                             : kBaseKnownTo *
-                                   std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300)));
+    if (double& deviation = deviations[static_cast<std::size_t>(c)]; !(deviation > 0.0))
+      deviation = kBaseKnownTo * std::max(std::abs(factors(c)), 0.05 * size / std::max(rms(all.col(c)), 1e-300));
   base_.columns = all;
   base_.deviations = Eigen::Map<const VectorXd>(deviations.data(), static_cast<Index>(deviations.size()));
 }

@@ -249,16 +249,14 @@ void settle_effort_timing(const std::vector<Record*>& records, const sim::DriveD
 }
 
 std::vector<Record> timed_beside(const sim::DriveDescription& model, const std::vector<const Record*>& records) {
+  const auto is_estimated = [](const Record* record) { return record->header.contains(kEstimatedKey); };
+  if (std::ranges::none_of(records, is_estimated)) return {};
   std::vector<Record> copies;
   for (const Record* record : records) copies.push_back(*record);
   std::vector<Record*> pointers;
   for (Record& copy : copies) pointers.push_back(&copy);
   settle_effort_timing(pointers, model);
   return copies;
-}
-
-bool is_timing_estimated(const std::vector<const Record*>& records) {
-  return std::ranges::any_of(records, [](const Record* record) { return record->header.contains(kEstimatedKey); });
 }
 
 bool timing_explains_delays(const std::vector<const Record*>& records) {

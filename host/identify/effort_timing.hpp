@@ -39,7 +39,7 @@ EffortTiming effort_timing_of(const Record& record);
 /// again.
 void settle_effort_timing(const std::vector<Record*>& records, const sim::DriveDescription& model);
 
-/// Copies of the records with their times settled beside another model.
+/// Copies of the records with their times settled beside another model; empty if no time was estimated.
 std::vector<Record> timed_beside(const sim::DriveDescription& model, const std::vector<const Record*>& records);
 
 /// The current that acts, on average, from each row to the next, A. Interpolates between rows; beyond the ends the
@@ -55,9 +55,6 @@ struct HeldCurrent {
 /// The record's current moved to where it acts, without interpolation. Friction stops an axis within a part of a row:
 /// there the mean over the row, acting_current, would give another motion than the two currents one after the other.
 HeldCurrent held_current(const Record& record);
-
-/// Whether the time of one of them was estimated.
-bool is_timing_estimated(const std::vector<const Record*>& records);
 
 /// Whether the timing was estimated from each record, so that it contains no information on the drive.
 bool timing_explains_delays(const std::vector<const Record*>& records);
