@@ -230,6 +230,15 @@ void BoardClient::save() {
 }
 
 void BoardClient::enable(std::uint8_t axes) { request(MessageType::enable, firmware::AxesRequest{axes}); }
+bool BoardClient::enable_at_rest(std::uint8_t axes) {
+  Message message;
+  message.type = MessageType::enable;
+  message.put(firmware::AxesRequest{axes});
+  const Message reply = reply_to(message, patience_);
+  if (reply.status == Status::not_standing) return false;
+  require_ok(reply, reply.status == Status::others_motion ? other_users() : "");
+  return true;
+}
 void BoardClient::disable(std::uint8_t axes) { request(MessageType::disable, firmware::AxesRequest{axes}); }
 void BoardClient::stop() { request(MessageType::stop); }
 

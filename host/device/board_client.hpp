@@ -60,6 +60,8 @@ class BoardClient {
   void save();
 
   void enable(std::uint8_t axes);
+  /// False where one of them moves, or its amplifier still reports ready: they stay disabled.
+  bool enable_at_rest(std::uint8_t axes);
   void disable(std::uint8_t axes);
   void stop();
   void jog(std::uint8_t axis, double velocity);

@@ -102,7 +102,9 @@ void enable_and_wait(BoardClient& board, std::uint8_t mask) {
       return state_of(status, axis) != SupervisorState::self_test;
     });
   });
-  board.enable(mask);
+  // An axis that was disabled a moment ago may coast still.
+  if (!ask_until(board, std::chrono::seconds(2), [&](const auto&) { return board.enable_at_rest(mask); }))
+    board.enable(mask);
   // The longest that an amplifier and a brake may take by their parameters, and a little more.
   const bool closed = ask_until(board, std::chrono::seconds(17), [&](const auto& status) {
     return for_all(mask, [&](std::uint8_t axis) {

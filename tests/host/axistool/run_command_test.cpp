@@ -289,8 +289,8 @@ TEST_F(ProbingCommand, ARapidIntoAWallIsStoppedAndNamed) {
   EXPECT_THAT(done.output, HasSubstr("the probe made contact while the program did not probe"));
   std::ifstream in(file("run.json"));
   EXPECT_EQ(nlohmann::json::parse(in)["stopped_because"], "unexpected contact");
-  const std::string back = "run " + written("back.ngc", "G0 X0\n") + " --yes";
-  EXPECT_TRUE(wait_until([&] { return run(back).exit_code == 0; })) << "and away from it again, once it is at rest";
+  const ProgramRun back = run("run " + written("back.ngc", "G0 X0\n") + " --yes");
+  EXPECT_EQ(back.exit_code, 0) << back.output << "away from it again, once it is at rest";
 }
 
 /// Whoever kills the program leaves a board that stops by itself, and says why.
