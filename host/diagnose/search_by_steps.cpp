@@ -11,6 +11,7 @@
 #include "host/diagnose/verdict.hpp"
 #include "host/effort/second_mass_terms.hpp"
 #include "sim/catalogue.hpp"
+#include "sim/second_mass.hpp"
 
 namespace host {
 
@@ -127,6 +128,23 @@ std::vector<Candidate> with_first_exchanged(const Candidate& pair, const std::ve
   return found;
 }
 
+/// Splits the friction of a drive with a second mass between both sides where that is better: a spring that bends by
+/// another friction than the load's looks like a gap.
+void split_friction(std::vector<Candidate>& candidates, const PreparedSets& sets) {
+  constexpr double kStart = 0.9, kBetter = 0.98;
+  for (Candidate& candidate : candidates) {
+    sim::DriveDescription model = candidate.model;
+    const auto second = std::ranges::find_if(
+        model.effects, [](const sim::EffectEntry& entry) { return sim::is_second_mass(entry.kind); });
+    if (second == model.effects.end() || second->has("load_friction")) continue;
+    second->parameters["load_friction"] = kStart;
+    Candidate split = judged(candidate.kinds, fit_model(model, sets.training, kWithoutOne).model, sets.base,
+                             sets.training, sets.validation);
+    if (split.left < kBetter * candidate.left && is_physical(split)) candidate = std::move(split);
+  }
+  std::ranges::stable_sort(candidates, {}, &Candidate::left);
+}
+
 /// Replaces gaps that the encoder does not show by the spring behind them, unless a spring is no candidate. Of two
 /// candidates with the same effects, the better remains.
 void close_unseen_gaps(std::vector<Candidate>& candidates, const PreparedSets& sets) {
@@ -162,6 +180,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto on_top_of = [&](const Candidate& first, double from, double to) {
     std::vector<Candidate> further = search_candidates(first.model, first.kinds, sets.training, sets.validation,
                                                        part_of(progress, from, to), effort);
+    split_friction(further, sets);
     close_unseen_gaps(further, sets);
     return further;
   };
@@ -172,6 +191,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
   const auto search_singles = [&](double from, double to) {
     found.singles =
         search_candidates(sets.base, {}, sets.training, sets.validation, part_of(progress, from, to), effort);
+    split_friction(found.singles, sets);
     close_unseen_gaps(found.singles, sets);
     if (!found.singles.empty()) renew(found.singles.front().model);
   };

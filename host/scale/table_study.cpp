@@ -126,7 +126,7 @@ class Search {
   void refine(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
     TableTerm& term = terms.back();
     if (term.is_driven()) {
-      settle_drive(terms, fit.colour, {term.drive});
+      settle_drive(terms, while_unknown(fit.colour), {term.drive});
       fit = fit_beside(fit, terms);
     } else if (term.kind == "encoder_cyclic_error" || (term.kind == "thermal_growth" && term.shape[0] > 0.0)) {
       const double travel = rows_.x.maxCoeff() - rows_.x.minCoeff();
@@ -148,16 +148,24 @@ class Search {
   void settle_drive(std::vector<TableTerm>& terms, const NoiseColour& colour, std::vector<TableDrive> starts) const {
     std::vector<TableTerm> others = terms;
     std::erase_if(others, [](const TableTerm& term) { return term.is_driven(); });
-    const TableDrive drive = fit_drive(std::move(starts), rows_, evidence_, known(others).first,
-                                       {.drift = std::min(colour.from_row_to_row(), kMostAlike)}, deceleration_);
+    const TableDrive drive = fit_drive(std::move(starts), rows_, evidence_, known(others).first, colour, deceleration_);
     for (TableTerm& term : terms)
       if (term.is_driven()) term.drive = drive;
+  }
+
+  /// Once all terms are known the noise is what they leave: a table keeps the error with which it came to rest, so the
+  /// rows of one rest say it once. Without terms that are driven nothing changes.
+  void settle_drive_last(std::vector<TableTerm>& terms, EvidenceFit& fit) const {
+    if (const TableDrive* drive = drive_of(terms)) {
+      settle_drive(terms, fit.colour, drives_of_equal_loss(*drive));
+      fit = fit_beside(fit, terms);
+    }
   }
 
   /// From all starts: after a gap or a spring came or went.
   void settle_drive_anew(std::vector<TableTerm>& terms, const NoiseColour& colour) const {
     const bool gap = count_of(terms, "backlash") > 0, spring = count_of(terms, "compliance") > 0;
-    if (gap || spring) settle_drive(terms, colour, drive_starts(gap, spring, rows_, deceleration_));
+    if (gap || spring) settle_drive(terms, while_unknown(colour), drive_starts(gap, spring, rows_, deceleration_));
   }
 
   /// Where the motor is, without the errors of its encoder that are among the terms.
@@ -219,7 +227,10 @@ class Search {
 
  private:
   /// More correlated noise than this is what no term explains yet; it says nothing of how sharp a reversal is.
-  static constexpr double kMostAlike = 0.2;
+  static NoiseColour while_unknown(const NoiseColour& colour) {
+    constexpr double kMostAlike = 0.2;
+    return {.drift = std::min(colour.from_row_to_row(), kMostAlike)};
+  }
 
   /// A gap or a spring, beside the other where that is chosen.
   std::optional<Fitted> best_driven(std::string_view kind, const std::vector<TableTerm>& chosen,
@@ -407,6 +418,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     small.back().after = left_um;
     remove(least);
   }
+  search.settle_drive_last(chosen, fit);
   study.delay_s = -1e-3 * fit.factors(base - 1);
   search.note_motor(chosen, fit);
   const MatrixXd covariance = search.covariance_of(chosen, fit);

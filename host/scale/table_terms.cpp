@@ -191,6 +191,19 @@ std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& row
   return starts;
 }
 
+std::vector<TableDrive> drives_of_equal_loss(const TableDrive& drive) {
+  std::vector<TableDrive> drives = {drive};
+  const double loss = drive.gap + 2.0 * drive.lag * drive.deceleration;
+  if (!(drive.gap > 0.0) || !(drive.lag > 0.0)) return drives;
+  for (const double factor : {0.5, 0.65, 0.8, 1.25, 1.5, 2.0}) {
+    TableDrive other = drive;
+    other.gap *= factor;
+    other.deceleration = (loss - other.gap) / (2.0 * drive.lag);
+    if (other.deceleration > 0.0) drives.push_back(other);
+  }
+  return drives;
+}
+
 MatrixXd table_base(const TableRows& rows) {
   MatrixXd base = MatrixXd::Zero(rows.size(), static_cast<Index>(rows.records.size()) + 1);
   for (std::size_t r = 0; r < rows.records.size(); ++r)

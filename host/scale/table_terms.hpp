@@ -52,6 +52,9 @@ std::vector<TableTerm> table_forms(std::string_view kind, const TableRows& rows)
 /// A gap or a spring that was found alone is no start: its friction is that of a table which follows otherwise.
 std::vector<TableDrive> drive_starts(bool gap, bool spring, const TableRows& rows, double deceleration);
 
+/// About this one: a larger gap and less friction to bend the spring, or the reverse. At a reversal all lose as much.
+std::vector<TableDrive> drives_of_equal_loss(const TableDrive& drive);
+
 /// Always there: each record's offset, and the time by which one sensor is read after the other.
 Eigen::MatrixXd table_base(const TableRows& rows);
 

@@ -138,7 +138,6 @@ TEST_F(ExportModel, CHeaderCompilesFreestandingAndAgrees) {
 }
 
 TEST_F(ExportModel, PythonModuleAgrees) {
-  if (run_program("python3 -c 'import numpy'").exit_code != 0) GTEST_SKIP() << "no numpy";
   to(host::ExportTarget::python, "x_model.py");
   std::string script = "import x_model as m\n";
   for (const char* name : {"friction", "friction_slope"})
@@ -146,7 +145,8 @@ TEST_F(ExportModel, PythonModuleAgrees) {
         "for s in [-60.0, -7.0, -1.0, -0.05, 0.0, 0.003, 0.4, 2.0, 11.0, 80.0]: print(repr(float(m.{}(s))))\n", name);
   script += "for x in [-13.7, 0.0, 1.1, 250.3]: print(repr(float(m.load(x))))\n";
   folder_.write("use.py", script);
-  expect_values(run_program(fmt::format("cd {} && python3 use.py", folder_.path(""))).output);
+  expect_values(
+      run_program(fmt::format("cd {} && /usr/bin/python3 use.py", folder_.path(""))).output);  // Debian's has NumPy
 }
 
 TEST_F(ExportModel, XmlReadsBack) {

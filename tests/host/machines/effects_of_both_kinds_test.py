@@ -12,8 +12,8 @@ from pathlib import Path
 AXISTOOL, MADE_MACHINES = os.environ["AXISTOOL"], os.environ["MADE_MACHINES"]
 # seed, effects hidden in each, and the case: a lag of the current loop beside backlash (its gap shows in the torque
 # alone); friction of two kinds beside a tachometer's gain (which shows in the motion alone); a tachometer's offset beside
-# friction that no motion tells from a constant torque
-CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1))
+# friction that no motion tells from a constant torque; a gap with friction on either side beside friction's memory
+CASES = ((7, 2, 2), (7, 3, 5), (601, 2, 1), (601, 2, 9))
 
 
 def main() -> None:
