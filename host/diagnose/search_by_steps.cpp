@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "host/diagnose/claim.hpp"
@@ -81,16 +82,20 @@ bool is_as_good(const sim::DriveDescription& model, const Errors& with, const Pr
   return errors.training < kAsGood * with.training && errors.validation < kAsGood * with.validation;
 }
 
-/// Whether the base was stuck in a local minimum: refitted from the best effect's fit it trains as well without the
-/// effect. Then it keeps that fit.
-bool base_was_stuck(PreparedSets& sets, const Candidate& best) {
+/// Whether the base was stuck in a local minimum: refitted from the fit of one of the best effects it trains as well
+/// without the effect. Then it keeps that fit.
+bool base_was_stuck(PreparedSets& sets, const std::vector<Candidate>& singles) {
   constexpr double kBetter = 0.98;
-  const sim::DriveDescription base = without_or_handed(best, best.kinds.back(), sets);
-  const double here = Errors(base, sets).training;
-  if (here > kBetter * Errors(sets.base, sets).training || here > kAsGood * Errors(best.model, sets).training)
-    return false;
-  sets.base = base;
-  return true;
+  constexpr std::size_t kTried = 3;
+  for (const Candidate& single : std::span(singles).first(std::min(kTried, singles.size()))) {
+    const sim::DriveDescription base = without_or_handed(single, single.kinds.back(), sets);
+    const double here = Errors(base, sets).training;
+    if (here > kBetter * Errors(sets.base, sets).training || here > kAsGood * Errors(single.model, sets).training)
+      continue;
+    sets.base = base;
+    return true;
+  }
+  return false;
 }
 
 /// Refits several effects without each of them in turn: the last may have made an earlier one unnecessary, or may only
@@ -196,7 +201,7 @@ Findings search_by_steps(PreparedSets& sets, const ShareDone& progress, SearchEf
     if (!found.singles.empty()) renew(found.singles.front().model);
   };
   search_singles(0.0, 0.4);
-  if (!found.singles.empty() && base_was_stuck(sets, found.singles.front())) search_singles(0.4, 0.5);
+  if (!found.singles.empty() && base_was_stuck(sets, found.singles)) search_singles(0.4, 0.5);
   if (found.singles.empty()) return found;
   for (const Candidate& candidate : found.singles)
     if (!is_physical(candidate)) excluded.push_back(candidate.kinds.back());
