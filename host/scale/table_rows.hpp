@@ -39,6 +39,7 @@ struct TableRows {
   std::vector<RowRun> runs;
   double step_um = 0.0;   ///< of both sensors together: the motor's as far as its smoothed travel is in doubt
   double noise_um = 0.0;  ///< of these steps in one row
+  double late_s = 0.0;    ///< by which the table is known to be read after the motor
 
   Eigen::Index size() const { return y.size(); }
   /// Speed and acceleration anew, after the pusher has changed.

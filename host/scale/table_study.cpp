@@ -168,7 +168,10 @@ class Search {
     if (gap || spring) settle_drive(terms, while_unknown(colour), drive_starts(gap, spring, rows_, deceleration_));
   }
 
-  /// Where the motor is, without the errors of its encoder that are among the terms.
+  double late_s(const EvidenceFit& fit) const { return -1e-3 * fit.factors(base_.cols() - 1); }
+
+  /// Where the motor is, without the errors of its encoder that are among the terms; and by how much later the table is
+  /// read.
   void note_motor(const std::vector<TableTerm>& terms, const EvidenceFit& fit) {
     for (TableRecord& one : rows_.records) one.pusher = one.motor;
     for (std::size_t k = 0; k < terms.size(); ++k) {
@@ -181,6 +184,7 @@ class Search {
         }
     }
     rows_.differentiate_pusher();
+    rows_.late_s = late_s(fit);
     base_ = table_base(rows_);
   }
 
@@ -315,6 +319,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
   std::vector<TableTerm> chosen;
   std::vector<std::vector<std::string>> groups;
   std::vector<double> odds;
+  search.note_motor(chosen, search.fit(chosen));
   EvidenceFit fit = search.fit(chosen);
   Progress progress("measuring the table against the motor", std::size(kTableKinds));
   while (chosen.size() < kMostEffects) {
@@ -419,7 +424,7 @@ TableStudy study_table(const sim::DriveDescription& model, const std::vector<con
     remove(least);
   }
   search.settle_drive_last(chosen, fit);
-  study.delay_s = -1e-3 * fit.factors(base - 1);
+  study.delay_s = search.late_s(fit);
   search.note_motor(chosen, fit);
   const MatrixXd covariance = search.covariance_of(chosen, fit);
   study.left = left_on(study.rows, chosen, fit.factors, base);

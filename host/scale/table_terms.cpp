@@ -208,7 +208,7 @@ MatrixXd table_base(const TableRows& rows) {
   MatrixXd base = MatrixXd::Zero(rows.size(), static_cast<Index>(rows.records.size()) + 1);
   for (std::size_t r = 0; r < rows.records.size(); ++r)
     base.col(static_cast<Index>(r)).segment(rows.records[r].first_row, rows.records[r].rows).setOnes();
-  base.rightCols(1) = rows.v;
+  base.rightCols(1) = rows.v - 0.5 * rows.late_s * rows.a;
   return base;
 }
 
