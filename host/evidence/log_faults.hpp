@@ -1,4 +1,4 @@
-// Faults of logging that no physics explains; they are ruled out before any effect is suspected. Faults that reading a
+// Faults of logging that no physics explains; they are excluded before the search for effects. Faults that reading a
 // record refuses (dead or copied channels, gaps in time, speed against position in sign or unit) are not repeated here.
 #pragma once
 
