@@ -1,4 +1,4 @@
-// Velocities between the host, in mm/s, rad/s and m/s, and a core that may compute in fixed point.
+// Converts velocities between the host's units (mm/s, rad/s, m/s) and those of a core that may compute in fixed point.
 #pragma once
 
 #include <type_traits>
