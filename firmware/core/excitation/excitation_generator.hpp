@@ -29,7 +29,7 @@ class ExcitationGenerator {
     rate_ = (sweep * (std::int64_t{1} << 31) / plan.samples) * 2;
   }
 
-  /// `turn`: the axis is leaving the box, or near its speed limit.
+  /// `turn`: the axis is leaving the box, or is near its speed limit.
   constexpr Scalar next(bool turn) {
     switch (plan_->kind) {
       case ExcitationKind::train:
