@@ -36,7 +36,7 @@ struct Transfer {
   std::size_t sent = 0;
 };
 
-/// One direction of one endpoint: what TinyUSB is ready for, and the host's transfers that wait for it.
+/// One direction of one endpoint: TinyUSB's pending transfer, and the host's transfers that wait for it.
 struct Endpoint {
   bool open = false, armed = false, stalled = false;
   std::uint8_t* buffer = nullptr;

@@ -23,8 +23,8 @@ struct EffortSignals {
 /// All records one after the other; one element per row. Speeds in rad/s or m/s, travel in mm or m, effort in Nm or N.
 struct EffortRows {
   Eigen::VectorXd t_s, x, w, acceleration, effort;
-  /// Change of the torque or force from one sample to the next, Nm or N: what one sample in the time at which a logged
-  /// current acts adds. 0 in records where that time is known.
+  /// Change of the torque or force from one sample to the next, Nm or N: the effect of a time offset of the logged
+  /// current by one sample. 0 in records whose time offset is known.
   Eigen::VectorXd effort_per_sample;
   std::vector<bool> judges;         ///< a row of the validation set
   std::vector<std::size_t> block;   ///< half a second of one record, whose rows are correlated
