@@ -18,8 +18,7 @@ struct GcodeMachine {
   double feed_share = 1.0;             ///< override of the feeds F, > 0; limits of axes hold anyway
   double rapid_share = 1.0;            ///< override of rapids, 0 to 1, relative to `fastest_mm_s`
   PathPoint fastest_mm_s = PathPoint::Constant(1e9);  ///< each axis's, > 0
-  std::vector<PathPoint>
-      probed;  ///< end positions of the first probing moves; the others are assumed to reach their targets
+  std::vector<PathPoint> probed;  ///< ends of the first probing moves; others are assumed to reach their targets
 };
 
 /// A probing move: G38.2 to G38.5.

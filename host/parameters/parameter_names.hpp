@@ -1,4 +1,4 @@
-// Parameters as people name them: "x.kalman.k11", "control.rate".
+// Names of parameters for users: "x.kalman.k11", "control.rate".
 #pragma once
 
 #include <optional>

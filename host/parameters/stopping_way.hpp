@@ -1,4 +1,4 @@
-// How far and how long an axis goes on after a stop has begun, by formula from its drive (README, "The board").
+// Distance and duration of a stop, by formula from the drive (README, "The board").
 #pragma once
 
 #include "sim/drive_description.hpp"
