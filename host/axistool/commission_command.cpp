@@ -79,7 +79,7 @@ std::optional<host::CommissionHoming> homing_of(const CommissionArguments& argum
 
 std::uint8_t axis_of(const std::string& name) { return axis_index(name, hal::kMostAxes); }
 
-/// The data sheet: of the command line, else of the machine that is simulated, else as the folder keeps it.
+/// The data sheet: from the command line, else of the simulated machine, else from the folder.
 sim::DriveDescription sheet_of(const CommissionArguments& arguments, const std::string& kept) {
   std::error_code fault;
   if (!arguments.drive.empty()) return host::read_drive(arguments.drive);

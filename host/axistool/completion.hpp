@@ -21,7 +21,7 @@ struct Completions {
 /// `words`: what was typed after the program's name; the last one, possibly empty, is being typed.
 Completions complete(const CLI::App& app, const std::vector<std::string>& words);
 
-/// The script that asks `axistool complete` for bash, zsh or fish.
+/// The script for bash, zsh or fish, which calls `axistool complete`.
 std::string completion_script(const std::string& shell);
 
 }  // namespace axistool

@@ -24,7 +24,7 @@ using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 /// mm.
 constexpr double kBrake_Nm = 20.0;
 
-/// A tenth of the paper's friction, on the paper's screw: what is let go runs on for a metre.
+/// A tenth of the paper's friction, on the paper's screw: without current, an axis coasts for a metre.
 sim::DriveDescription light_drive(std::string_view name) {
   sim::DriveDescription drive = *paper_drive(name);
   const auto effect = [](const char* kind, std::map<std::string, double> values) {
@@ -84,7 +84,7 @@ class Trial {
     apply(trial_.first);
     injected_at_ = machine_.samples();
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) injected_at_mm_[i] = machine_.plant(i).truth().x;
-    // A light axis that is let go at 250 mm/s coasts for 8 s.
+    // A light axis without current coasts for 8 s from 250 mm/s.
     const int longest = (trial_.light ? 14000 : 4000) + 3 * stretch();
     for (int k = 0; k < longest && !is_over(); ++k) {
       if (k == trial_.delay && trial_.second.injection != nullptr) {
