@@ -1,4 +1,4 @@
-// What figures of a residual show, from residuals in closed form.
+// Figures of residuals that are known in closed form.
 #include "host/compare/residual_figures.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ double largest(const ScatterSeries& curve) {
   return most;
 }
 
-// Catches a mean over both directions, in which a friction that varies along the travel is a flat line at zero.
+// Catches a mean over both directions, in which friction that varies along the travel is a flat line at zero.
 TEST(DirectionCurves, ShowAFrictionThatVariesWithThePosition) {
   const ResidualEffort samples = varying_friction();
   ResidualCoordinate over = coordinate_of("position", sim::DriveKind::rotary, kPeriod_mm);
