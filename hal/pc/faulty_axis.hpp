@@ -120,7 +120,7 @@ class FaultyAxis {
       apply();
     }
     bool is_on() const { return is_on_; }
-    /// The amplifier gives current.
+    /// Whether the amplifier gives current.
     bool drives() const {
       const AxisDefects& d = axis_.defects;
       const bool sees_enable = (is_on_ && !d.enable_open) || d.enable_stuck || d.amplifier_stuck;
