@@ -15,8 +15,8 @@ enum class FileRole {
 
 void note_role(const CLI::Option& option, FileRole role);
 
-/// An option or positional for files that the command reads: no output may take the place of one. (The one exception,
-/// declared without it, is a model that a command reads in order to write it again.)
+/// An option or positional for files that the command reads, which no output may overwrite. The only exception,
+/// declared without this function, is a model that a command reads in order to write it again.
 template <typename T>
 CLI::Option* add_input(CLI::App& command, const std::string& name, T& destination, const std::string& help) {
   CLI::Option* const option = command.add_option(name, destination, help);
