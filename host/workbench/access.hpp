@@ -1,4 +1,4 @@
-// Access control of the workbench: only pages that it served itself, on this computer, to a holder of its token.
+// Access control of the workbench: accepts only requests of its own pages, on this computer, with its token.
 #pragma once
 
 #include <string>
