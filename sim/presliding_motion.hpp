@@ -105,8 +105,8 @@ void follow_bristles(const Bristles& bristles, double inertia, DriveMotion& moti
   if (w != 0.0) motion.bristle = sign * settled + (motion.bristle - sign * settled) * left;
   const double viscous = sign * contact.viscous(side, speed).effort;
   const double carried = (contact_effort - viscous - bristles.damping * w) / bristles.stiffness;
-  // What was wrong at rest fades with the travel; the less is left of it, the more the noise of the acceleration would
-  // spoil. Kalman's gain goes with the square.
+  // The error at rest fades with the travel. The smaller it is, the more the noise of the acceleration would disturb,
+  // so the gain, as Kalman's, is proportional to its square.
   if (w == 0.0) motion.bristle_doubt = 1.0;
   motion.bristle_doubt *= left;
   const double rate = motion.bristle_doubt * motion.bristle_doubt * std::sqrt(bristles.stiffness / inertia);

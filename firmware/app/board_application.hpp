@@ -417,7 +417,7 @@ class BoardApplication {
 
   float rate_Hz() const { return static_cast<float>(active_.template get<"control.rate">()); }
   bool is_excited(std::size_t axis) const { return excitation_.is_active() && excitation_.axis() == axis; }
-  /// By an experiment or a path.
+  /// Whether an experiment or a path moves it.
   bool is_led(std::size_t axis) const { return is_excited(axis) || path_.leads(axis); }
 
   /// Call it with the control interrupt disabled, before a motion; false while axes slow down after a contact.

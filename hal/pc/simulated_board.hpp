@@ -28,7 +28,7 @@ class SimulatedBoardOf {
     ControlShutOut() {}  // NOLINT(modernize-use-equals-default): a guard that does nothing would be an unused variable
   };
 
-  /// As many reports as TinyUSB's port queues, and the F405's four sectors; of these only as much as a set can need.
+  /// Queues as many reports as TinyUSB's port, and has the F405's four sectors, but only as large as a set can need.
   /// Axis n has the noise of seed + n.
   SimulatedBoardOf(const Drives& drives, std::uint64_t seed, const Wiring& wiring = {})
       : plants_(make_plants(drives, seed, std::make_index_sequence<axes>())),

@@ -25,7 +25,7 @@ struct ResidualSamples {
 ResidualSamples residual_samples(const sim::DriveDescription& model, const PreparedRecord& prepared,
                                  std::size_t stride);
 
-/// Of all records of a set, one after the other.
+/// Residuals of all records of a set, one after the other.
 ResidualSamples residual_samples(const sim::DriveDescription& model, const RecordSet& set, std::size_t stride);
 
 /// The same as averages at the samples of residual_effort(), for models that have an inverse (has_inverse). It is

@@ -228,7 +228,7 @@ Partition by_time(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   return partition;
 }
 
-/// How long the axis had rested before the motion that a row belongs to; only the start of the motion counts.
+/// Duration of the rest before the motion of a row; only the start of the motion counts.
 Partition by_rest(const std::vector<ErrorRow>& rows, const RecordSet& set) {
   constexpr double kStart_s = 0.2;  // friction that grew at rest is overcome within this time
   constexpr double kEdges_s[] = {0.0, 0.1, 0.3, 1.0, 3.0};

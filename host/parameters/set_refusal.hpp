@@ -11,7 +11,7 @@ namespace host {
 /// documentation is sufficient.
 std::string why_refused(const firmware::ParameterValues& values, const firmware::SetRefusal& refused);
 
-/// Of the sampled estimator and of the sampled loop, in the plane of z: "0.678, 0.694 +- 0.286i".
+/// Poles of the sampled estimator and of the sampled loop, in the plane of z: "0.678, 0.694 +- 0.286i".
 std::string estimator_poles_text(const firmware::AxisParameters<float>& p);
 std::string loop_poles_text(const firmware::AxisParameters<float>& p);
 

@@ -8,7 +8,7 @@
 
 namespace host {
 
-/// Of each axis, mm and s.
+/// Limits of each axis, in mm and s.
 struct AxisLimits {
   PathPoint velocity, acceleration, jerk;
 };

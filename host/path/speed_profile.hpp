@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// Of the motion along a path.
+/// Limits of the motion along a path.
 struct TangentialLimits {
   double acceleration = 0.0;  ///< mm/s^2
   double jerk = 0.0;          ///< mm/s^3

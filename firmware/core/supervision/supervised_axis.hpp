@@ -66,7 +66,7 @@ class SupervisedAxis {
     return true;
   }
 
-  /// As of Axis, while the state is enabled; false otherwise.
+  /// As for Axis, while the state is enabled; false otherwise.
   constexpr bool jog(Scalar velocity) {
     if (state_ != SupervisorState::enabled || homing_.is_active() || !has_room_towards(velocity)) return false;
     limiting_.velocity_limited =
@@ -125,7 +125,7 @@ class SupervisedAxis {
   /// It read the index in its last step; the others of a group do so in other samples.
   constexpr bool has_looked_at_index() const { return index_.has_just_looked(); }
   constexpr void leave_index_for_later() { index_.leave_for_later(); }
-  /// As of Axis, before a step that comes late.
+  /// As for Axis, before a late step.
   constexpr void bridge_gap(const hal::EncoderReading& encoder) { axis_.bridge_gap(encoder); }
 
   constexpr CountPosition leading() const { return axis_.leading(); }  ///< as of Axis

@@ -34,7 +34,8 @@ sim::DriveDescription complete_motor() {
   return model;
 }
 
-// Noise of the current carries a light rotor far within a window: without it a complete model looks wrong by a factor.
+// Noise of the current moves a light rotor far within a window; if it is ignored, a complete model seems wrong by a
+// factor.
 TEST(ErrorFloor, HoldsTheNoiseOfAMeasuredCurrent) {
   const auto nothing = [](const Point&) { return 0.0; };
   const host::Record record = record_of(slow_turning, nothing, 0.0, 20.0, 3);
