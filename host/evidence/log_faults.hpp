@@ -17,7 +17,7 @@ namespace host {
 /// that physics could explain: a delay, a lag, a changed inertia, a limit of the amplifier.
 std::vector<LogFault> log_faults(const Record& record, const sim::DriveDescription& model);
 
-/// Of these faults, the copied channels. Wrong units and exchanged names may be their consequences.
+/// The copied channels among these faults. Wrong units and exchanged names may be their consequences.
 std::vector<LogFault> copied_channels(const Record& record, const sim::DataSheet& data);
 
 /// The list "log" of every command that reads records.

@@ -113,12 +113,12 @@ class Trial {
     return std::abs(machine_.plant(axis).truth().w) * axes_[axis].drive.data.lead;
   }
 
-  /// By the reference's own acceleration.
+  /// Computed with the reference's own acceleration.
   static double usual_gain_mm_s(const Stop& stop) {
     return stop.acceleration_mm_s2 * stop.acceleration_mm_s2 / (2.0 * ReferenceLimits{}.jerk);
   }
 
-  /// By the true drive and brake, along the ramp; and once more from the speed that a second fault has given it.
+  /// Computed with the true drive and brake, along the ramp; and again from the speed after a second fault.
   StoppingWay by_formula(std::size_t axis) const {
     const Stop& stop = stops_[axis];
     StoppingFigures figures = stopping_figures(axes_[axis].drive, std::max(stop.top_speed_mm_s, 1.0),

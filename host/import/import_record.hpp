@@ -18,7 +18,7 @@ struct Unwrapping {
   double range = 0.0;
 };
 
-/// Of COLUMN=RANGE. Throws Failure(usage).
+/// Parses COLUMN=RANGE. Throws Failure(usage).
 Unwrapping parse_unwrapping(std::string_view text);
 
 struct ImportOptions {

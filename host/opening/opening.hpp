@@ -37,7 +37,7 @@ struct OpenedFile {
 struct Opening {
   std::vector<OpenedFile> files;
 
-  /// Of all files, each once.
+  /// For all files, each once.
   std::vector<std::string> asks() const;
   std::vector<const OpenedRecord*> records() const;
 };

@@ -36,7 +36,7 @@ class TimeWarp {
   State at(double warped_s) const;
   /// t for a tau.
   double warped(double time_s) const;
-  /// Times t at which cells meet whose changes of the rate differ noticeably.
+  /// Times t between two cells at which the change of the rate jumps noticeably.
   const std::vector<double>& bends() const { return bends_; }
 
  private:

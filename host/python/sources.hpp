@@ -31,7 +31,7 @@ class RecordSource {
   std::variant<Path, host::RecordColumns> given_;
 };
 
-/// Of a sequence of such.
+/// The same for a sequence.
 std::vector<RecordSource> record_sources(const pybind11::sequence& given, const std::string& role);
 /// Their names, with commas.
 std::string names_of(const std::vector<RecordSource>& sources);

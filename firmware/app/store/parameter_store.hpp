@@ -176,7 +176,7 @@ class ParameterStore {
     return SaveResult::saved;
   }
 
-  /// Copies those of the newest set after the staged one.
+  /// Copies the tables of the newest set to the place after the staged table.
   bool copy_tables(std::size_t target, std::size_t offset, std::size_t replaced) {
     if (replaced != kNoAxis && staged_.points != 0) offset += sizeof staged_ + staged_.points * sizeof(PitchPoint);
     bool all_copied = true;
