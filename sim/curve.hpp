@@ -17,7 +17,8 @@ inline constexpr std::string_view kCurveCoordinates[] = {
 /// knot have equal values, and their distance is the period.
 class Curve {
  public:
-  /// From the entry's `knot` and `value` parameters, of which there are equally many; knots ascend with their number.
+  /// Takes the entry's `knot` and `value` parameters. There are equally many of both, and knots ascend with their
+  /// number.
   explicit Curve(const EffectEntry& entry);
 
   double operator()(double q) const;
@@ -25,7 +26,7 @@ class Curve {
 
   const std::vector<double>& knots() const { return knots_; }
   const std::vector<double>& values() const { return values_; }
-  /// Period over the travel, mm or m; 0 if it is not periodic.
+  /// Period along the travel, mm or m; 0 if the curve is not periodic.
   double period() const { return period_; }
 
  private:

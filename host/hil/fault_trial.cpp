@@ -20,11 +20,11 @@ using firmware::SupervisorState;
 
 using MachineAxes = std::array<MachineAxis, hal::kAxisCount>;
 
-/// A brake with twice the torque that the paper's motor needs against friction: Nm. 20 Nm stop it from 250 mm/s in 9
+/// Torque of the brake: twice what the paper's motor needs to overcome friction. It stops the axis from 250 mm/s in 9
 /// mm.
 constexpr double kBrake_Nm = 20.0;
 
-/// A tenth of the paper's friction, on the paper's screw: without current, an axis coasts for a metre.
+/// A drive with a tenth of the paper's friction, on the paper's screw: without current, the axis coasts for a metre.
 sim::DriveDescription light_drive(std::string_view name) {
   sim::DriveDescription drive = *paper_drive(name);
   const auto effect = [](const char* kind, std::map<std::string, double> values) {
@@ -202,7 +202,7 @@ class Trial {
     if (trial_.motion == TrialMotion::starting && !all_enabled() && k < kPatience) return;
     if (path_runs || (trial_.motion == TrialMotion::move && k < kPatience)) return;
     if (trial_.motion == TrialMotion::stopping && k < kPatience / 2) return;
-    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // what only shows at a drop
+    if (k >= kPatience * 3 + 2 * stretch()) return disable();  // what shows only when an axis drops
     enable();
     if (k % stretch() == 100) jog(k / stretch() % 2 == 0 ? 1.0 : -1.0);
   }
@@ -237,8 +237,8 @@ class Trial {
     if (fault_seen_) follow_stop();
   }
 
-  /// Of an amplifier that drives without its enable only the time can be stated. Its axis coasts from where its power
-  /// is cut.
+  /// For an amplifier that drives without its enable, only the time can be stated. Its axis coasts from the place where
+  /// the power is cut.
   void follow_stop() {
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const double x = machine_.plant(i).truth().x;
@@ -298,7 +298,7 @@ class Trial {
     result.reaction_s = static_cast<double>(*fault_seen_ - *injected_at_) * period_s;
     result.stop_s = static_cast<double>(machine_.samples() - *fault_seen_) * period_s;
     result.whole_way_mm = whole_way_mm_;
-    double stated_s = 0.0;  ///< when the last axis stands, since the fault
+    double stated_s = 0.0;  ///< from the fault until the last axis stands
     for (std::size_t i = 0; i < hal::kAxisCount; ++i) {
       const StoppingWay stated = by_formula(i);
       stated_s = std::max(stated_s, static_cast<double>(stops_[i].begin - *fault_seen_) * period_s + stated.time_s);

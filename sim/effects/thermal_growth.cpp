@@ -44,7 +44,8 @@ const EffectInfo thermal_growth{
     .confused_with = {"pitch_error", "backlash"},
     .separate_by =
         "Repeat one cycle for an hour with a scale on the table, stop, repeat; log the temperature of nut and bearing",
-    .origin = "Screw and nut warming up by friction: 11 um a metre and kelvin of steel between fixed bearing and nut",
+    .origin =
+        "Friction warms screw and nut: the steel between fixed bearing and nut grows by 11 um per metre and kelvin",
     .remedy = "Close the position loop by the scale; warm-up cycle; cooled or pretensioned screw",
     .install = install_thermal_growth,
 };

@@ -184,11 +184,11 @@ class ExcitationRun {
   }
 
   /// The encoder shows at most a flicker under a command near the largest, for the plan's time. Before the first motion
-  /// the times add up; later they must be continuous, since the axis may hang in a cog or be shaken too fast to move.
-  /// An encoder that failed in motion looks the same. Without a tachometer to show that, a standstill that began more
-  /// abruptly than the axis ever changed its speed is doubted: then a command well above the one that moved the axis in
-  /// this direction may last only four times the longest silence so far. Weight, cogging and friction depend on the
-  /// direction.
+  /// the times add up; later they must be continuous, since cogging may hold the axis, or the command may change too
+  /// fast for it to move. An encoder that failed in motion looks the same. Without a tachometer to show that, a
+  /// standstill that began more abruptly than the axis ever changed its speed is doubted: then a command well above the
+  /// one that moved the axis in this direction may last only four times the longest silence so far. Weight, cogging and
+  /// friction depend on the direction.
   [[gnu::noinline]] constexpr bool does_nothing() {
     const Scalar command = Traits::magnitude(last_value_);
     Scalar& moved_by = last_value_ > Scalar(0) ? moved_forward_by_ : moved_backward_by_;

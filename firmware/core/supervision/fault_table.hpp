@@ -163,7 +163,7 @@ constexpr std::array<FaultInfo, kCount> by_number() {
 
 }  // namespace fault_table
 
-/// In the order of their numbers.
+/// All faults, in the order of their numbers.
 inline constexpr std::array<FaultInfo, fault_table::kCount> kFaults = fault_table::by_number();
 
 namespace fault_table {
@@ -178,7 +178,7 @@ constexpr std::array<FaultReaction, kFaults.size()> reactions_alone() {
   return reactions;
 }
 
-/// A bit for each.
+/// One bit for each fault that loses the position.
 inline constexpr std::uint64_t kPositionLost = [] {
   std::uint64_t bits = 0;
   for (const FaultInfo& row : kFaults)
