@@ -1,5 +1,5 @@
-// Searches for one effect, a second beside the best one, and a third beside the best two, as long as the residual needs
-// it.
+// Searches for one effect, then for a second one to add to the best, then for a third to add to the best pair, as long
+// as the residual needs it.
 #pragma once
 
 #include <vector>

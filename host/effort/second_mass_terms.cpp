@@ -31,7 +31,7 @@ struct Load {
 
 /// The coupling's pull over the load's inertia at every sample: w^2 d + 2 z w d', with d the twist beyond the gap,
 /// d'' = a - pull + friction sign(load's speed); behind a gap the contact pushes and never pulls (sim/coupling.hpp).
-/// Semi-implicit steps of an eighth of a radian; friction takes speed away at most, and then holds.
+/// Semi-implicit steps of an eighth of a radian. Friction can only slow the load down to rest, and then holds it.
 std::vector<double> pull_over(const EffortSignals& signals, const Load& load) {
   std::vector<double> pulls(signals.speed.size());
   const double omega = 2.0 * std::numbers::pi * load.resonance_Hz, damping = 2.0 * load.damping * omega;
