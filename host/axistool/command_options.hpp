@@ -28,8 +28,8 @@ CLI::Option* add_input(CLI::App& command, const std::string& name, T& destinatio
 CLI::Option* add_output(CLI::App& command, const std::string& name, std::string& destination, const std::string& help,
                         FileRole role = FileRole::output);
 
-/// Checks all options: protects inputs, and requires outputs that can be written and differ, and finite numbers (option
-/// parsers accept "nan" in any range). Throws host::Failure.
+/// Checks all options: no output overwrites an input, all outputs differ and can be written, and numbers are finite
+/// (option parsers accept "nan" in any range). Throws host::Failure.
 void check_options(const CLI::App& program);
 
 }  // namespace axistool

@@ -30,8 +30,7 @@ void add_dial(CLI::App& app) {
   CLI::App* command = app.add_subcommand("dial", "Measure lost motion from readings of a dial gauge on the table");
   add_input(*command, "READINGS", arguments->file,
             "CSV with columns x_mm (position shown by the control) and dial_mm (reading of the gauge), units also _um, "
-            "_m; one "
-            "row for each reading, in the order taken, with the axis at rest")
+            "_m; one row for each reading, in the order taken, with the axis at rest")
       ->required();
   add_json_option(*command, arguments->json);
   command->footer(

@@ -24,10 +24,11 @@ class DropWatch {
     left_ = ready_samples_ = 0;
   }
 
-  /// The enable drops.
+  /// Called when the enable drops.
   constexpr void begin() { left_ = brake_samples_ + while_samples_; }
 
-  /// Each sample without an enable. `velocity`: of the slower sensor. It may gain twice what sensors may differ by.
+  /// Called in each sample without an enable. `velocity`: from the slower sensor. The speed may grow by twice the
+  /// difference that is allowed between the sensors.
   constexpr bool is_driven(const MonitorLimits<Scalar>& limits, bool says_ready, Scalar velocity) {
     if (left_ == brake_samples_ + while_samples_) velocity_ = velocity;
     velocity_ = velocity_ + (velocity - velocity_) * Scalar(1.0f / kFilterSamples);
