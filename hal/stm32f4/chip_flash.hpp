@@ -33,8 +33,8 @@ struct ImageSectors {
   static constexpr std::uint32_t count_of_chip(std::size_t sector) { return sector == 0 ? 4 : 1; }
 };
 
-/// Programs words; erasing a sector of 128 KB takes 1 to 2 s and stalls every access to flash, interrupts included: the
-/// watchdog must allow for it, the drives must be off.
+/// Programs words. Erasing a sector of 128 KB takes 1 to 2 s and stalls every access to flash, interrupts included:
+/// meanwhile the drives must be off, and the watchdog must allow for the time.
 template <typename Map>
 class ChipFlash {
  public:

@@ -7,7 +7,7 @@
 
 namespace host {
 
-/// Averages over 5 ms, the resolution of the smoother, of the samples in motion. All vectors have the same length.
+/// Averages of the samples in motion over 5 ms, the resolution of the smoother. All vectors have the same length.
 struct ResidualEffort {
   double period_s = 0.005;
   std::vector<std::size_t> record, slot;  ///< the record, and the average's place in it in periods
@@ -21,9 +21,8 @@ struct ResidualEffort {
   std::vector<double> temp_C;          ///< empty unless every record has it
 };
 
-/// Acceleration of the smoothed motion minus that of the prediction, times the inertia. Unlike the inverse model's, it
-/// is
-/// there for any model: bristles, gaps and second masses move as they do in a prediction.
+/// Acceleration of the smoothed motion minus that of the prediction, times the inertia. Unlike the residual of the
+/// inverse model, it exists for any model: bristles, gaps and second masses move as they do in a prediction.
 ResidualEffort residual_effort(const sim::DriveDescription& model, const RecordSet& set);
 
 /// Speed channel minus the speed of the smoothed position, rad/s or m/s, instead of the torque or force; empty if a
