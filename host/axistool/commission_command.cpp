@@ -33,13 +33,13 @@ struct CommissionArguments : DeviceArguments {
 
 bool is_simulated(const CommissionArguments& arguments) { return !arguments.model.empty() || !arguments.plant.empty(); }
 
-/// A home switch within the box.
+/// The usual wiring, with a home switch within the box.
 hal::pc::AxisWiring wiring_of(const host::CommissionOptions& options) {
   const double usual = options.sheet.data.kind == sim::DriveKind::rotary ? 25.0 : 0.025;
   return host::usual_wiring(options.sheet.data, std::min(usual, options.box.travel / 4.0));
 }
 
-/// One axis, behind the board's own protocol.
+/// The board, or a simulated axis behind the board's own protocol.
 host::BoardClient board_of(const CommissionArguments& arguments, const sim::DriveDescription& machine,
                            const host::CommissionOptions& options) {
   if (!is_simulated(arguments)) return open_board(arguments);

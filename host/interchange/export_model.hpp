@@ -39,7 +39,7 @@ Export export_model(const sim::DriveDescription& model, ExportTarget target, con
 
 nlohmann::json to_json(const Export& exported);
 
-/// The texts, with `notes` (lines without a comment sign) in front.
+/// The model as text in each format. `notes` are lines without a comment sign, which become comments at the start.
 std::string c_header(const PortableModel& model, const std::vector<std::string>& notes);
 std::string python_module(const PortableModel& model, const std::vector<std::string>& notes);
 std::string modelica_model(const PortableModel& model, const std::vector<std::string>& notes);
@@ -49,7 +49,7 @@ std::string hal_lines(const PortableModel& model, const std::string& component);
 std::string mjcf_joint(const PortableModel& model, const std::vector<std::string>& notes);
 std::string urdf_joint(const PortableModel& model, const std::vector<std::string>& notes);
 
-/// The model for MJCF and URDF: one viscous coefficient, one level.
+/// Friction as MJCF and URDF know it: one viscous coefficient and one level for both directions.
 struct SymmetricFriction {
   double viscous = 0.0, level = 0.0;
 };
