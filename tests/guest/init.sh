@@ -1,6 +1,6 @@
 #!/busybox/busybox sh
-# First process of the guest, whose files are all in memory: those of the starter, and busybox with Debian's utilities.
-# The starter has stored the command, and reads the exit code from the console.
+# First process of the guest, whose files are all in memory: those of the starter, and what Debian's utilities have in
+# busybox. The starter left the command; it learns the exit code from the console.
 /busybox/busybox mkdir -p /dev /proc /sys /run /tmp
 /busybox/busybox --install -s /busybox
 export PATH=/busybox
